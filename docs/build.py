@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the reference manual from the schemas and the rule documents: `python docs/build.py`.
+
+The writer is also the test that nothing has drifted: `python docs/build.py --check` writes nothing and exits with 1 if
+a page differs from what would be written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from as2fm_lsp.cli.main import EXAMPLES, parser
+from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar
+from roaml.language.resources import schema_path
+from roaml.rules import RULES, document
+
+HERE = Path(__file__).resolve().parent
+REFERENCE = HERE / "reference"
+NOTICE = "<!-- Written by docs/build.py. Change the schemas or rule documents instead. -->\n"
+
+LANGUAGES = {
+    "machines": (HL_SCXML, "State machines: HL-SCXML"),
+    "systems": (SYSTEM, "The system file"),
+    "trees": (BEHAVIOR_TREE, "Behavior trees"),
+    "structs": (STRUCTS, "Struct declarations"),
+}
+
+
+def pages() -> dict[str, str]:
+    """File name -> text of each page of the reference."""
+    found = {f"{name}.md": language(grammar, title) for name, (grammar, title) in LANGUAGES.items()}
+    found["expressions.md"] = expressions()
+    found["properties.md"] = properties()
+    found["rules.md"] = rules()
+    found["command-line.md"] = command_line()
+    found["README.md"] = contents()
+    return {name: text if name == "README.md" else f"{NOTICE}\n{text}" for name, text in found.items()}
+
+
+def contents() -> str:
+    rows = [f"- [{title}]({name}.md)" for name, (_, title) in LANGUAGES.items()]
+    rows += [
+        "- [Expressions](expressions.md)",
+        "- [Properties](properties.md)",
+        "- [Rules](rules.md)",
+        "- [Command line](command-line.md)",
+    ]
+    return f"{NOTICE}\n# Reference\n\n" + "\n".join(rows) + "\n"
+
+
+# ------------------------------------------------------------------- languages
+
+
+def language(grammar: Grammar, title: str) -> str:
+    roots = " or ".join(f"`<{root}>`" for root in grammar.roots)
+    parts = [f"# {title}\n\nThe root is {roots}. The grammar stands in `schemas/{grammar.schema}`.\n"]
+    parts += [element(each, grammar) for each in grammar.elements.values()]
+    return "\n".join(parts)
+
+
+def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
+    where = f" in `<{inside}>`" if inside else ""
+    lines = [f"## `<{type_.name}>`{where}\n", type_.documentation + "\n"]
+    if type_.use:
+        lines.append(f"*Older spelling; write `{type_.use}`.*\n")
+    parents = [p for p in grammar.parents(type_.name) if type_.name not in grammar.elements[p].local]
+    if parents and not inside:
+        lines.append(f"Stands in: {', '.join(f'`<{p}>`' for p in parents)}.\n")
+    if type_.binds:
+        lines.append(f"Event variables: {', '.join(f'`{b.name}`' for b in type_.binds)}.\n")
+    if type_.attributes:
+        lines += ["| attribute | required | meaning |", "| --- | --- | --- |"]
+        lines += [attribute(each) for each in type_.attributes.values()]
+        lines.append("")
+    if type_.children:
+        lines += ["| child | how often |", "| --- | --- |"]
+        lines += [f"| `<{name}>` | {often(o.least, o.most)} |" for name, o in type_.children.items()]
+        lines.append("")
+    if type_.any_child:
+        lines.append(f"Children: {often(type_.any_child.least, type_.any_child.most)} nodes of any kind.\n")
+    lines += [element(local, grammar, type_.name) for local in type_.local.values()]
+    return "\n".join(lines)
+
+
+def attribute(type_: AttributeType) -> str:
+    text = type_.documentation
+    if type_.port:
+        text += f" An {type_.port.direction}put port of type `{type_.port.type}`."
+    for choice in type_.simple.choices:
+        text += f" `{choice.value}`: {choice.documentation}"
+    cell = re.sub(r"\s+", " ", text).replace("|", "\\|")
+    required = type_.required or (type_.port is not None and type_.port.required)
+    return f"| `{type_.name}` | {'yes' if required else ''} | {cell} |"
+
+
+def often(least: int, most: int) -> str:
+    if most >= UNBOUNDED:
+        return "any number" if least == 0 else f"at least {least}"
+    return str(least) if least == most else f"{least} to {most}"
+
+
+# ------------------------------------------------------------ everything else
+
+
+def expressions() -> str:
+    binary = "\n".join(f"| `{cell(o.symbol)}` | {o.kind} | {o.precedence} |" for o in Operator)
+    unary = ", ".join(f"`{o.symbol}`" for o in UnaryOperator)
+    functions = "\n".join(f"| `{f.signature}` | {f.documentation} |" for f in FUNCTIONS.values())
+    return f"""# Expressions
+
+Expressions are a part of ECMAScript 5. They stand in `cond`, `expr`, `location` and some other attributes, where `<` is
+written `&lt;` and `&&` is written `&amp;&amp;`.
+
+## Values
+
+Numbers (`3`, `2.5`, `1e-3`, `0x10`), `true` and `false`, strings in single or double quotes, arrays (`[1, 2]`) and, as
+initial values, structs (`{{'x': 1, 'y': 2}}`).
+
+## Access
+
+`v[i]` is an element of an array or a byte of a string, `s.m` a member of a struct, `v.length` the length of an array or
+string. A member of an array of structs, `points.x`, is the array of all these members.
+
+## Operators
+
+The greater the number, the tighter an operator binds. `===` and `!==` mean `==` and `!=`. Before a value may stand
+{unary}. `test ? a : b` gives `a` if `test` is true, else `b`.
+
+| operator | kind | binds |
+| --- | --- | --- |
+{binary}
+
+`/` always gives a real number. Integers have no bounds in the model, whatever their type.
+
+## Functions
+
+| function | value |
+| --- | --- |
+{functions}
+"""
+
+
+def properties() -> str:
+    schema = json.loads(schema_path("jani-properties.schema.json").read_text(encoding="utf-8"))
+    lines = ["# Properties\n", schema["description"] + "\n"]
+    for name, definition in schema["$defs"].items():
+        title = definition.get("title", name)
+        lines.append(f"## {title}\n\n{definition.get('description', '').strip()}\n")
+        members = definition.get("properties", {})
+        if members:
+            required = set(definition.get("required", ()))
+            lines += ["| key | required | meaning |", "| --- | --- | --- |"]
+            for key, member in members.items():
+                text = re.sub(r"\s+", " ", cell(member.get("description", "")))
+                lines.append(f"| `{key}` | {'yes' if key in required else ''} | {text} |")
+            lines.append("")
+    return "\n".join(lines)
+
+
+def rules() -> str:
+    index = "\n".join(f"| [{rule.code}](#{rule.code}) | {rule.severity.label} | {rule.summary} |" for rule in RULES)
+    texts = "\n".join(demoted(document(rule.code)) for rule in RULES)
+    return f"""# Rules
+
+Each finding has a code. `as2fm-lsp --explain CODE` prints what stands here. A comment `<!-- as2fm: ignore[code] -->`
+keeps a rule quiet: on the line it stands on or, alone on its line, in the element that follows.
+
+| code | severity | what is wrong |
+| --- | --- | --- |
+{index}
+
+{texts}"""
+
+
+def demoted(text: str) -> str:
+    """A document as a section: its headings one level down, those in code left alone."""
+    lines = []
+    code = False
+    for line in text.splitlines():
+        code = code != line.startswith("```")
+        lines.append(f"#{line}" if line.startswith("#") and not code else line)
+    return "\n".join(lines) + "\n"
+
+
+def command_line() -> str:
+    """Not argparse's own layout, which differs between versions of Python."""
+    lines = ["# Command line\n", EXAMPLES_TEXT]
+    for group in parser()._action_groups:
+        rows = [option(action) for action in group._group_actions if action.dest != "help"]
+        if rows:
+            title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
+            lines += [f"## {title}\n", "| option | meaning |", "| --- | --- |", *rows, ""]
+    return "\n".join(lines)
+
+
+def option(action: argparse.Action) -> str:
+    names = ", ".join(action.option_strings) or str(action.metavar)
+    value = action.metavar if action.option_strings and action.nargs != 0 else None
+    if action.choices and value is None:
+        value = "|".join(str(choice) for choice in action.choices)
+    shown = f"{names} {value}" if value else names
+    return f"| `{cell(shown)}` | {cell(action.help or '')} |"
+
+
+EXAMPLES_TEXT = f"```text\n{EXAMPLES}```\n"
+
+
+def cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def drifted() -> Iterator[Path]:
+    """Pages that are missing, differ, or should not be there."""
+    wanted = pages()
+    for name, text in wanted.items():
+        path = REFERENCE / name
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            yield path
+    yield from (path for path in REFERENCE.glob("*") if path.name not in wanted)
+
+
+def main() -> int:
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--check", action="store_true", help="write nothing; exit with 1 if a page has drifted")
+    stale = list(drifted())
+    if arguments.parse_args().check:
+        for path in stale:
+            print(f"{path.relative_to(HERE.parent)} is not what docs/build.py writes", file=sys.stderr)
+        return 1 if stale else 0
+    REFERENCE.mkdir(exist_ok=True)
+    wanted = pages()
+    for path in stale:
+        if path.name in wanted:
+            path.write_text(wanted[path.name], encoding="utf-8")
+        else:
+            path.unlink()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`--baseline FILE`: adopt the tool in an old project by not telling what was there before.
+
+The file lists fingerprints with their number, made of names relative to the folder that it lies in, so that it holds
+wherever the tool is called from. If it does not exist yet, it is written with everything found now.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Sequence
+
+from as2fm_lsp.cli.formats.report import Entry
+from as2fm_lsp.cli.output import write_file
+
+VERSION = 1
+
+
+class BaselineError(ValueError):
+    """A baseline that cannot be used; the message says why."""
+
+
+def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
+    """The entries that the baseline does not know."""
+    if not os.path.exists(path):
+        _write(path, entries)
+        print(f"as2fm-lsp: wrote {path} with {len(entries)} known diagnostics", file=sys.stderr)
+        return []
+    known = _read(path)
+    fresh = []
+    for entry in entries:
+        fingerprint = entry.fingerprint_as(_name(entry, path))
+        if known[fingerprint] > 0:
+            known[fingerprint] -= 1
+        else:
+            fresh.append(entry)
+    return fresh
+
+
+def _name(entry: Entry, path: str) -> str:
+    """The entry's file as seen from the baseline."""
+    return os.path.relpath(entry.diagnostic.path, os.path.dirname(os.path.abspath(path))).replace(os.sep, "/")
+
+
+def _write(path: str, entries: Sequence[Entry]) -> None:
+    counts = Counter((entry.fingerprint_as(_name(entry, path)), _name(entry, path), entry.code) for entry in entries)
+    known = {key: {"file": file, "code": code, "count": count} for (key, file, code), count in counts.items()}
+    text = json.dumps({"version": VERSION, "known": known}, indent=1, sort_keys=True) + "\n"
+    try:
+        write_file(path, text)
+    except OSError as error:
+        raise BaselineError(f"{path}: {error.strerror or error}") from None
+
+
+def _read(path: str) -> Counter[str]:
+    try:
+        with open(path, encoding="utf-8") as file:
+            table = json.load(file)
+        return Counter({key: int(row["count"]) for key, row in table["known"].items()})
+    except OSError as error:
+        raise BaselineError(f"{path}: {error.strerror or error}") from None
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+        raise BaselineError(f"{path}: this is no baseline; remove it to write a new one") from None

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp --check PATH...`"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from as2fm_lsp.cli import baseline
+from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.output import print_text, write_file
+from roaml import api
+from roaml.diagnostics import Severity
+from roaml.project.settings import SEVERITIES, ament_prefixes, find_settings
+from roaml.rules import BY_CODE, internal_error
+
+_CRASH = internal_error.RULE.code
+
+CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
+"""Exit statuses: nothing found; errors found; wrong use; a failure of our own."""
+
+
+def run(options: argparse.Namespace) -> int:
+    stdin = options.stdin_filename
+    if not options.paths and stdin is None:
+        return _usage("--check needs a PATH")
+    if stdin is not None and os.path.isdir(stdin):
+        return _usage(f"{stdin}: --stdin-filename takes the name of a file")
+    unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
+    if unknown:
+        return _usage(f"there is no rule {', '.join(unknown)}")
+    paths = [*options.paths, *([] if stdin is None else [stdin])]
+    settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
+    for problem in problems:
+        print(f"as2fm-lsp: {problem}", file=sys.stderr)
+    if problems:
+        return USAGE
+    settings = replace(
+        settings,
+        ament_prefixes=ament_prefixes(),
+        select=frozenset(options.select) or settings.select,
+        ignore=(settings.ignore - set(options.select)) | set(options.ignore),
+    )
+    texts = None if stdin is None else {stdin: sys.stdin.buffer.read()}
+    try:
+        result = api.check(paths, options.ros_path, settings, texts)
+    except api.PathError as error:
+        return _usage(str(error))
+    lowest = SEVERITIES[options.severity]
+    failed = any(d.code == _CRASH for d in result.diagnostics)
+    shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]
+    entries = [entry(d, result.source, shown_path) for d in shown]
+    if options.baseline is not None:
+        try:
+            entries = baseline.apply(options.baseline, entries)
+        except baseline.BaselineError as error:
+            return _usage(str(error))
+    strict = options.warnings_as_errors or settings.warnings_as_errors
+    color = options.output is None and _takes_color()
+    report = Report(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
+    try:
+        _write(options, report)
+    except OSError as error:
+        if options.output is None:
+            raise
+        return _usage(f"{options.output}: {error.strerror or error}")
+    if failed:
+        return FAILURE
+    return FOUND if any(e.diagnostic.severity >= report.limit for e in entries) else CLEAN
+
+
+def _write(options: argparse.Namespace, report: Report) -> None:
+    text = _statistics(report.entries) if options.statistics else FORMATS[options.format](report)
+    if options.output is not None:
+        write_file(options.output, text)
+    else:
+        print_text(text, None if options.format == "text" else "utf-8")
+
+
+def _takes_color() -> bool:
+    """Whether a terminal reads what is written, and wants it colored (https://no-color.org)."""
+    return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def _statistics(entries: Sequence[Entry]) -> str:
+    """How often each rule was broken, the most frequent first."""
+    counts = Counter((e.code, e.severity) for e in entries)
+    rows = sorted(counts.items(), key=lambda row: (-row[1], row[0]))
+    return "".join(f"{count:6} {severity:<12} {code}\n" for (code, severity), count in rows)
+
+
+def _usage(message: str) -> int:
+    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    return USAGE

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""GitLab's Code Quality report."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+
+from as2fm_lsp.cli.formats.report import Report
+
+_SEVERITIES = {"error": "major", "warning": "minor", "information": "info", "hint": "info"}
+
+
+def render(report: Report) -> str:
+    seen: Counter[str] = Counter()
+    rows = []
+    for entry in report.entries:
+        seen[entry.fingerprint] += 1
+        rows.append(
+            {
+                "type": "issue",
+                "check_name": entry.code,
+                "description": entry.message,
+                "severity": _SEVERITIES[entry.severity],
+                # GitLab drops all but one of the entries with one fingerprint.
+                "fingerprint": f"{entry.fingerprint}-{seen[entry.fingerprint]}",
+                "location": {
+                    "path": entry.file.replace(os.sep, "/"),
+                    "lines": {"begin": entry.place.line, "end": entry.place.end_line},
+                },
+            }
+        )
+    return json.dumps(rows, ensure_ascii=False, indent=2) + "\n"

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagnostics with the places as people count them: lines and columns from 1, in code points, the end exclusive."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.text import SourceFile, Span
+
+_AROUND = 200
+"""Characters on both sides of a place: generated files may have everything on one line."""
+
+
+class Place(NamedTuple):
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+class RelatedEntry(NamedTuple):
+    """A further place that explains a diagnostic."""
+
+    file: str
+    place: Place
+    message: str
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A diagnostic as it is written: files as given or relative to the working directory."""
+
+    diagnostic: Diagnostic
+    file: str
+    place: Place
+    source: SourceFile
+    related: tuple[RelatedEntry, ...] = ()
+
+    @property
+    def code(self) -> str:
+        return self.diagnostic.code
+
+    @property
+    def severity(self) -> str:
+        return self.diagnostic.severity.label
+
+    @property
+    def message(self) -> str:
+        return self.diagnostic.message
+
+    @cached_property
+    def line(self) -> Span:
+        """The first line of the place, without its line end."""
+        lines, text = self.source.lines, self.source.text
+        start, end = lines.line_start(self.place.line - 1), lines.line_end(self.place.line - 1)
+        while end > start and text[end - 1] in "\r\n":
+            end -= 1
+        return Span(start, end)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        return self.fingerprint_as(self.file)
+
+    def fingerprint_as(self, file: str) -> str:
+        """Stays the same when lines are added or removed elsewhere: made of the file's name, code, message and what
+        stands on the line around the place."""
+        at = self.line.start + self.place.column - 1
+        around = self.source.text[max(self.line.start, at - _AROUND) : min(self.line.end, at + _AROUND)]
+        parts = (file.replace(os.sep, "/"), self.code, self.message, around.strip())
+        return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class Report:
+    """Attributes:
+    checked: how many files were checked.
+    limit: the least severity that makes the check fail.
+    color: whether a terminal reads it.
+    """
+
+    entries: Sequence[Entry]
+    checked: int
+    limit: Severity = Severity.ERROR
+    color: bool = False
+
+
+def entry(diagnostic: Diagnostic, source_of: Callable[[str], SourceFile], shown: Callable[[str], str]) -> Entry:
+    related = tuple(
+        RelatedEntry(shown(r.location.path), place_of(source_of(r.location.path), r.location.span), r.message)
+        for r in diagnostic.related
+    )
+    source = source_of(diagnostic.path)
+    return Entry(diagnostic, shown(diagnostic.path), place_of(source, diagnostic.span), source, related)
+
+
+def place_of(source: SourceFile, span: Span) -> Place:
+    start, end = source.lines.position(span.start), source.lines.position(span.end)
+    return Place(start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def shown_path(path: str) -> str:
+    """`path` relative to the working directory, if it lies in it or near it."""
+    try:
+        relative = os.path.relpath(path)
+    except ValueError:  # another drive
+        return path
+    return path if relative.count(os.pardir + os.sep) > 2 else relative

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""SARIF 2.1.0 (OASIS), as GitHub code scanning reads it.
+
+Rules carry their documents as help. `primaryLocationLineHash` keeps an alert the same when lines move.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import urllib.parse
+from collections import Counter
+from typing import Any
+
+from as2fm_lsp.cli.formats.report import Entry, Place, Report
+from roaml import __version__
+from roaml.rules import BY_CODE, document
+
+SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+MAX_RESULTS = 25_000
+
+_LEVELS = {"error": "error", "warning": "warning", "information": "note", "hint": "note"}
+
+
+def render(report: Report) -> str:
+    entries = report.entries[:MAX_RESULTS]
+    codes = sorted({entry.code for entry in entries})
+    seen: Counter[str] = Counter()
+    results = [_result(entry, codes.index(entry.code), seen) for entry in entries]
+    run = {
+        "tool": {
+            "driver": {
+                "name": "as2fm-lsp",
+                "semanticVersion": __version__,
+                "rules": [_rule(code) for code in codes],
+            }
+        },
+        "columnKind": "unicodeCodePoints",
+        "results": results,
+    }
+    return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, ensure_ascii=False, indent=2) + "\n"
+
+
+def _rule(code: str) -> dict[str, Any]:
+    rule, text = BY_CODE[code], document(code)
+    return {
+        "id": code,
+        "name": "".join(word.capitalize() for word in code.split("-")),
+        "shortDescription": {"text": rule.summary},
+        "fullDescription": {"text": rule.summary},
+        "help": {"text": text, "markdown": text},
+        "defaultConfiguration": {"level": _LEVELS[rule.severity.label]},
+    }
+
+
+def _result(entry: Entry, index: int, seen: Counter[str]) -> dict[str, Any]:
+    seen[entry.fingerprint] += 1
+    result: dict[str, Any] = {
+        "ruleId": entry.code,
+        "ruleIndex": index,
+        "level": _LEVELS[entry.severity],
+        "message": {"text": entry.message},
+        "locations": [_location(entry.file, entry.place)],
+        "partialFingerprints": {"primaryLocationLineHash": f"{entry.fingerprint}:{seen[entry.fingerprint]}"},
+    }
+    related = [
+        {**_location(r.file, r.place), "id": number, "message": {"text": r.message}}
+        for number, r in enumerate(entry.related)
+    ]
+    if related:
+        result["relatedLocations"] = related
+    return result
+
+
+def _location(file: str, place: Place) -> dict[str, Any]:
+    region = {
+        "startLine": place.line,
+        "startColumn": place.column,
+        "endLine": place.end_line,
+        "endColumn": place.end_column,
+    }
+    uri = urllib.parse.quote(os.fsencode(file.replace(os.sep, "/")))  # of bytes: a name may be no valid text
+    return {"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}

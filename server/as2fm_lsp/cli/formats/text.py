@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""For people: the place, the message, and the line with what is meant underlined."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from as2fm_lsp.cli.formats.report import Entry, Report
+from roaml.diagnostics import Severity
+
+_COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFORMATION: "36", Severity.HINT: "34"}
+_WIDEST = 160
+
+
+def render(report: Report) -> str:
+    paint = _paint if report.color else _plain
+    blocks = [_block(entry, paint) for entry in report.entries]
+    return "".join(block + "\n" for block in blocks) + summary(report) + "\n"
+
+
+def summary(report: Report) -> str:
+    """How many diagnostics of each severity in how many files."""
+    counts = dict.fromkeys(sorted(Severity, reverse=True), 0)
+    for entry in report.entries:
+        counts[entry.diagnostic.severity] += 1
+    plural = {Severity.INFORMATION: "information"}
+    found = [
+        f"{count} {plural.get(severity, severity.label + ('' if count == 1 else 's'))}"
+        for severity, count in counts.items()
+        if count
+    ]
+    files = f"{report.checked} {'file' if report.checked == 1 else 'files'} checked"
+    return f"{files}: {', '.join(found) or 'no diagnostics'}"
+
+
+def _paint(text: str, color: str) -> str:
+    return f"\033[{color}m{text}\033[0m"
+
+
+def _plain(text: str, _: str) -> str:
+    return text
+
+
+def _block(entry: Entry, paint) -> str:  # type: ignore[no-untyped-def]
+    place, color = entry.place, _COLORS[entry.diagnostic.severity]
+    where = paint(_visible(f"{entry.file}:{place.line}:{place.column}"), "1")
+    head = f"{where}: {paint(entry.severity, color)}: {_visible(entry.message)} {paint(f'[{entry.code}]', '2')}"
+    related = [_visible(f"      {r.file}:{r.place.line}:{r.place.column}: {r.message}") for r in entry.related]
+    return "\n".join((head, *_excerpt(entry, paint, color), *related))
+
+
+def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-untyped-def]
+    """The first line of the place with a caret below each character of it."""
+    place, line = entry.place, entry.line
+    start = place.column - 1
+    end = place.end_column - 1 if place.end_line == place.line else line.end - line.start
+    cut = start - 40 if start > _WIDEST - 40 else 0
+    text = _visible(entry.source.text[line.start + cut : min(line.end, line.start + cut + _WIDEST)])
+    if cut:
+        text, start, end = f"…{text[1:]}", start - cut, end - cut
+    # Tabs are kept in the line that points, so that it lines up with the one above.
+    margin = "".join("\t" if character == "\t" else " " * _columns(character) for character in text[:start])
+    carets = "^" * max(1, sum(map(_columns, text[start:end])))
+    return [f"{place.line:5} | {text}", f"{'':5} | {margin}{paint(carets, color)}"]
+
+
+def _visible(text: str) -> str:
+    """Control characters would move the terminal's cursor."""
+    return "".join(c if c == "\t" or c.isprintable() else "\ufffd" for c in text)
+
+
+def _columns(character: str) -> int:
+    """How many columns a terminal gives to a character."""
+    if unicodedata.category(character) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in ("W", "F") else 1

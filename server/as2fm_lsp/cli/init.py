@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp init DIR`: write a small working system to start from."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import as2fm_lsp
+from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import write_file
+
+
+def run(arguments: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
+    parser.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
+    folder = parser.parse_args(arguments).folder
+    files = dict(template("delivery_robot"))
+    for name in files:
+        if os.path.exists(os.path.join(folder, name)):
+            print(f"as2fm-lsp: {os.path.join(folder, name)} exists already; nothing was written", file=sys.stderr)
+            return USAGE
+    try:
+        for name, text in files.items():
+            path = os.path.join(folder, name)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            write_file(path, text)
+    except OSError as error:
+        print(f"as2fm-lsp: {folder}: {error.strerror or error}", file=sys.stderr)
+        return USAGE
+    for name in files:
+        print(f"wrote {shown_path(os.path.join(folder, name))}")
+    print(f"\nnext: as2fm-lsp --check {shlex.quote(os.path.join(folder, 'main.xml'))}")
+    return CLEAN
+
+
+def template(name: str) -> Iterator[tuple[str, str]]:
+    """The files of a template: relative path and text."""
+    folder = Path(as2fm_lsp.__file__).parent / "templates" / name
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            yield path.relative_to(folder).as_posix(), path.read_text(encoding="utf-8")

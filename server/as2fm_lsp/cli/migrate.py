@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp migrate PATH...`: move systems of an older dialect to the current one."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+
+from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import print_text, write_file
+from roaml import api
+from roaml.project.migrate import Migration
+
+
+def run(arguments: Sequence[str]) -> int:
+    options = _parser().parse_args(arguments)
+    try:
+        migrations = api.migrate(options.paths, options.ros_path)
+    except api.PathError as error:
+        return _fail(str(error))
+    if options.diff:
+        print_text("".join(_diff(migration) for migration in migrations))
+        return FOUND if migrations else CLEAN
+    for migration in migrations:
+        if migration.new_path != migration.path and os.path.exists(migration.new_path):
+            return _fail(f"{migration.new_path}: there is such a file already; nothing was changed")
+    try:
+        _write(migrations)
+    except OSError as error:
+        return _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+    for migration in migrations:
+        renamed = f" -> {shown_path(migration.new_path)}" if migration.new_path != migration.path else ""
+        print_text(f"migrated {shown_path(migration.path)}{renamed}\n")
+    if not migrations:
+        print("nothing to migrate")
+    return CLEAN
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="as2fm-lsp migrate",
+        description="Move systems of an older dialect to the current one, keeping comments and layout.",
+        epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 wrong use",
+    )
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
+    parser.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    parser.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
+    return parser
+
+
+def _diff(migration: Migration) -> str:
+    before, after = (text.splitlines(keepends=True) for text in (migration.before, migration.after))
+    names = shown_path(migration.path), shown_path(migration.new_path)
+    lines = list(difflib.unified_diff(before, after, *names)) or [f"--- {names[0]}\n", f"+++ {names[1]}\n"]
+    return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)
+
+
+def _write(migrations: Sequence[Migration]) -> None:
+    """Machines come before the systems that name them, and what is replaced goes last: whatever fails, each system
+    names files that are there."""
+    for migration in reversed(migrations):
+        write_file(migration.new_path, migration.data)
+        shutil.copymode(migration.path, migration.new_path)
+    for migration in migrations:
+        if migration.new_path != migration.path:
+            os.unlink(migration.path)
+
+
+def _fail(message: str) -> int:
+    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    return USAGE

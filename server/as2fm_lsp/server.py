@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The language server: wiring of the protocol to `roaml`.
+
+Handlers convert what comes in, make one call and convert what comes out. Everything runs on one event loop, so a
+handler never sees a half-applied change.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from typing import Any
+
+from lsprotocol import types
+from pygls.exceptions import PyglsError
+from pygls.lsp.server import LanguageServer
+
+from as2fm_lsp.convert import Converter
+from as2fm_lsp.diagnostics import Diagnostics
+from as2fm_lsp.handlers import register
+from as2fm_lsp.session import Session
+from roaml import __version__
+from roaml.model.kinds import EXTENSIONS
+from roaml.project.settings import CONFIG_FILE
+
+log = logging.getLogger(__name__)
+
+SECTION = "as2fm"
+"""The section of the client's settings."""
+
+
+class Server(LanguageServer):
+    """`session` is what the server knows, `diagnostics` what it says by itself.
+
+    `is_shut_down` tells whether the client has asked it to shut down.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("as2fm-lsp", __version__)
+        self.is_shut_down = False
+        self.session = Session()
+        self.diagnostics = Diagnostics(
+            self.session,
+            self.text_document_publish_diagnostics,
+            self.ask_to_pull,
+        )
+
+    def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
+        """A failure of ours: told in the log, without a pop-up for each keystroke."""
+        log.error("%s", source.__name__, exc_info=error)
+
+    def ask_to_pull(self) -> None:
+        """Diagnostics have changed that the client fetches by itself."""
+        workspace = self.client_capabilities.workspace
+        if workspace is not None and workspace.diagnostics and workspace.diagnostics.refresh_support:
+            self.workspace_diagnostic_refresh(None)
+
+    def tell_problems(self) -> None:
+        """What is wrong with the configuration and was not told yet."""
+        for problem in dict.fromkeys(self.session.problems):
+            self.window_show_message(types.ShowMessageParams(types.MessageType.Warning, problem))
+        self.session.problems.clear()
+
+
+def create() -> Server:
+    server = Server()
+    _documents(server)
+    _workspace(server)
+    register(server)
+    return server
+
+
+# ------------------------------------------------------------------- documents
+
+
+def _documents(server: Server) -> None:
+    session, diagnostics = server.session, server.diagnostics
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def did_open(params: types.DidOpenTextDocumentParams) -> None:
+        document = params.text_document
+        path = session.convert.path(document.uri)
+        session.open(path, document.text, document.version)
+        server.tell_problems()
+        diagnostics.schedule(path)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def did_change(params: types.DidChangeTextDocumentParams) -> None:
+        path = session.convert.path(params.text_document.uri)
+        session.change(path, params.content_changes, params.text_document.version)
+        diagnostics.schedule(path)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def did_save(params: types.DidSaveTextDocumentParams) -> None:
+        path = session.convert.path(params.text_document.uri)
+        if os.path.basename(path) in (CONFIG_FILE, "pyproject.toml"):
+            session.configure()
+            server.tell_problems()
+        diagnostics.schedule(path)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def did_close(params: types.DidCloseTextDocumentParams) -> None:
+        path = session.convert.path(params.text_document.uri)
+        session.close(path)
+        diagnostics.schedule(path)
+
+
+# ------------------------------------------------------------------- workspace
+
+
+def _workspace(server: Server) -> None:
+    session, diagnostics = server.session, server.diagnostics
+
+    @server.feature(types.INITIALIZE)
+    def initialize(params: types.InitializeParams) -> None:
+        session.convert = Converter(str(server.workspace.position_encoding))
+        options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
+        session.configure(options.get("settings") or {})
+        session.set_folders(session.convert.path(folder.uri) for folder in server.workspace.folders.values())
+        if not server.workspace.folders and params.root_uri:
+            session.set_folders([session.convert.path(params.root_uri)])
+        text_document = params.capabilities.text_document
+        asks = text_document is not None and text_document.diagnostic is not None
+        diagnostics.pushes = options.get("diagnostics", "pull" if asks else "push") == "push"
+        if not diagnostics.pushes:
+            _pull(server)
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(_: types.InitializedParams) -> None:
+        await _watch(server)
+        await _fetch_settings(server)
+        server.tell_problems()
+        diagnostics.schedule()
+
+    @server.feature(types.SHUTDOWN)
+    def shutdown(_: None = None) -> None:
+        server.is_shut_down = True
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
+    async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:
+        if not await _fetch_settings(server):
+            settings = params.settings if isinstance(params.settings, dict) else {}
+            session.configure(settings.get(SECTION, settings) or {})
+        server.tell_problems()
+        diagnostics.schedule()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def did_change_folders(_: types.DidChangeWorkspaceFoldersParams) -> None:
+        session.set_folders(session.convert.path(folder.uri) for folder in server.workspace.folders.values())
+        server.tell_problems()
+        diagnostics.schedule()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
+        paths = [session.convert.path(change.uri) for change in params.changes]
+        if any(os.path.basename(path) in (CONFIG_FILE, "pyproject.toml") for path in paths):
+            session.configure()
+            server.tell_problems()
+        if any(change.type is not types.FileChangeType.Changed for change in params.changes):
+            session.refresh()
+        diagnostics.schedule()
+
+
+def _pull(server: Server) -> None:
+    """Let the client ask for diagnostics."""
+    session, diagnostics = server.session, server.diagnostics
+    options = types.DiagnosticOptions(inter_file_dependencies=True, workspace_diagnostics=True, identifier=SECTION)
+
+    @server.feature(types.TEXT_DOCUMENT_DIAGNOSTIC, options)
+    def document_diagnostic(params: types.DocumentDiagnosticParams) -> types.DocumentDiagnosticReport:
+        path = session.convert.path(params.text_document.uri)
+        return diagnostics.document_report(path, params.previous_result_id)
+
+    @server.feature(types.WORKSPACE_DIAGNOSTIC)
+    async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> types.WorkspaceDiagnosticReport:
+        return await diagnostics.workspace_report(params.previous_result_ids)
+
+
+async def _fetch_settings(server: Server) -> bool:
+    """Ask the client for its settings; whether it can be asked."""
+    workspace = server.client_capabilities.workspace
+    if workspace is None or not workspace.configuration:
+        return False
+    item = types.ConfigurationItem(section=SECTION)
+    try:
+        answer: Any = await server.workspace_configuration_async(types.ConfigurationParams([item]))
+    except Exception as error:  # a client that cannot answer is as good as one without settings
+        log.warning("the client's settings cannot be read: %s", error)
+        return False
+    server.session.configure(answer[0] if answer and isinstance(answer[0], dict) else {})
+    return True
+
+
+async def _watch(server: Server) -> None:
+    """Be told of changes on the disk, if the client can do so."""
+    workspace = server.client_capabilities.workspace
+    watched = workspace.did_change_watched_files if workspace else None
+    if watched is None or not watched.dynamic_registration:
+        return
+    patterns = [f"**/*{extension}" for extension in EXTENSIONS] + [f"**/{CONFIG_FILE}", "**/pyproject.toml"]
+    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
+    registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+    try:
+        await server.client_register_capability_async(types.RegistrationParams([registration]))
+    except Exception as error:  # without it, files are looked at again with each change of a document
+        log.warning("files cannot be watched: %s", error)

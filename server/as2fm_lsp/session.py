@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the server holds over time: open documents, folders, settings.
+
+- Each folder of the client is a workspace with the configuration that stands in it, so that it is checked as CI does.
+- A file outside all folders, and of none of their systems, is checked in a workspace of its own, around the repository
+  or folder that it lies in, for as long as it is open.
+- All workspaces see all open documents. Each file is seen, and reported on, in one of them (`Moment`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from lsprotocol import types
+
+from as2fm_lsp.convert import Converter
+from roaml.project.discover import is_inside
+from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings, settings_from
+from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import SourceFile
+
+
+class Moment:
+    """All workspaces at one moment, each frozen when it is first asked for.
+
+    Args:
+        folders: the workspaces of the client's folders.
+        around: the workspace for a file that belongs to none of them.
+        versions: the open documents with their versions.
+    """
+
+    def __init__(
+        self,
+        folders: Mapping[str, Workspace],
+        around: Callable[[str], Workspace],
+        versions: Mapping[str, int | None],
+    ) -> None:
+        self.versions = dict(versions)
+        self._folders = dict(folders)
+        self._around = around
+        self._snapshots: dict[int, Snapshot] = {}
+
+    def snapshot(self, path: str) -> Snapshot:
+        """Where a file is seen: in the innermost folder around it in which a system names it, else in any folder in
+        which one does, else alone in the innermost folder, else outside of all folders."""
+        near = sorted((folder for folder in self._folders if is_inside(path, folder)), key=len, reverse=True)
+        for folder in dict.fromkeys((*near, *self._folders)):
+            snapshot = self._frozen(self._folders[folder])
+            if path in snapshot.analysis.memberships:
+                return snapshot
+        return self._frozen(self._folders[near[0]] if near else self._around(path))
+
+    def files(self) -> tuple[str, ...]:
+        """All files that are reported on: what is open, the systems that this belongs to, and the folders."""
+        found = dict.fromkeys(self.versions)
+        for path in self.versions:
+            analysis = self.snapshot(path).analysis
+            for system in analysis.memberships.get(path, ()):
+                found.update(dict.fromkeys(analysis.files_of(system)))
+        for workspace in self._folders.values():
+            found.update(dict.fromkeys(self._frozen(workspace).files()))
+        return tuple(path for path in found if self.snapshot(path).analysis.source(path) is not None)
+
+    def _frozen(self, workspace: Workspace) -> Snapshot:
+        if id(workspace) not in self._snapshots:
+            self._snapshots[id(workspace)] = workspace.snapshot()
+        return self._snapshots[id(workspace)]
+
+
+class Session:
+    """`problems` are what is wrong with the configuration, until they are told."""
+
+    def __init__(self) -> None:
+        self.convert = Converter()
+        self.problems: list[str] = []
+        self._versions: dict[str, int | None] = {}
+        self._texts: dict[str, SourceFile] = {}
+        self._folders: dict[str, Workspace] = {}
+        self._around: dict[str, Workspace] = {}
+        self._client_settings: object = {}
+
+    def moment(self) -> Moment:
+        return Moment(self._folders, self._workspace_around, self._versions)
+
+    # ------------------------------------------------------------- documents
+
+    def open(self, path: str, text: str, version: int | None) -> None:
+        self._put(path, text, version)
+        if not any(is_inside(path, folder) for folder in self._folders):
+            self._workspace_around(path)  # now, so that problems with the configuration there can be told
+
+    def change(self, path: str, changes: Iterable[types.TextDocumentContentChangeEvent], version: int | None) -> None:
+        """Apply the edits of a change, one after the other, each to the text that the one before made."""
+        source = self._texts.get(path) or SourceFile(path, "")
+        for change in changes:
+            text = change.text
+            if isinstance(change, types.TextDocumentContentChangePartial):
+                span = self.convert.span(source, change.range)
+                text = source.text[: span.start] + change.text + source.text[span.end :]
+            source = SourceFile(path, text)
+        self._put(path, source.text, version)
+
+    def close(self, path: str) -> None:
+        self._texts.pop(path, None)
+        self._versions.pop(path, None)
+        needed = {_surroundings(path) for path in self._texts}
+        self._around = {root: workspace for root, workspace in self._around.items() if root in needed}
+        for workspace in self._workspaces():
+            workspace.close(path)
+
+    def _put(self, path: str, text: str, version: int | None) -> None:
+        text = text.removeprefix("\ufeff")
+        self._texts[path] = SourceFile(path, text)
+        self._versions[path] = version
+        for workspace in self._workspaces():
+            workspace.open(path, text)
+
+    # ------------------------------------------------------------ workspaces
+
+    def set_folders(self, folders: Iterable[str]) -> None:
+        """The folders that the client has open. Workspaces of folders that stay keep what they know."""
+        folders = tuple(dict.fromkeys(os.path.normpath(folder) for folder in folders))
+        known, self._around = self._folders, {}
+        self._folders = {f: known[f] if f in known else self._new_workspace(f) for f in folders}
+        for folder, workspace in self._folders.items():
+            workspace.look_for_packages_in(self._packages(folder, workspace.roots))
+
+    def refresh(self) -> None:
+        """Files have come or gone."""
+        for workspace in self._workspaces():
+            workspace.refresh()
+
+    def configure(self, client_settings: object = None) -> None:
+        """The client's settings, or a configuration file, have changed."""
+        if client_settings is not None:
+            self._client_settings = client_settings
+        self.problems.clear()
+        for folder, workspace in (*self._folders.items(), *self._around.items()):
+            settings = self._settings(folder)
+            workspace.configure(settings, _roots(folder, settings))
+
+    def _workspaces(self) -> tuple[Workspace, ...]:
+        return (*self._folders.values(), *self._around.values())
+
+    def _workspace_around(self, path: str) -> Workspace:
+        root = _surroundings(path)
+        if root not in self._around:
+            self._around[root] = self._new_workspace(root)
+        return self._around[root]
+
+    def _new_workspace(self, folder: str) -> Workspace:
+        settings = self._settings(folder)
+        roots = _roots(folder, settings)
+        workspace = Workspace(roots, settings, packages=self._packages(folder, roots))
+        for path, source in self._texts.items():
+            workspace.open(path, source.text)
+        return workspace
+
+    def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
+        """The folders in which ROS packages are looked for: the nearest first, then the client's others."""
+        outside = [root for root in roots if not is_inside(root, folder)]
+        return tuple(filter(os.path.isabs, dict.fromkeys((folder, *outside, *self._folders))))
+
+    def _settings(self, folder: str) -> Settings:
+        """The configuration in a folder, with the client's settings added."""
+        settings, problems = find_settings(folder) if os.path.isabs(folder) else (Settings(), ())
+        settings, more = settings_from(_kebab(self._client_settings), folder, settings, "the editor's settings")
+        self.problems += [*problems, *more]
+        return replace(settings, ament_prefixes=ament_prefixes())
+
+
+def _surroundings(path: str) -> str:
+    """The folder in which a file outside all folders is checked; a document without a file is alone."""
+    return (enclosing_root(path) or os.path.dirname(path)) if os.path.isabs(path) else path
+
+
+def _roots(folder: str, settings: Settings) -> tuple[str, ...]:
+    return settings.roots or ((folder,) if os.path.isabs(folder) else ())
+
+
+_CLIENT_KEYS = {
+    "rosPath": "ros-path",
+    "roots": "roots",
+    "exclude": "exclude",
+    "select": "select",
+    "ignore": "ignore",
+    "severity": "severity",
+}
+
+
+def _kebab(settings: object) -> dict[str, Any]:
+    """The client's settings under the names of the configuration file; those for the client itself are left out."""
+    if not isinstance(settings, Mapping):  # a client may send anything
+        return {}
+    return {_CLIENT_KEYS[key]: value for key, value in settings.items() if key in _CLIENT_KEYS and value}

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tool says about a text, as plain values.
+
+- A `Finding` belongs to one file and knows no path: it is what parsers and rules produce and what is memoised.
+- A place in *another* file is named by a `Symbol`, never by a span, so a memoised finding stays right when the other
+  file is edited; `roaml.project` looks the span up when a `Diagnostic` is published.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.text import Location, Span, TextEdit
+
+
+class Severity(enum.IntEnum):
+    """How much a finding matters; a greater value matters more."""
+
+    HINT = 0
+    INFORMATION = 1
+    WARNING = 2
+    ERROR = 3
+
+    @property
+    def label(self) -> str:
+        return self.name.lower()
+
+
+class Tag(enum.Enum):
+    """How an editor may show the text of a finding (LSP `DiagnosticTag`)."""
+
+    UNNECESSARY = "unnecessary"
+    DEPRECATED = "deprecated"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A named thing in a file, independent of where it stands: `kind` is what the schemas say that a value defines.
+
+    `scope` tells equal names apart (for example the thread that a state belongs to); it is empty for most kinds.
+    """
+
+    path: str
+    kind: str
+    name: str
+    scope: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """A further place that explains a finding: a span in the same file, or a symbol in any file."""
+
+    place: Span | Symbol
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A change of the finding's own file that mends it. `preferred` marks the one obvious mend."""
+
+    title: str
+    edits: tuple[TextEdit, ...]
+    preferred: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something to say about a span. Without `severity` the rule's own severity holds."""
+
+    code: str
+    span: Span
+    message: str
+    severity: Severity | None = None
+    fixes: tuple[Fix, ...] = ()
+    related: tuple[Related, ...] = ()
+    tags: tuple[Tag, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RelatedPlace:
+    """A `Related` whose place has been looked up."""
+
+    location: Location
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A finding as it is published: with its file, its final severity and all places looked up."""
+
+    path: str
+    code: str
+    severity: Severity
+    span: Span
+    message: str
+    fixes: tuple[Fix, ...] = ()
+    related: tuple[RelatedPlace, ...] = ()
+    tags: tuple[Tag, ...] = ()

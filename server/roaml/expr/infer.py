@@ -1,0 +1,427 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The type of an expression, and everything in it that does not fit together (spec/03 §2, §6).
+
+- Pure: what a name stands for is asked of the caller, `Scope`.
+- Problems are data (`Problem`); the rules put them into words.
+- A part that is already reported has type `Unknown` and causes no further problems.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Boolean,
+    Call,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    ObjectLiteral,
+    String,
+    Unary,
+)
+from roaml.expr.types import (
+    BOOL,
+    EMPTY_ARRAY,
+    INT,
+    REAL,
+    STRING,
+    UNKNOWN,
+    Array,
+    EmptyArray,
+    Struct,
+    Type,
+    Unknown,
+    fits,
+    is_kind,
+    is_number,
+    join,
+    unwrap,
+    wrap,
+)
+from roaml.text import Span
+
+Scope: TypeAlias = Callable[[str], Type | None]
+"""The type of a name that may begin an access path, or None if there is no such name."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownName:
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownMember:
+    """`owner` has no member called `name`; `owner` may be a scalar, which has none at all."""
+
+    span: Span
+    name: str
+    owner: Type
+
+
+@dataclass(frozen=True, slots=True)
+class BadIndex:
+    """Either `indexed` is no array, or the index (of type `index`) is no integer."""
+
+    span: Span
+    indexed: Type
+    index: Type
+
+
+@dataclass(frozen=True, slots=True)
+class IndexOutOfBounds:
+    span: Span
+    index: int
+    array: Array
+
+
+@dataclass(frozen=True, slots=True)
+class BadOperand:
+    """`operator` does not take an operand of type `given`; it takes `wanted` (a noun phrase)."""
+
+    span: Span
+    operator: str
+    given: Type
+    wanted: str
+
+
+@dataclass(frozen=True, slots=True)
+class BadComparison:
+    span: Span
+    operator: str
+    left: Type
+    right: Type
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownFunction:
+    """Called or read, but no function or constant of the language. `name` is as written, `Math.` included."""
+
+    span: Span
+    name: str
+    called: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WrongArgumentCount:
+    span: Span
+    function: str
+    given: int
+
+
+@dataclass(frozen=True, slots=True)
+class MixedTypes:
+    """Elements of an array literal, or the values of `?:`, have no type in common."""
+
+    span: Span
+    first: Type
+    other: Type
+
+
+@dataclass(frozen=True, slots=True)
+class DivisionByZero:
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class IntegerDivision:
+    """`/` of two ints: the result is real (spec/07 1.8)."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class RandomUsed:
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LengthOfStruct:
+    """`.length` of a struct that is no array (spec/07 1.24)."""
+
+    span: Span
+    struct: Struct
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectUsed:
+    """An object literal where no initial value is given (spec/07 2.11)."""
+
+    span: Span
+
+
+Problem: TypeAlias = (
+    UnknownName
+    | UnknownMember
+    | BadIndex
+    | IndexOutOfBounds
+    | BadOperand
+    | BadComparison
+    | UnknownFunction
+    | WrongArgumentCount
+    | MixedTypes
+    | DivisionByZero
+    | IntegerDivision
+    | RandomUsed
+    | LengthOfStruct
+    | ObjectUsed
+)
+
+
+def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, tuple[Problem, ...]]:
+    """The type of `expr` and its problems, in the order of the text.
+
+    `reprinted` gives the type that the expression has after the translation printed its numbers: `2.0` has become `2`,
+    an int (spec/03 §5.2).
+    """
+    inference = _Inference(scope, reprinted)
+    type_ = inference.type_of(expr)
+    problems = inference.problems
+    if len(problems) > 1:
+        problems.sort(key=lambda p: p.span)
+    return type_, tuple(problems)
+
+
+def constant(expr: Expr) -> int | float | None:
+    """The value of a numeric expression of literals, or None. Division is real division, as in JANI."""
+    match expr:
+        case Number():
+            return expr.value
+        case Unary(operator=UnaryOperator.NEGATE):
+            value = constant(expr.operand)
+            return None if value is None else -value
+        case Unary(operator=UnaryOperator.PLUS):
+            return constant(expr.operand)
+        case Binary() if expr.operator.kind == "arithmetic":
+            left, right = constant(expr.left), constant(expr.right)
+            if left is None or right is None:
+                return None
+            return _arithmetic(expr.operator, left, right)
+    return None
+
+
+def _arithmetic(operator: Operator, left: float, right: float) -> int | float | None:
+    try:
+        match operator:
+            case Operator.ADD:
+                value = left + right
+            case Operator.SUBTRACT:
+                value = left - right
+            case Operator.MULTIPLY:
+                value = left * right
+            case Operator.DIVIDE:
+                value = left / right
+            case Operator.REMAINDER:
+                value = left % right
+            case _:
+                return None
+        return value if math.isfinite(value) else None
+    except (ZeroDivisionError, OverflowError):
+        return None
+
+
+class _Inference:
+    def __init__(self, scope: Scope, reprinted: bool) -> None:
+        self.scope = scope
+        self.reprinted = reprinted
+        self.problems: list[Problem] = []
+
+    def type_of(self, expr: Expr) -> Type:
+        match expr:
+            case Name():
+                return self.name(expr)
+            case Number():
+                return REAL if expr.is_real and not (self.reprinted and expr.value == int(expr.value)) else INT
+            case Member():
+                return self.member(expr)
+            case Index():
+                return self.index(expr)
+            case Binary():
+                return self.binary(expr)
+            case Unary():
+                return self.unary(expr)
+            case Boolean():
+                return BOOL
+            case String():
+                return STRING
+            case Call():
+                return self.call(expr)
+            case Conditional():
+                self.operand(expr.test, "?", BOOL, "a boolean")
+                return self.common(self.type_of(expr.then), expr.otherwise)
+            case ArrayLiteral():
+                return self.array(expr)
+            case ObjectLiteral():
+                self.problems.append(ObjectUsed(expr.span))
+                return UNKNOWN
+            case ErrorExpr():
+                for part in expr.parts:
+                    self.type_of(part)
+                return UNKNOWN
+
+    def name(self, expr: Name) -> Type:
+        type_ = self.scope(expr.name)
+        if type_ is None:
+            if expr.name == "Math":
+                self.problems.append(UnknownFunction(expr.span, "Math", called=False))
+            else:
+                self.problems.append(UnknownName(expr.span, expr.name))
+            return UNKNOWN
+        return type_
+
+    def member(self, expr: Member) -> Type:
+        if isinstance(expr.object, Name) and expr.object.name == "Math" and self.scope("Math") is None:
+            self.problems.append(UnknownFunction(expr.span, f"Math.{expr.name}", called=False))
+            return UNKNOWN
+        owner = self.type_of(expr.object)
+        if not expr.name or isinstance(owner, Unknown):
+            return UNKNOWN
+        inner, bounds = unwrap(owner)
+        if expr.name == "length" and (bounds or not (isinstance(inner, Struct) and inner.member("length"))):
+            if bounds or is_kind(owner, "string") or isinstance(owner, EmptyArray):
+                return INT
+            if isinstance(inner, Struct):
+                self.problems.append(LengthOfStruct(expr.name_span, inner))
+                return INT
+        elif isinstance(inner, Struct):
+            member = inner.member(expr.name)
+            if member is not None:
+                return wrap(member, bounds)
+        self.problems.append(UnknownMember(expr.name_span, expr.name, owner))
+        return UNKNOWN
+
+    def index(self, expr: Index) -> Type:
+        indexed, index = self.type_of(expr.object), self.type_of(expr.index)
+        if isinstance(indexed, Unknown):
+            return UNKNOWN
+        is_string = is_kind(indexed, "string")
+        if not (isinstance(indexed, Array) or is_string):
+            self.problems.append(BadIndex(expr.span, indexed, index))
+            return UNKNOWN
+        if not (isinstance(index, Unknown) or is_kind(index, "int")):
+            self.problems.append(BadIndex(expr.index.span, indexed, index))
+        elif isinstance(indexed, Array):
+            value = constant(expr.index)
+            if isinstance(value, int) and (value < 0 or (indexed.bound is not None and value >= indexed.bound)):
+                self.problems.append(IndexOutOfBounds(expr.index.span, value, indexed))
+        return indexed.element if isinstance(indexed, Array) else INT
+
+    def binary(self, expr: Binary) -> Type:
+        operator = expr.operator
+        if operator.kind == "logical":
+            self.operand(expr.left, operator.symbol, BOOL, "a boolean")
+            self.operand(expr.right, operator.symbol, BOOL, "a boolean")
+            return BOOL
+        left, right = self.type_of(expr.left), self.type_of(expr.right)
+        if operator.kind == "equality":
+            self.equality(expr, left, right)
+            return BOOL
+        good = True
+        for type_, operand in ((left, expr.left), (right, expr.right)):
+            if not (isinstance(type_, Unknown) or is_number(type_)):
+                self.problems.append(BadOperand(operand.span, operator.symbol, type_, "a number"))
+                good = False
+        if operator.kind == "order":
+            return BOOL
+        if not good or isinstance(left, Unknown) or isinstance(right, Unknown):
+            return UNKNOWN
+        return self.arithmetic(expr, left, right)
+
+    def arithmetic(self, expr: Binary, left: Type, right: Type) -> Type:
+        both_int = is_kind(left, "int") and is_kind(right, "int")
+        if expr.operator in (Operator.DIVIDE, Operator.REMAINDER) and constant(expr.right) == 0:
+            self.problems.append(DivisionByZero(expr.right.span))
+        elif expr.operator is Operator.DIVIDE and both_int:
+            self.problems.append(IntegerDivision(expr.operator_span))
+        if expr.operator is Operator.DIVIDE:
+            return REAL
+        return INT if both_int else REAL
+
+    def equality(self, expr: Binary, left: Type, right: Type) -> None:
+        comparable = (
+            isinstance(left, Unknown)
+            or isinstance(right, Unknown)
+            or (is_number(left) and is_number(right))
+            or (fits(left, right) or fits(right, left))
+        )
+        if not comparable or isinstance(unwrap(left)[0], Struct) or isinstance(unwrap(right)[0], Struct):
+            self.problems.append(BadComparison(expr.span, expr.operator.symbol, left, right))
+
+    def unary(self, expr: Unary) -> Type:
+        if expr.operator is UnaryOperator.NOT:
+            self.operand(expr.operand, "!", BOOL, "a boolean")
+            return BOOL
+        type_ = self.type_of(expr.operand)
+        if isinstance(type_, Unknown):
+            return UNKNOWN
+        if not is_number(type_):
+            self.problems.append(BadOperand(expr.operand.span, expr.operator.symbol, type_, "a number"))
+            return UNKNOWN
+        return INT if is_kind(type_, "int") else REAL
+
+    def call(self, expr: Call) -> Type:
+        arguments = [self.type_of(argument) for argument in expr.arguments]
+        name = _function_name(expr.function)
+        if name is None:
+            self.type_of(expr.function)
+            self.problems.append(UnknownFunction(expr.function.span, "", called=True))
+            return UNKNOWN
+        function = FUNCTIONS.get(name.removeprefix("Math.")) if name.startswith("Math.") else None
+        if function is None:
+            self.problems.append(UnknownFunction(expr.function.span, name, called=True))
+            return UNKNOWN
+        most, least = len(function.parameters), len(function.parameters) - function.optional
+        if not least <= len(arguments) <= most:
+            self.problems.append(WrongArgumentCount(expr.span, function.name, len(arguments)))
+        if function.name == "random":
+            self.problems.append(RandomUsed(expr.span))
+        for type_, argument in zip(arguments, expr.arguments, strict=True):
+            if not (isinstance(type_, Unknown) or is_number(type_)):
+                self.problems.append(BadOperand(argument.span, f"Math.{function.name}", type_, "a number"))
+        if function.result == "same":
+            return INT if arguments and all(is_kind(type_, "int") for type_ in arguments) else REAL
+        return INT if function.result == "int" else REAL
+
+    def array(self, expr: ArrayLiteral) -> Type:
+        if not expr.elements:
+            return EMPTY_ARRAY
+        element = self.type_of(expr.elements[0])
+        for other in expr.elements[1:]:
+            element = self.common(element, other)
+        return Array(element, len(expr.elements))
+
+    def common(self, first: Type, other: Expr) -> Type:
+        """The type that a value of type `first` and `other` have in common."""
+        second = self.type_of(other)
+        found = join(first, second)
+        if found is None:
+            self.problems.append(MixedTypes(other.span, first, second))
+            return UNKNOWN
+        return found
+
+    def operand(self, expr: Expr, operator: str, wanted: Type, noun: str) -> None:
+        type_ = self.type_of(expr)
+        if not fits(type_, wanted):
+            self.problems.append(BadOperand(expr.span, operator, type_, noun))
+
+
+def _function_name(function: Expr) -> str | None:
+    match function:
+        case Name():
+            return function.name
+        case Member(object=Name(name="Math")):
+            return f"Math.{function.name}"
+        case Member():
+            return f".{function.name}"
+    return None

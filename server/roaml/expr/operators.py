@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The operators and functions of the expression language (spec/03 §2), each with what it takes and gives.
+
+This is the only list of them: parser, typing, completion, signature help and translation all read it.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+
+class Operator(enum.Enum):
+    """A binary operator: its spelling, its precedence (greater binds tighter) and its kind."""
+
+    OR = ("||", 1, "logical")
+    AND = ("&&", 2, "logical")
+    EQUAL = ("==", 3, "equality")
+    NOT_EQUAL = ("!=", 3, "equality")
+    LESS = ("<", 4, "order")
+    LESS_EQUAL = ("<=", 4, "order")
+    GREATER = (">", 4, "order")
+    GREATER_EQUAL = (">=", 4, "order")
+    ADD = ("+", 5, "arithmetic")
+    SUBTRACT = ("-", 5, "arithmetic")
+    MULTIPLY = ("*", 6, "arithmetic")
+    DIVIDE = ("/", 6, "arithmetic")
+    REMAINDER = ("%", 6, "arithmetic")
+
+    def __init__(self, symbol: str, precedence: int, kind: str) -> None:
+        self.symbol = symbol
+        self.precedence = precedence
+        self.kind = kind
+
+
+class UnaryOperator(enum.Enum):
+    NEGATE = "-"
+    PLUS = "+"
+    NOT = "!"
+
+    @property
+    def symbol(self) -> str:
+        return self.value
+
+
+BINARY = {operator.symbol: operator for operator in Operator} | {"===": Operator.EQUAL, "!==": Operator.NOT_EQUAL}
+UNARY = {operator.symbol: operator for operator in UnaryOperator}
+
+CONDITIONAL_PRECEDENCE = 0
+UNARY_PRECEDENCE = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function of `Math`.
+
+    Attributes:
+        parameters: their names, in order.
+        result: `int`, `real`, or `same` (real if any argument is real, else int).
+        documentation: what it gives.
+        optional: how many parameters at the end may be left out.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    result: str
+    documentation: str
+    optional: int = 0
+
+    @property
+    def signature(self) -> str:
+        return f"Math.{self.name}({', '.join(self.parameters)})"
+
+
+FUNCTIONS = {
+    function.name: function
+    for function in (
+        Function("abs", ("x",), "same", "The absolute value of x."),
+        Function("ceil", ("x",), "int", "The smallest integer that is not less than x."),
+        Function("cos", ("x",), "real", "The cosine of x, x in radians."),
+        Function("floor", ("x",), "int", "The greatest integer that is not greater than x."),
+        Function("log", ("x", "base"), "real", "The logarithm of x to a base; without base the natural one.", 1),
+        Function("max", ("a", "b"), "same", "The greater of a and b."),
+        Function("min", ("a", "b"), "same", "The lesser of a and b."),
+        Function("pow", ("x", "y"), "real", "x to the power of y."),
+        Function(
+            "random", (), "real", "One of 0.00, 0.01, …, 0.99, each equally likely. Only where a value is stored."
+        ),
+        Function("sin", ("x",), "real", "The sine of x, x in radians."),
+    )
+}

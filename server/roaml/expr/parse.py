@@ -1,0 +1,497 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text -> expression tree, by operator precedence (Pratt 1973), whatever the text.
+
+- Never fails: every mistake is a finding with a place, and the tree holds an `ErrorExpr` there.
+- Accepts what spec/03 §2 accepts and, beyond the reference, `===`, `!==`, unary `+` and `?:` (spec/07 2.10).
+- Legal ECMAScript outside the subset is named as such ("unsupported-expression"), not called a syntax mistake.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from typing import NamedTuple
+
+from roaml.diagnostics import Finding, Fix
+from roaml.expr.operators import BINARY, UNARY, UNARY_PRECEDENCE, Operator, UnaryOperator
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Boolean,
+    Call,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    ObjectLiteral,
+    ObjectMember,
+    String,
+    Unary,
+)
+from roaml.text import Decoded, Span, TextEdit
+
+MAX_DEPTH = 150
+"""Deeper trees are refused, so that everything after the parser may recurse."""
+
+MAX_FINDINGS = 20
+"""Of an expression with more mistakes, the first ones are told."""
+
+SYNTAX = "expression-syntax"
+UNSUPPORTED = "unsupported-expression"
+
+
+class Token(NamedTuple):
+    """`kind` is number, string, name, punctuator, template or junk; `start` and `end` index the decoded text."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+_TOKEN = re.compile(
+    r"""\s*(?:
+      (?P<number>0[xX][0-9a-fA-F]+ | (?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)
+    | (?P<name>[^\W\d][\w$]*|\$[\w$]*)
+    | (?P<string>"(?:[^"\\]|\\.)*" | '(?:[^'\\]|\\.)*')
+    | (?P<template>`[^`]*`?)
+    | (?P<punctuator>===|!==|\*\*=?|>>>=?|<<=?|>>=?|[-+*/%&|^]=|==|!=|<=|>=|&&|\|\||\+\+|--|=>|=<|<>
+        | [-+*/%<>=!&|^~?:.,;()\[\]{}])
+    | (?P<junk>["'].*|\S)
+    )""",
+    re.VERBOSE | re.DOTALL,
+)
+_SIMPLE_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+_SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})\Z", re.ASCII)
+_ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
+_BITS = "bit operations are not supported"
+_STORE = "to store a value use `<assign>`"
+_FOREIGN_OPERATORS = {
+    "**": "use `Math.pow(x, y)`",
+    "&": "for a logical and write `&&`",
+    "|": "for a logical or write `||`",
+    "^": _BITS,
+    "<<": _BITS,
+    ">>": _BITS,
+    ">>>": _BITS,
+    "=": "to compare write `==`; " + _STORE,
+    "<>": "to compare write `!=`",
+    "=<": "to compare write `<=`",
+    "=>": "to compare write `>=`; functions are not supported",
+    "in": "write the comparison out",
+    "instanceof": "there are no objects",
+} | dict.fromkeys(("+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>=", ">>>=", "**="), _STORE)
+_REPLACEMENTS = {"&": "&&", "|": "||", "=": "==", "<>": "!=", "=<": "<="}
+_WORD_OPERATORS = {"and": Operator.AND, "or": Operator.OR}
+_STEPS = ("++", "--")
+_QUOTES = {'"': "&quot;", "'": "&apos;"}
+_POSTFIX = frozenset((".", "[", "(", *_STEPS))
+_PREFIX_WORDS = frozenset(("typeof", "void", "delete", "await", "yield"))
+_STATEMENT_WORDS = frozenset(
+    re.findall(
+        r"\w+",
+        "new function class let var const if else for while do switch case default break continue return throw try "
+        "catch finally with debugger import export enum extends super",
+    )
+)
+_LITERALS = {"true": True, "false": False}
+_WORDS = _PREFIX_WORDS | _STATEMENT_WORDS | _LITERALS.keys() | {"this"}
+_CLOSERS = frozenset((")", "]", "}"))
+_OPENERS = frozenset(("(", "[", "{"))
+_OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
+
+
+def tokens(source: Decoded) -> list[Token]:
+    """The tokens of `source`; together with white space they cover all of it."""
+    found = []
+    for match in _TOKEN.finditer(source.text, 0, len(source.text.rstrip())):
+        kind = match.lastgroup or "junk"
+        start, end = match.span(kind)
+        found.append(Token(kind, match[kind], start, end))
+    return found
+
+
+def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
+    """The expression in `source` and all that is wrong with its form."""
+    text = source.text
+    if _SIMPLE_NAME.match(text) and text not in _WORDS:
+        return Name(source.span(0, len(text)), text), ()
+    if _SIMPLE_NUMBER.match(text):
+        return Number(source.span(0, len(text)), int(text), False), ()
+    parser = _Parser(source)
+    expr = parser.whole()
+    return expr, tuple(parser.findings)
+
+
+class _TooDeepError(Exception):
+    """Unwinds the parser's recursion; never leaves this module."""
+
+
+class _Parser:
+    def __init__(self, source: Decoded) -> None:
+        self.source = source
+        self.tokens = tokens(source)
+        self.at = 0
+        self.depth = 0
+        self.gap = 0  # in the text, before the token where something was found missing last
+        self.findings: list[Finding] = []
+        self.reported: set[Span] = set()
+
+    def whole(self) -> Expr:
+        everything = self.source.span(0, len(self.source.text))
+        if not self.tokens:
+            self.report(everything, "an expression is missing")
+            return ErrorExpr(everything)
+        try:
+            expr = self.expression(0)
+        except _TooDeepError:
+            del self.findings[:]
+            self.report(everything, f"the expression is nested more than {MAX_DEPTH} deep")
+            return ErrorExpr(everything)
+        if (rest := self.peek()) is not None:
+            self.superfluous(rest)
+        return expr
+
+    def superfluous(self, token: Token) -> None:
+        """Something stands behind a complete expression."""
+        span = self.span(token)
+        remove = Fix("Remove it", (TextEdit(span, ""),), preferred=False)
+        if token.text == ",":
+            self.report(span, "`,` is not supported here: an expression is a single value", UNSUPPORTED)
+        elif token.text == ";":
+            last = (remove,) if token is self.tokens[-1] else ()
+            self.report(span, "one expression only: statements are not supported", UNSUPPORTED, *last)
+        elif token.text in _CLOSERS:
+            self.report(span, f"`{token.text}` closes nothing", SYNTAX, remove)
+        else:
+            self.report(span, f"an operator is missing before `{token.text[:20]}`")
+
+    def expression(self, precedence: int) -> Expr:
+        """An expression whose operators all bind at least as tight as `precedence`."""
+        start_depth, first = self.depth, self.at
+        self.deeper()
+        left = self.operand()
+        while (token := self.peek()) is not None:
+            if token.kind == "punctuator":
+                operator = BINARY.get(token.text)
+            else:
+                operator = _WORD_OPERATORS.get(token.text.lower()) if token.kind == "name" else None
+            if operator is not None:
+                if operator.precedence < precedence:
+                    break
+                if token.kind == "name":
+                    self.written(token, operator.symbol)
+                self.at += 1
+                self.deeper()
+                right = self.expression(operator.precedence + 1)
+                left = Binary(self.since(first), operator, self.span(token), left, right)
+            elif token.text == "?" and precedence == 0:
+                self.at += 1
+                left = self.conditional(left, first)
+            elif token.text in _FOREIGN_OPERATORS and precedence == 0:
+                left = self.foreign(left, first, token)
+            else:
+                break
+        self.depth = start_depth
+        return left
+
+    def foreign(self, left: Expr, first: int, token: Token) -> Expr:
+        """A binary operator of ECMAScript, or of another language, that ours has not."""
+        span = self.span(token)
+        replacement = _REPLACEMENTS.get(token.text)
+        fixes = (Fix(f"Write `{replacement}`", (TextEdit(span, _in_xml(replacement)),)),) if replacement else ()
+        hint = _FOREIGN_OPERATORS[token.text]
+        self.report(span, f"`{token.text}` is not supported here: {hint}", UNSUPPORTED, *fixes)
+        self.at += 1
+        self.deeper()
+        right = self.expression(1)
+        return ErrorExpr(self.since(first), (left, right))
+
+    def written(self, token: Token, symbol: str) -> None:
+        """Report that `symbol` is written as a word."""
+        span = self.span(token)
+        self.report(span, f"write `{symbol}`", SYNTAX, Fix(f"Write `{symbol}`", (TextEdit(span, _in_xml(symbol)),)))
+
+    def conditional(self, test: Expr, first: int) -> Expr:
+        then = self.expression(0)
+        otherwise = self.expression(0) if self.accept(":") else self.missing("`:` and the other value of `?`")
+        return Conditional(self.since(first), test, then, otherwise)
+
+    def operand(self) -> Expr:
+        token = self.peek()
+        if token is None:
+            return self.missing("a value")
+        first = self.at
+        if token.kind == "punctuator" and token.text in UNARY:
+            self.at += 1
+            operand = self.expression(UNARY_PRECEDENCE)
+            return Unary(self.since(first), UNARY[token.text], operand)
+        return self.postfix(self.primary(token), first)
+
+    def postfix(self, expr: Expr, first: int) -> Expr:
+        """What follows an operand that begins with token `first`."""
+        while (token := self.peek()) is not None and token.text in _POSTFIX and token.kind == "punctuator":
+            self.at += 1
+            self.deeper()
+            if token.text == ".":
+                expr = self.member(expr, first, token)
+            elif token.text == "[":
+                index = self.expression(0)
+                self.closing("]", token)
+                expr = Index(self.since(first), expr, index)
+            elif token.text == "(":
+                arguments = self.items(")", token)
+                expr = Call(self.since(first), expr, arguments)
+            else:
+                message = f"`{token.text}` is not supported: to change a variable use `<assign>`"
+                self.report(self.span(token), message, UNSUPPORTED)
+                expr = ErrorExpr(self.since(first), (expr,))
+        return expr
+
+    def member(self, expr: Expr, first: int, dot: Token) -> Expr:
+        name = self.peek()
+        if name is not None and name.kind == "name":
+            self.at += 1
+            return Member(self.since(first), expr, name.text, self.span(name))
+        end = self.span(dot).end
+        self.report(self.span(dot), "a name is missing behind the `.`")
+        return Member(self.since(first), expr, "", Span(end, end))
+
+    def primary(self, token: Token) -> Expr:
+        span = self.span(token)
+        if token.kind == "name":
+            self.at += 1
+            return self.word(token, span)
+        if token.kind == "number":
+            self.at += 1
+            return self.number(token, span)
+        if token.kind == "string":
+            self.at += 1
+            return String(span, _string_value(token.text[1:-1]))
+        if token.text == "(":
+            self.at += 1
+            inner = self.expression(0)
+            self.closing(")", token)
+            return inner
+        if token.text == "[":
+            first = self.at
+            self.at += 1
+            elements = self.items("]", token)
+            return ArrayLiteral(self.since(first), elements)
+        if token.text == "{":
+            return self.object(token)
+        return self.no_operand(token, span)
+
+    def word(self, token: Token, span: Span) -> Expr:
+        text, first = token.text, self.at - 1
+        if text in _LITERALS:
+            return Boolean(span, _LITERALS[text])
+        if text in _STATEMENT_WORDS:
+            self.report(span, f"`{text}` is not supported: an expression is a single value", UNSUPPORTED)
+            self.at = len(self.tokens)
+            return ErrorExpr(span)
+        if text == "this":
+            self.report(span, "`this` is not supported: a variable is named as such", UNSUPPORTED)
+            return ErrorExpr(span)
+        following = self.peek()
+        if text in _PREFIX_WORDS:
+            self.report(span, f"`{text}` is not supported in expressions", UNSUPPORTED)
+            parts = (self.expression(UNARY_PRECEDENCE),) if following is not None else ()
+            return ErrorExpr(self.since(first), parts)
+        if text == "not" and following is not None and (following.kind in _OPERAND_KINDS or following.text == "("):
+            self.written(token, "!")
+            operand = self.expression(UNARY_PRECEDENCE)
+            return Unary(self.since(first), UnaryOperator.NOT, operand)
+        return Name(span, text)
+
+    def no_operand(self, token: Token, span: Span) -> Expr:
+        self.deeper()
+        if token.kind == "template":
+            self.at += 1
+            self.report(span, "template strings are not supported: write the text in single quotes", UNSUPPORTED)
+        elif token.text == "~" or token.text in _STEPS:
+            self.at += 1
+            hint = _BITS if token.text == "~" else "to change a variable use `<assign>`"
+            self.report(span, f"`{token.text}` is not supported: {hint}", UNSUPPORTED)
+            return self.operand()
+        elif token.kind == "junk":
+            self.at += 1
+            if token.text[0] in "\"'":
+                return self.unclosed_string(token, span)
+            self.report(span, f"`{token.text}` has no meaning in an expression")
+            return self.operand() if self.peek() is not None else ErrorExpr(span)
+        elif token.text in ("/", "/=") and (end := self.regular_expression()):
+            span = span.cover(self.span(self.tokens[end - 1]))
+            self.at = end
+            self.report(span, "regular expressions are not supported", UNSUPPORTED)
+        else:
+            return self.missing("a value")
+        return ErrorExpr(span)
+
+    def regular_expression(self) -> int:
+        """The number of the token behind the regular expression that begins here; 0 if there is none."""
+        for at in range(self.at + 1, len(self.tokens)):
+            if self.tokens[at].text == "/":
+                flags = at + 1 < len(self.tokens) and self.tokens[at + 1].start == self.tokens[at].end
+                return at + 2 if flags and self.tokens[at + 1].kind == "name" else at + 1
+        return 0
+
+    def unclosed_string(self, token: Token, span: Span) -> Expr:
+        quote = token.text[0]
+        opening = self.source.span(token.start, token.start + 1)
+        written = quote if opening.end - opening.start == 1 else _QUOTES[quote]
+        close = Fix(f"Insert {quote}", (TextEdit(Span(span.end, span.end), written),), preferred=False)
+        self.report(span, f"the text has no closing {quote}", SYNTAX, close)
+        return String(span, _string_value(token.text[1:]))
+
+    def number(self, token: Token, span: Span) -> Expr:
+        following = self.peek()
+        if following is not None and following.kind == "name" and following.start == token.end:
+            self.at += 1
+            self.report(self.span(following), f"`{token.text}{following.text}` is neither a number nor a name")
+        value = _number_value(token.text)
+        if value is None:
+            self.report(span, "the number is too large: the greatest is 1.8e308")
+            return ErrorExpr(span)
+        return Number(span, value, isinstance(value, float))
+
+    def items(self, closer: str, opener: Token) -> tuple[Expr, ...]:
+        """Comma-separated expressions up to `closer`, which is stepped over."""
+        found: list[Expr] = []
+        while (token := self.peek()) is not None and token.text != closer:
+            found.append(self.expression(0))
+            if not self.accept(","):
+                break
+        self.closing(closer, opener)
+        return tuple(found)
+
+    def object(self, opener: Token) -> Expr:
+        members: list[ObjectMember] = []
+        first = self.at
+        self.at += 1
+        while (key := self.peek()) is not None and key.text != "}":
+            if key.kind not in ("string", "name", "number"):
+                self.report(self.span(key), "a member name in quotes is missing")
+                break
+            self.at += 1
+            name = key.text[1:-1] if key.kind == "string" else key.text
+            if not self.accept(":"):
+                self.report(self.span(key), f"`:` and a value are missing behind `{key.text}`")
+                value: Expr = ErrorExpr(Span(self.span(key).end, self.span(key).end))
+            else:
+                value = self.expression(0)
+            members.append(ObjectMember(name, self.span(key), value))
+            if not self.accept(","):
+                break
+        self.closing("}", opener)
+        return ObjectLiteral(self.since(first), tuple(members))
+
+    # --------------------------------------------------------------- helpers
+
+    def peek(self) -> Token | None:
+        return self.tokens[self.at] if self.at < len(self.tokens) else None
+
+    def accept(self, text: str) -> bool:
+        token = self.peek()
+        if token is not None and token.text == text and token.kind == "punctuator":
+            self.at += 1
+            return True
+        return False
+
+    def closing(self, closer: str, opener: Token) -> None:
+        """Step over `closer`, and what superfluous stands before it, or report that `opener` is never closed."""
+        if self.accept(closer):
+            return
+        previous = self.span(self.tokens[self.at - 1]).end
+        token = self.peek()
+        if token is not None and token.text not in _CLOSERS:
+            self.superfluous(token)
+            self.skip_to_closer()
+            if self.accept(closer):
+                return
+        insert = Fix(f"Insert `{closer}`", (TextEdit(Span(previous, previous), closer),), preferred=token is None)
+        self.report(self.span(opener), f"`{opener.text}` is never closed with `{closer}`", SYNTAX, insert)
+
+    def skip_to_closer(self) -> None:
+        """Step over tokens up to the next bracket that closes one opened before them."""
+        opened = 0
+        while (token := self.peek()) is not None:
+            if token.text in _OPENERS:
+                opened += 1
+            elif token.text in _CLOSERS:
+                if opened == 0:
+                    break
+                opened -= 1
+            self.at += 1
+
+    def missing(self, what: str) -> Expr:
+        """Report that `what` is missing before the next token, or at the end."""
+        token = self.peek()
+        if token is not None:
+            span = self.span(token)
+            self.report(span, f"{what} is missing before `{token.text[:20]}`")
+            self.gap = token.start
+            return ErrorExpr(Span(span.start, span.start))
+        last = self.span(self.tokens[-1])
+        self.report(last, f"{what} is missing behind `{self.tokens[-1].text[:20]}`")
+        return ErrorExpr(Span(last.end, last.end))
+
+    def deeper(self) -> None:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise _TooDeepError
+
+    def since(self, first: int) -> Span:
+        """The span from token `first` to the last one read, or to where something is missing behind it."""
+        return self.source.span(self.tokens[first].start, max(self.tokens[self.at - 1].end, self.gap))
+
+    def span(self, token: Token) -> Span:
+        return self.source.span(token.start, token.end)
+
+    def report(self, span: Span, message: str, code: str = SYNTAX, *fixes: Fix) -> None:
+        if span not in self.reported and len(self.findings) < MAX_FINDINGS:
+            self.reported.add(span)
+            self.findings.append(Finding(code, span, message, fixes=fixes))
+
+
+def _in_xml(symbol: str) -> str:
+    """`symbol` as it is written in XML, where expressions stand."""
+    return symbol.replace("&", "&amp;").replace("<", "&lt;")
+
+
+def _number_value(text: str) -> int | float | None:
+    """The value of a number, an int if it is whole and written without a point (spec/03 §5.1); None if too large."""
+    if text[:2] in ("0x", "0X"):
+        value = int(text, 16)
+    elif len(text) > 1 and text[0] == "0" and text.isdigit() and not set(text) & {"8", "9"}:
+        value = int(text, 8)
+    else:
+        real = float(text)
+        if "." in text or not real.is_integer():
+            return real if math.isfinite(real) else None
+        return int(text) if text.isdigit() else int(real)
+    return value if value.bit_length() <= sys.float_info.max_exp else None
+
+
+def _string_value(text: str) -> str:
+    """The text that a string literal without its quotes stands for."""
+    value = _ESCAPE.sub(_resolve_escape, text)
+    if _SURROGATE.search(value):
+        return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+    return value
+
+
+def _resolve_escape(match: re.Match[str]) -> str:
+    braced, four, two, single = match.groups()
+    if digits := braced or four or two:
+        code = int(digits, 16)
+        return chr(code) if code <= 0x10FFFF else "\ufffd"
+    return _ESCAPES.get(single, single)

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The syntax tree of an expression.
+
+- Every node has a `span` in the source file, escapes of the surrounding XML already accounted for.
+- Where something is missing or not understood there is an `ErrorExpr`, so the rest of the tree stays usable.
+- No tree is deeper than `roaml.expr.parse.MAX_DEPTH`: functions over trees may recurse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """`is_real` as in spec/03 §5.1: written with a point, or not a whole number."""
+
+    span: Span
+    value: int | float
+    is_real: bool
+
+
+@dataclass(frozen=True, slots=True)
+class String:
+    """`value` has its ECMAScript escapes resolved."""
+
+    span: Span
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean:
+    span: Span
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """`object.name`; `name` is empty while it is being typed."""
+
+    span: Span
+    object: Expr
+    name: str
+    name_span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """`object[index]`."""
+
+    span: Span
+    object: Expr
+    index: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    span: Span
+    function: Expr
+    arguments: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    span: Span
+    operator: UnaryOperator
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    span: Span
+    operator: Operator
+    operator_span: Span
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """`test ? then : otherwise`."""
+
+    span: Span
+    test: Expr
+    then: Expr
+    otherwise: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayLiteral:
+    span: Span
+    elements: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectMember:
+    key: str
+    key_span: Span
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectLiteral:
+    span: Span
+    members: tuple[ObjectMember, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorExpr:
+    """Nothing of the language stands here; a finding says why. `parts` are the expressions that could be read in it."""
+
+    span: Span
+    parts: tuple[Expr, ...] = ()
+
+
+Expr: TypeAlias = (
+    Number
+    | String
+    | Boolean
+    | Name
+    | Member
+    | Index
+    | Call
+    | Unary
+    | Binary
+    | Conditional
+    | ArrayLiteral
+    | ObjectLiteral
+    | ErrorExpr
+)
+
+
+def children(expr: Expr) -> tuple[Expr, ...]:
+    """The direct subexpressions, left to right."""
+    match expr:
+        case Member():
+            return (expr.object,)
+        case Index():
+            return (expr.object, expr.index)
+        case Call():
+            return (expr.function, *expr.arguments)
+        case Unary():
+            return (expr.operand,)
+        case Binary():
+            return (expr.left, expr.right)
+        case Conditional():
+            return (expr.test, expr.then, expr.otherwise)
+        case ArrayLiteral():
+            return expr.elements
+        case ObjectLiteral():
+            return tuple(member.value for member in expr.members)
+        case ErrorExpr():
+            return expr.parts
+        case _:
+            return ()
+
+
+def walk(expr: Expr) -> Iterator[Expr]:
+    """`expr` and everything in it, outer before inner."""
+    stack = [expr]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(children(node)))
+
+
+def access_path(expr: Expr) -> tuple[str, ...] | None:
+    """`a.b[0].c` as ("a", "b", "c"); None if `expr` is no chain of members and indexes that begins with a name."""
+    names: list[str] = []
+    while True:
+        match expr:
+            case Member():
+                names.append(expr.name)
+                expr = expr.object
+            case Index():
+                expr = expr.object
+            case Name():
+                return (expr.name, *reversed(names))
+            case _:
+                return None

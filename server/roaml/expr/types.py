@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The types of HL-SCXML values (spec/01 §2.4, §3) and the questions one asks of them.
+
+Types are values: equal types compare equal, whichever file they were read from. A struct holds its members' types, so
+nothing has to be looked up again; ROS messages and event data are structs too.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A base type. `kind` is bool, int, real or string; `name` is its spelling, "" for a literal's type."""
+
+    kind: str
+    name: str = ""
+
+    def __str__(self) -> str:
+        return self.name or {"real": "float"}.get(self.kind, self.kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Array:
+    """An array of at most `bound` elements; without bound, `max_array_size` of the system is meant."""
+
+    element: Type
+    bound: int | None = None
+
+    def __str__(self) -> str:
+        inner, bounds = unwrap(self)
+        return f"{inner}{''.join('[]' if bound is None else f'[{bound}]' for bound in bounds)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Struct:
+    """Named members in order. `what` tells a person what kind of thing it is: struct, message, event data, ..."""
+
+    name: str
+    members: tuple[tuple[str, Type], ...]
+    what: str = "struct"
+
+    def __str__(self) -> str:
+        return self.name or self.what
+
+    def member(self, name: str) -> Type | None:
+        for key, type_ in self.members:
+            if key == name:
+                return type_
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class EmptyArray:
+    """The type of `[]`: fits every array."""
+
+    def __str__(self) -> str:
+        return "[]"
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """The type of something already reported: fits everything, so that one mistake is told once."""
+
+    def __str__(self) -> str:
+        return "unknown"
+
+
+Type: TypeAlias = Scalar | Array | Struct | EmptyArray | Unknown
+
+BOOL = Scalar("bool", "bool")
+INT = Scalar("int")
+REAL = Scalar("real")
+STRING = Scalar("string", "string")
+UNKNOWN = Unknown()
+EMPTY_ARRAY = EmptyArray()
+
+INTEGER_RANGES = {f"int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)} | {
+    f"uint{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)
+}
+"""Least and greatest value of each integer type."""
+
+BASE_TYPES: dict[str, Scalar] = {
+    "bool": BOOL,
+    **{name: Scalar("int", name) for name in INTEGER_RANGES},
+    "float32": Scalar("real", "float32"),
+    "float64": Scalar("real", "float64"),
+    "string": STRING,
+}
+
+_TYPE = re.compile(r"([A-Za-z_]\w*)((?:\[\d*\])*)\Z", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class TypeName:
+    """A type as it is written: a base or struct name and its dimensions, outermost first (None = unbounded)."""
+
+    base: str
+    dimensions: tuple[int | None, ...] = ()
+
+
+def parse_type(text: str) -> TypeName | None:
+    """`int32[3][]` -> TypeName("int32", (3, None)); None if `text` has not the form of a type (spec/01 §2.4)."""
+    match = _TYPE.match(text)
+    if match is None:
+        return None
+    bounds = re.findall(r"\[(\d*)\]", match[2])
+    return TypeName(match[1], tuple(int(bound[:9]) if bound else None for bound in bounds))
+
+
+def resolve_type(name: TypeName, struct: Callable[[str], Type | None]) -> Type | None:
+    """The type that `name` stands for, or None if its base is neither a base type nor known to `struct`."""
+    type_: Type | None = BASE_TYPES.get(name.base) or struct(name.base)
+    if type_ is None:
+        return None
+    return wrap(type_, name.dimensions)
+
+
+def wrap(type_: Type, dimensions: tuple[int | None, ...]) -> Type:
+    """`type_` in arrays of the given bounds, outermost first."""
+    for bound in reversed(dimensions):
+        type_ = Array(type_, bound)
+    return type_
+
+
+def unwrap(type_: Type) -> tuple[Type, tuple[int | None, ...]]:
+    """The innermost element type and the bounds around it, outermost first: the inverse of `wrap`."""
+    bounds: list[int | None] = []
+    while isinstance(type_, Array):
+        bounds.append(type_.bound)
+        type_ = type_.element
+    return type_, tuple(bounds)
+
+
+def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Type]]:
+    """The leaf members of a type in declaration order, depth first, with the member names on the way (spec/01 §3.3).
+
+    Brackets of enclosing levels come first: a `Vec[4]` member `x: float64[]` gives `float64[4][]`.
+    """
+    inner, bounds = unwrap(type_)
+    if isinstance(inner, Struct):
+        for name, member in inner.members:
+            for path, leaf in leaves(member, (*prefix, name)):
+                yield path, wrap(leaf, bounds)
+    else:
+        yield prefix, type_
+
+
+def is_number(type_: Type) -> bool:
+    return isinstance(type_, Scalar) and type_.kind in ("int", "real")
+
+
+def is_kind(type_: Type, kind: str) -> bool:
+    return isinstance(type_, Scalar) and type_.kind == kind
+
+
+def fits(value: Type, target: Type) -> bool:
+    """Whether a value of type `value` may be stored where `target` is declared.
+
+    An int fits a real; widths and bounds are not compared (spec/03 §5.3: integers are mathematical); structs fit by
+    name. What is unknown fits everything.
+    """
+    match value, target:
+        case (Unknown(), _) | (_, Unknown()):
+            return True
+        case Scalar(kind=given), Scalar(kind=wanted):
+            return given == wanted or (given == "int" and wanted == "real")
+        case EmptyArray(), Array() | EmptyArray():
+            return True
+        case Array(element=given), Array(element=wanted):
+            return fits(given, wanted)
+        case Struct(), Struct():
+            return value.name == target.name
+        case _:
+            return False
+
+
+def join(left: Type, right: Type) -> Type | None:
+    """The type of a value that may be either, or None if there is none. Of two arrays it has the greater bound."""
+    if isinstance(left, Array) and isinstance(right, Array):
+        element = join(left.element, right.element)
+        bounded = left.bound is not None and right.bound is not None
+        bound = max(left.bound or 0, right.bound or 0) if bounded else None
+        return None if element is None else Array(element, bound)
+    if fits(left, right):
+        return left if isinstance(right, Unknown) else right
+    if fits(right, left):
+        return left
+    return None

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ROS 2 interface definitions, `.msg`, `.srv` and `.action`, read from their files without any ROS installation.
+
+Nothing of a workspace is imported or executed. The standard packages of ROS 2 come along as definition files in
+`standard/`: the types that Jazzy has, in the form that they have there; comments say what Humble lacks and what later
+distributions changed. Their comments are our own.
+"""
+
+from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, PACKAGE_NAME, TYPE_NAME
+from roaml.interfaces.parse import parse
+from roaml.interfaces.registry import NotFound, Parsed, Reason, Registry, split_type_name
+from roaml.interfaces.search import SearchPath
+from roaml.interfaces.types import (
+    KIND_NAMES,
+    KINDS,
+    PRIMITIVES,
+    SECTION_NAMES,
+    ArrayKind,
+    Constant,
+    Definition,
+    Field,
+    FieldType,
+    Kind,
+    Scalar,
+    Section,
+    Value,
+)
+
+__all__ = [
+    "CONSTANT_NAME",
+    "FIELD_NAME",
+    "KINDS",
+    "KIND_NAMES",
+    "PACKAGE_NAME",
+    "PRIMITIVES",
+    "SECTION_NAMES",
+    "TYPE_NAME",
+    "ArrayKind",
+    "Constant",
+    "Definition",
+    "Field",
+    "FieldType",
+    "Kind",
+    "NotFound",
+    "Parsed",
+    "Reason",
+    "Registry",
+    "Scalar",
+    "SearchPath",
+    "Section",
+    "Value",
+    "parse",
+    "split_type_name",
+]

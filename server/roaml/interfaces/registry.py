@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names of messages, services and actions -> their definitions.
+
+- Never fails: what is not found is a `NotFound` that says why and what was probably meant.
+- Files are read through the caller, so an open editor's text goes before the disk's; a definition is parsed again only
+  when its file's digest changed.
+"""
+
+from __future__ import annotations
+
+import difflib
+import enum
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from roaml.diagnostics import Finding
+from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
+from roaml.interfaces.parse import parse
+from roaml.interfaces.search import SearchPath
+from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
+from roaml.text import SourceFile
+
+_MAX_CLOSE = 3
+_LONGEST_NAME = 100
+_WORD_BREAKS = re.compile(r"[^A-Za-z0-9_]+")
+
+
+class Reason(enum.Enum):
+    """Why a type was not found."""
+
+    MALFORMED_NAME = "malformed name"
+    UNKNOWN_PACKAGE = "unknown package"
+    UNKNOWN_TYPE = "the package has no such type"
+    UNREADABLE = "the file cannot be read"
+
+
+@dataclass(frozen=True, slots=True)
+class NotFound:
+    """A type that was asked for and not found.
+
+    `wanted` is the name as asked for. `close` are names of the same kind, `package/Name`, the nearest first.
+    `other_kind` is set if the type exists but is, say, a service and not a message. `looked_in` are the places in
+    words. `path` is the file that could not be read.
+    """
+
+    reason: Reason
+    kind: Kind
+    wanted: str
+    close: tuple[str, ...] = ()
+    other_kind: Kind | None = None
+    looked_in: tuple[str, ...] = ()
+    path: str | None = None
+
+    @property
+    def message(self) -> str:
+        """What is wrong and what to write instead, in a sentence."""
+        kind = KIND_NAMES[self.kind]
+        hint = f"; did you mean {_or(self.close)}?" if self.close else ""
+        package, _, name = self.wanted.partition("/")
+        match self.reason:
+            case Reason.MALFORMED_NAME:
+                return f"`{self.wanted}` is not the name of a {kind} type, `package/Name`{hint}"
+            case Reason.UNKNOWN_PACKAGE:
+                return f"there is no package `{package}`{hint or '; looked in ' + ', '.join(self.looked_in)}"
+            case Reason.UNKNOWN_TYPE if self.other_kind:
+                return f"`{self.wanted}` is {_a(self.other_kind)}, not {_a(self.kind)}{hint}"
+            case Reason.UNKNOWN_TYPE:
+                return f"the package `{package}` has no {kind} `{name}`{hint}"
+            case Reason.UNREADABLE:
+                return f"the definition of `{self.wanted}` cannot be read: {self.path}"
+
+
+@dataclass(frozen=True, slots=True)
+class Parsed:
+    """A definition and the mistakes in its file."""
+
+    definition: Definition
+    findings: tuple[Finding, ...]
+
+
+class Registry:
+    """All interface definitions that can be found.
+
+    `read` gives the current text of the file at a path, None if there is none.
+    """
+
+    def __init__(self, search_path: SearchPath, read: Callable[[str], SourceFile | None]) -> None:
+        self.search_path = search_path
+        self._read = read
+        self._parsed: dict[tuple[Kind, str, str], tuple[str, bytes, Parsed]] = {}
+
+    def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
+        """The same registry with another view of the files; what was parsed before is kept for both."""
+        other = Registry(self.search_path, read)
+        other._parsed = self._parsed
+        return other
+
+    def message(self, package: str, name: str) -> Definition | NotFound:
+        return self.find("msg", package, name)
+
+    def service(self, package: str, name: str) -> Definition | NotFound:
+        return self.find("srv", package, name)
+
+    def action(self, package: str, name: str) -> Definition | NotFound:
+        return self.find("action", package, name)
+
+    def resolve(self, kind: Kind, type_name: str) -> Definition | NotFound:
+        """The definition that `type_name`, written as `split_type_name` reads it, stands for."""
+        names = split_type_name(type_name, kind)
+        if names is None:
+            return self._malformed(kind, type_name)
+        return self.find(kind, *names)
+
+    def find(self, kind: Kind, package: str, name: str) -> Definition | NotFound:
+        parsed = self.parsed(kind, package, name)
+        return parsed.definition if isinstance(parsed, Parsed) else parsed
+
+    def parsed(self, kind: Kind, package: str, name: str) -> Parsed | NotFound:
+        """Like `find`, with the mistakes in the definition's file."""
+        if not _is_type_name(package, name):
+            return self._malformed(kind, f"{package}/{name}")
+        path = self.search_path.locate(package, kind, name)
+        if path is None:
+            return self._not_found(kind, package, name)
+        source = self._read(path)
+        if source is None:
+            return NotFound(Reason.UNREADABLE, kind, f"{package}/{name}", path=path)
+        key = (kind, package, name)
+        known = self._parsed.get(key)
+        if known and known[:2] == (path, source.digest):
+            return known[2]
+        definition, findings = parse(source.text, package, name, kind)
+        parsed = Parsed(replace(definition, path=path), findings)
+        self._parsed[key] = (path, source.digest, parsed)
+        return parsed
+
+    def _not_found(self, kind: Kind, package: str, name: str) -> NotFound:
+        packages = self.search_path.packages()
+        wanted = f"{package}/{name}"
+        looked_in = self.search_path.looked_in()
+        if package not in packages:
+            similar = _close(package, packages)
+            close = _first([f"{p}/{name}" for p in similar if name in packages[p][kind]], self._named(kind, name))
+            if not close:
+                close = tuple(f"{p}/{n}" for p in similar for n in _close(name, packages[p][kind])[:1])
+            return NotFound(Reason.UNKNOWN_PACKAGE, kind, wanted, close, None, looked_in)
+        other_kind = next((other for other in KINDS if name in packages[package][other]), None)
+        similar_names = [f"{package}/{n}" for n in _close(name, packages[package][kind])]
+        close = _first(self._named(kind, name), similar_names)
+        return NotFound(Reason.UNKNOWN_TYPE, kind, wanted, close, other_kind, looked_in)
+
+    def _malformed(self, kind: Kind, wanted: str) -> NotFound:
+        """What was meant can often be told, as from `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare `Int32`."""
+        words = [word for word in _WORD_BREAKS.split(wanted[:_LONGEST_NAME]) if word and word not in KINDS]
+        close: tuple[str, ...] = ()
+        if words:
+            packages = self.search_path.packages()
+            package, name = words[0], words[-1]
+            if package in packages:
+                close = tuple(f"{package}/{n}" for n in _close(name, packages[package][kind]))
+            close = close or _first(self._named(kind, name))
+        return NotFound(Reason.MALFORMED_NAME, kind, wanted, close, None, self.search_path.looked_in())
+
+    def _named(self, kind: Kind, name: str) -> Iterator[str]:
+        """All types of that very name, whatever their package."""
+        return (f"{p}/{name}" for p, kinds in self.search_path.packages().items() if name in kinds[kind])
+
+
+def split_type_name(text: str, kind: Kind) -> tuple[str, str] | None:
+    """Package and name in `package/Name` or, with the kind in between, `package/msg/Name`; None if it is neither."""
+    package, _, name = text.partition("/")
+    name = name.removeprefix(f"{kind}/")
+    return (package, name) if _is_type_name(package, name) else None
+
+
+def _is_type_name(package: str, name: str) -> bool:
+    return bool(PACKAGE_NAME.fullmatch(package) and TYPE_NAME.fullmatch(name))
+
+
+def _close(wanted: str, names: Iterable[str]) -> list[str]:
+    """Those of `names` that look like `wanted`, the nearest first."""
+    by_lower = {name.lower(): name for name in names}
+    matches = difflib.get_close_matches(wanted[:_LONGEST_NAME].lower(), by_lower, _MAX_CLOSE)
+    return [by_lower[match] for match in matches]
+
+
+def _first(*groups: Iterable[str]) -> tuple[str, ...]:
+    """The first few names of the groups together, each once."""
+    return tuple(dict.fromkeys(name for group in groups for name in group))[:_MAX_CLOSE]
+
+
+def _or(names: tuple[str, ...]) -> str:
+    return " or ".join(f"`{name}`" for name in names)
+
+
+def _a(kind: Kind) -> str:
+    return f"{'an' if kind == 'action' else 'a'} {KIND_NAMES[kind]}"

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the readers of definition files put what they find."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.text import Span, TextEdit
+
+CODE = "interface-syntax"
+"""The code of every finding in a definition file."""
+
+MAX_FINDINGS = 100
+"""A file with more mistakes than this is hardly an interface definition; it is not read further."""
+
+
+class Report:
+    """The findings of one file so far."""
+
+    def __init__(self) -> None:
+        self._findings: list[Finding] = []
+
+    def __len__(self) -> int:
+        return len(self._findings)
+
+    @property
+    def is_full(self) -> bool:
+        return len(self._findings) >= MAX_FINDINGS
+
+    def add(
+        self,
+        span: Span,
+        message: str,
+        *,
+        instead: str | None = None,
+        severity: Severity | None = None,
+        related: tuple[Related, ...] = (),
+    ) -> None:
+        """Say `message` about `span`; `instead` is the text that would be right in its place."""
+        fixes: tuple[Fix, ...] = ()
+        if instead is not None:
+            fixes = (Fix(f"write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)
+        self._findings.append(Finding(CODE, span, message, severity, fixes, related))
+
+    def findings(self) -> tuple[Finding, ...]:
+        """All findings in the order of the text."""
+        return tuple(sorted(self._findings, key=lambda finding: finding.span))
+
+
+def shorten(written: str) -> str:
+    """Text from a file in the form that messages show: its beginning if it is long."""
+    return written if len(written) <= 40 else f"{written[:40]}…"

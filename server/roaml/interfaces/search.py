@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where definition files are found.
+
+- Places are asked in this order: workspace folders, `--ros-path` folders, the prefixes of `AMENT_PREFIX_PATH`, and the
+  standard packages shipped with this tool. The first file wins, type by type: a folder that holds part of a package
+  hides no other type of it.
+- A package is a folder with a definition file in its `msg/`, `srv/` or `action/`. Its name is that in its `package.xml`
+  if there is one, else the folder's.
+- Nothing is read but folder listings and the head of `package.xml`, and that once: a place is listed when it is first
+  asked and again only after `refresh`. What cannot be read is not there.
+- Names are compared as written, also on file systems that ignore case.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Protocol, TypeAlias
+
+from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
+from roaml.interfaces.types import KINDS, Kind
+
+MAX_DEPTH = 6
+"""How deep below a workspace or `--ros-path` folder packages are looked for."""
+
+MAX_FOLDERS = 20_000
+"""How many folders of one such place are looked into, the nearest first: the workspace may be someone's home."""
+
+SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
+"""Folders that are not entered, like all whose name begins with a dot."""
+
+_Files: TypeAlias = Mapping[Kind, Mapping[str, str]]
+
+_NO_FILES: _Files = {kind: {} for kind in KINDS}
+_PACKAGE_XML_HEAD = 8192
+_XML_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_XML_NAME = re.compile(r"<name>\s*([^<>\s]+)\s*</name>")
+
+
+class SearchPath:
+    """The places where definition files are looked for, in the order in which they are asked.
+
+    `workspace` are the folders open in the editor or given on the command line. Each of `ros_paths` may be a package, a
+    folder of packages at any depth up to `MAX_DEPTH`, or an ament prefix. `ament_prefixes` are the entries of
+    `AMENT_PREFIX_PATH`. Relative paths start at the working directory.
+    """
+
+    def __init__(
+        self, workspace: Iterable[str] = (), ros_paths: Iterable[str] = (), ament_prefixes: Iterable[str] = ()
+    ) -> None:
+        self._workspace = _absolute(workspace)
+        self._ros_paths = _absolute(ros_paths)
+        self._ament_prefixes = _absolute(ament_prefixes)
+        self._asked: tuple[_Place, ...] | None = None
+        self._packages: Mapping[str, Mapping[Kind, tuple[str, ...]]] | None = None
+
+    def locate(self, package: str, kind: Kind, name: str) -> str | None:
+        """The absolute path of the file that defines `package/name`, or None."""
+        for place in self._places():
+            if path := place.files(package)[kind].get(name):
+                return path
+        return None
+
+    def packages(self) -> Mapping[str, Mapping[Kind, tuple[str, ...]]]:
+        """All that can be located: package -> kind -> names, packages and names sorted; every kind is there."""
+        if self._packages is None:
+            found: dict[str, dict[Kind, set[str]]] = {}
+            for place in self._places():
+                for package in place.packages():
+                    names = found.setdefault(package, {kind: set() for kind in KINDS})
+                    for kind, files in place.files(package).items():
+                        names[kind].update(files)
+            self._packages = {
+                package: {kind: tuple(sorted(names)) for kind, names in found[package].items()}
+                for package in sorted(found)
+            }
+        return self._packages
+
+    def looked_in(self) -> tuple[str, ...]:
+        """The places in words, for a message that something was found in none of them."""
+        places = (
+            *(f"the workspace {_described(path)}" for path in self._workspace),
+            *(f"{_described(path)} from --ros-path" for path in self._ros_paths),
+            *(f"{_described(path)} from AMENT_PREFIX_PATH" for path in self._ament_prefixes),
+        )
+        return (*places, "the standard packages that come with this tool")
+
+    def refresh(self) -> None:
+        """Forget all listings: files or folders came or went."""
+        self._asked = None
+        self._packages = None
+
+    def _places(self) -> tuple[_Place, ...]:
+        if self._asked is None:
+            self._asked = (
+                *(_Tree(path) for path in self._workspace),
+                *(_Share(_share(path)) if _is_ament_prefix(path) else _Tree(path) for path in self._ros_paths),
+                *(_Share(_share(path)) for path in self._ament_prefixes),
+                _Share(_standard()),
+            )
+        return self._asked
+
+
+class _Place(Protocol):
+    def files(self, package: str) -> _Files:
+        """The definition files of a package here: kind -> name -> path; every kind is there."""
+
+    def packages(self) -> Iterable[str]: ...
+
+
+class _Share:
+    """A folder whose subfolders are packages named like them; only the packages asked for are listed."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+        self._known: dict[str, _Files] = {}
+
+    def files(self, package: str) -> _Files:
+        known = self._known.get(package)
+        if known is None:
+            known = self._known[package] = self._list(package)
+        return known
+
+    def packages(self) -> Iterable[str]:
+        return [name for name in _subfolders(self._folder) if any(self.files(name).values())]
+
+    def _list(self, package: str) -> _Files:
+        if not PACKAGE_NAME.fullmatch(package):  # a name from a model must not lead elsewhere
+            return _NO_FILES
+        folder = os.path.join(self._folder, package)
+        return _definitions(folder, _subfolders(folder))
+
+
+class _Tree:
+    """A folder that is, or has somewhere below it, packages; all of it is listed when first asked."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+        self._known: Mapping[str, _Files] | None = None
+
+    def files(self, package: str) -> _Files:
+        return self._listed().get(package, _NO_FILES)
+
+    def packages(self) -> Iterable[str]:
+        return self._listed()
+
+    def _listed(self) -> Mapping[str, _Files]:
+        if self._known is None:
+            self._known = _scan(self._folder)
+        return self._known
+
+
+def _scan(root: str) -> Mapping[str, _Files]:
+    """The packages in and below `root`, level by level, so that of two equal types the nearer one wins."""
+    found: dict[str, dict[Kind, dict[str, str]]] = {}
+    entered: set[tuple[int, int]] = set()
+    level = [root]
+    for _ in range(MAX_DEPTH + 1):
+        below: list[str] = []
+        for folder in level:
+            identity = _identity(folder)
+            if identity is None or identity in entered or len(entered) >= MAX_FOLDERS:
+                continue
+            entered.add(identity)
+            subfolders = _subfolders(folder)
+            files = _definitions(folder, subfolders)
+            if any(files.values()):
+                package = found.setdefault(_package_name(folder), {kind: {} for kind in KINDS})
+                for kind in KINDS:
+                    package[kind] = {**files[kind], **package[kind]}
+            below += (os.path.join(folder, name) for name in subfolders if _is_entered(name))
+        level = below
+    return found
+
+
+def _is_entered(folder_name: str) -> bool:
+    return not folder_name.startswith(".") and folder_name not in SKIPPED_FOLDERS and folder_name not in KINDS
+
+
+def _definitions(folder: str, subfolders: Iterable[str]) -> _Files:
+    return {kind: _named_files(os.path.join(folder, kind), kind) if kind in subfolders else {} for kind in KINDS}
+
+
+def _named_files(folder: str, kind: Kind) -> Mapping[str, str]:
+    """The definition files in `folder`: type name -> path."""
+    files = {}
+    for file_name in _entries(folder, folders=False):
+        name, dot, extension = file_name.rpartition(".")
+        if dot and extension == kind and TYPE_NAME.fullmatch(name):
+            files[name] = os.path.join(folder, file_name)
+    return files
+
+
+def _package_name(folder: str) -> str:
+    """The name in the folder's `package.xml`, else the folder's own."""
+    try:
+        with open(os.path.join(folder, "package.xml"), "rb") as file:
+            head = file.read(_PACKAGE_XML_HEAD).decode("utf-8", "replace")
+    except OSError:
+        head = ""
+    name = _XML_NAME.search(_XML_COMMENT.sub("", head))
+    return name[1] if name else os.path.basename(folder)
+
+
+def _subfolders(folder: str) -> list[str]:
+    return _entries(folder, folders=True)
+
+
+def _entries(folder: str, *, folders: bool) -> list[str]:
+    """The sorted names of the subfolders or files of `folder`, through links; none if it cannot be read."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(e.name for e in entries if (e.is_dir() if folders else e.is_file()))
+    except OSError:
+        return []
+
+
+def _identity(folder: str) -> tuple[int, int] | None:
+    """What tells two folders apart however they were reached; None if there is no such folder."""
+    try:
+        status = os.stat(folder)
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
+
+
+def _share(prefix: str) -> str:
+    return os.path.join(prefix, "share")
+
+
+def _is_ament_prefix(folder: str) -> bool:
+    return os.path.isdir(os.path.join(folder, "share", "ament_index"))
+
+
+@cache
+def _standard() -> str:
+    from importlib import resources  # noqa: PLC0415  costs more than all of this package
+
+    return str(resources.files("roaml.interfaces") / "standard")
+
+
+def _absolute(paths: Iterable[str]) -> tuple[str, ...]:
+    """Absolute, without empty entries (`AMENT_PREFIX_PATH` may have some) and repetitions."""
+    return tuple(dict.fromkeys(os.path.abspath(path) for path in paths if path))
+
+
+def _described(path: str) -> str:
+    return path if os.path.isdir(path) else f"{path} (no such folder)"

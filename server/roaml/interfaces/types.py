@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ROS 2 interface definitions as data.
+
+- Everything is frozen and hashable: definitions go into memo keys.
+- Spans, comments and the spelling of values do not count for equality: a definition stays equal to itself when
+  comments or white space of its file move. The path counts.
+- A nested type is known by name only (`package/Name`); `roaml.interfaces.registry` resolves it.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from roaml.text import Span
+
+Kind: TypeAlias = Literal["msg", "srv", "action"]
+"""What is defined: also the folder and the file extension of the definition."""
+
+KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
+
+KIND_NAMES: Mapping[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
+
+SECTION_NAMES: Mapping[Kind, tuple[str, ...]] = {
+    "msg": ("message",),
+    "srv": ("request", "response"),
+    "action": ("goal", "result", "feedback"),
+}
+"""The sections of a definition in their order in the file, divided by `---`."""
+
+INTEGER_RANGES: Mapping[str, tuple[int, int]] = {
+    "byte": (0, 255),
+    "char": (0, 255),
+    **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
+}
+"""The least and the greatest value of each integer type. In ROS 2 `byte` and `char` are unsigned."""
+
+FLOATS = frozenset({"float32", "float64"})
+STRINGS = frozenset({"string", "wstring"})
+PRIMITIVES = frozenset({"bool", *INTEGER_RANGES, *FLOATS, *STRINGS})
+
+Scalar: TypeAlias = bool | int | float | str
+Value: TypeAlias = Scalar | tuple[Scalar, ...]
+"""A constant or default: a tuple for an array."""
+
+
+class ArrayKind(enum.Enum):
+    """How many elements a field has."""
+
+    NONE = "none"
+    """No array: `T`."""
+    FIXED = "fixed"
+    """Exactly `size` elements: `T[N]`."""
+    BOUNDED = "bounded"
+    """At most `size` elements: `T[<=N]`."""
+    UNBOUNDED = "unbounded"
+    """Any number of elements: `T[]`."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldType:
+    """The type of a field or constant.
+
+    `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; where the file has a mistake it may
+    be neither, and resolving it then fails like that of any unknown type. `string_bound` is the greatest number of
+    characters of a `string<=N`. `size` is set for the array kinds FIXED and BOUNDED.
+    """
+
+    name: str
+    string_bound: int | None = None
+    array: ArrayKind = ArrayKind.NONE
+    size: int | None = None
+
+    @property
+    def is_primitive(self) -> bool:
+        """Whether a value, or each element, is no nested message."""
+        return self.name in PRIMITIVES
+
+    @property
+    def is_array(self) -> bool:
+        return self.array is not ArrayKind.NONE
+
+    @property
+    def element(self) -> FieldType:
+        """The type of one element; of a type that is no array, the type itself."""
+        return FieldType(self.name, self.string_bound)
+
+    def __str__(self) -> str:
+        """The type as a definition file spells it."""
+        bound = "" if self.string_bound is None else f"<={self.string_bound}"
+        match self.array:
+            case ArrayKind.NONE:
+                suffix = ""
+            case ArrayKind.FIXED:
+                suffix = f"[{self.size}]"
+            case ArrayKind.BOUNDED:
+                suffix = f"[<={self.size}]"
+            case ArrayKind.UNBOUNDED:
+                suffix = "[]"
+        return f"{self.name}{bound}{suffix}"
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A member of a message. Without `default` it starts as 0, false or empty.
+
+    `default_text` is the default as written. `comment` holds the lines above, beside and below the field, without `#`.
+    """
+
+    name: str
+    type: FieldType
+    default: Value | None = None
+    default_text: str = field(default="", compare=False)
+    comment: str = field(default="", compare=False)
+    name_span: Span = field(default=Span(0, 0), compare=False)
+    type_span: Span = field(default=Span(0, 0), compare=False)
+    default_span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A named value of a definition; no field, nothing is sent. `value` is None where the file has a mistake."""
+
+    name: str
+    type: FieldType
+    value: Scalar | None
+    value_text: str = field(default="", compare=False)
+    comment: str = field(default="", compare=False)
+    name_span: Span = field(default=Span(0, 0), compare=False)
+    type_span: Span = field(default=Span(0, 0), compare=False)
+    value_span: Span = field(default=Span(0, 0), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A message, or one part of a service or action. `comment` is the block of comment lines that it opens with."""
+
+    fields: tuple[Field, ...] = ()
+    constants: tuple[Constant, ...] = ()
+    comment: str = field(default="", compare=False)
+
+    def field(self, name: str) -> Field | None:
+        return next((f for f in self.fields if f.name == name), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A message, service or action type. It has the sections of `SECTION_NAMES[kind]`, all of them, in that order.
+
+    `path` is the file that it was read from, empty if none.
+    """
+
+    package: str
+    name: str
+    kind: Kind
+    sections: tuple[Section, ...]
+    path: str = ""
+
+    @property
+    def full_name(self) -> str:
+        """`package/Name`, as models spell it."""
+        return f"{self.package}/{self.name}"
+
+    @property
+    def comment(self) -> str:
+        """What the file says about the type as a whole."""
+        return self.sections[0].comment
+
+    def section(self, name: str) -> Section:
+        """The section of that name in `SECTION_NAMES[kind]`. KeyError if this kind has none such."""
+        try:
+            return self.sections[SECTION_NAMES[self.kind].index(name)]
+        except ValueError:
+            raise KeyError(name) from None

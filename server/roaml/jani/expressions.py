@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Expressions: what has a value in one state of a model.
+
+- Frozen; equal if they say the same, wherever they stand.
+- They may nest as deep as memory allows: walk them with `walk` or `roaml.jani.deep`, never by plain recursion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.jani.node import CommentedNode, Node, never
+from roaml.jani.operators import BinaryOperator, Distribution, NumberConstant, UnaryOperator
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean(Node):
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Integer(Node):
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Real(Node):
+    """A number written with a point or an exponent; `value` is finite."""
+
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class NamedNumber(CommentedNode):
+    """`{"constant": "e"}` or `{"constant": "π"}`."""
+
+    constant: NumberConstant
+
+
+@dataclass(frozen=True, slots=True)
+class Name(Node):
+    """A variable, constant or parameter."""
+
+    identifier: str
+
+
+@dataclass(frozen=True, slots=True)
+class Unary(CommentedNode):
+    operator: UnaryOperator
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Binary(CommentedNode):
+    operator: BinaryOperator
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional(CommentedNode):
+    """`ite`: `then` if `test` holds, else `otherwise`."""
+
+    test: Expression
+    then: Expression
+    otherwise: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayAccess(CommentedNode):
+    """`aa`: the element of `array` at `index`, from 0."""
+
+    array: Expression
+    index: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayValue(CommentedNode):
+    """`av`: an array with these elements."""
+
+    elements: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayConstructor(CommentedNode):
+    """`ac`: the array of `body` for `variable` = 0, ..., `length` - 1."""
+
+    variable: str
+    length: Expression
+    body: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeAccess(CommentedNode):
+    """`da`: a member of a value of a datatype."""
+
+    record: Expression
+    member: str
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeValue(CommentedNode):
+    """`dv`: a value of a datatype, given by its members."""
+
+    datatype: str
+    members: tuple[tuple[str, Expression], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class OptionAccess(CommentedNode):
+    """`oa`: what is in an option that is not empty."""
+
+    option: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class OptionValue(CommentedNode):
+    """`ov`: an option with a value in it."""
+
+    content: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class EmptyOption(CommentedNode):
+    """`empty`: an option with nothing in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call(CommentedNode):
+    function: str
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Selection(CommentedNode):
+    """`nondet`: any value of `variable` for which `condition` holds."""
+
+    variable: str
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Sample(CommentedNode):
+    """A random value of a distribution."""
+
+    distribution: Distribution
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Derivative(CommentedNode):
+    """`der`: the derivative of a continuous variable by time."""
+
+    variable: str
+
+
+@dataclass(frozen=True, slots=True)
+class Missing(Node):
+    """Nothing readable stands here; a finding of the reader says why. A model with findings is not written."""
+
+
+Expression: TypeAlias = (
+    Boolean
+    | Integer
+    | Real
+    | NamedNumber
+    | Name
+    | Unary
+    | Binary
+    | Conditional
+    | ArrayAccess
+    | ArrayValue
+    | ArrayConstructor
+    | DatatypeAccess
+    | DatatypeValue
+    | OptionAccess
+    | OptionValue
+    | EmptyOption
+    | Call
+    | Selection
+    | Sample
+    | Derivative
+    | Missing
+)
+
+LValue: TypeAlias = Name | ArrayAccess | DatatypeAccess | OptionAccess | Missing
+"""What can be assigned to: a variable or a part of one."""
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The direct subexpressions, in the order in which they are written."""
+    match expression:
+        case Binary():
+            return (expression.left, expression.right)
+        case Unary():
+            return (expression.operand,)
+        case Conditional():
+            return (expression.test, expression.then, expression.otherwise)
+        case ArrayAccess():
+            return (expression.array, expression.index)
+        case ArrayValue():
+            return expression.elements
+        case ArrayConstructor():
+            return (expression.length, expression.body)
+        case DatatypeAccess():
+            return (expression.record,)
+        case DatatypeValue():
+            return tuple(value for _, value in expression.members)
+        case OptionAccess():
+            return (expression.option,)
+        case OptionValue():
+            return (expression.content,)
+        case Call() | Sample():
+            return expression.arguments
+        case Selection():
+            return (expression.condition,)
+        case Boolean() | Integer() | Real() | NamedNumber() | Name() | EmptyOption() | Derivative() | Missing():
+            return ()
+        case _:
+            return never(expression)
+
+
+def walk(expression: Expression) -> Iterator[Expression]:
+    """`expression` and all that is in it, outer before inner, left before right."""
+    stack = [expression]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(children(node)))

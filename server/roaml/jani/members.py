@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JSON objects that should have a known shape: what they have, with everything else reported.
+
+- A member is reported once: if it is there, but not readable as JSON or of the wrong kind, it counts as absent.
+- An unknown member is a warning, since it is without effect.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from roaml.diagnostics import Severity
+from roaml.jani.node import Origin
+from roaml.jani.notes import SYNTAX, Notes
+from roaml.json import JsonArray, JsonBool, JsonError, JsonNumber, JsonObject, JsonString, JsonValue, kind
+from roaml.text import Span
+
+
+class Shape(NamedTuple):
+    """What an object is, with its article, and the members that it must and may have."""
+
+    what: str
+    required: frozenset[str]
+    allowed: frozenset[str]
+
+
+def shape(what: str, required: str, optional: str = "") -> Shape:
+    """`required` and `optional` are names, separated by spaces."""
+    needed = frozenset(required.split())
+    return Shape(what, needed, needed | frozenset(optional.split()))
+
+
+class Source:
+    """Where values are read from: the path of the file and the notes on it."""
+
+    def __init__(self, path: str, notes: Notes) -> None:
+        self.path = path
+        self.notes = notes
+
+    def origin(self, span: Span) -> Origin:
+        return Origin(self.path, span)
+
+    def members(self, value: JsonValue | None, form: Shape) -> Members | None:
+        """The members of `value`; None (and a finding) if it is no object."""
+        if isinstance(value, JsonObject):
+            return Members(value, form, self)
+        self.wrong_kind(value, form.what + " is written as an object `{ }`")
+        return None
+
+    def wrong_kind(self, value: JsonValue | None, expected: str) -> None:
+        if value is not None and not isinstance(value, JsonError):
+            self.notes.syntax(value.span, f"{expected}, not as {kind(value)}")
+
+
+class Members:
+    """The members of one object; of two with one name, the last."""
+
+    def __init__(self, value: JsonObject, form: Shape, source: Source) -> None:
+        self.object = value
+        self.form = form
+        self.notes = source.notes
+        self.source = source
+        self.values: dict[str, JsonValue] = {}
+        missing = set(form.required)
+        for member in value.members:
+            key = member.key
+            missing.discard(key)
+            if key not in form.allowed:
+                if not key and member.start == member.key_end:
+                    continue  # the parser has reported that there is no name
+                what = f"member of {form.what} called"
+                place, known = member.key_content_span, sorted(form.allowed)
+                self.notes.unknown(what, key, place, known, code=SYNTAX, severity=Severity.WARNING)
+            elif member.value is not None and not isinstance(member.value, JsonError):
+                self.values[key] = member.value
+        if missing:
+            names = " and ".join(f"`{name}`" for name in sorted(missing))
+            self.notes.syntax(Span(value.start, value.start + 1), f"{form.what} needs {names}")
+
+    @property
+    def origin(self) -> Origin:
+        return self.source.origin(self.object.span)
+
+    def string(self, key: str) -> JsonString | None:
+        """The member `key`, which must be a string that is not empty."""
+        value = self.values.get(key)
+        if isinstance(value, JsonString):
+            if value.value:
+                return value
+            self.notes.syntax(value.span, f"`{key}` must not be empty")
+        else:
+            self.source.wrong_kind(value, f"`{key}` is written as a string")
+        return None
+
+    def text(self, key: str) -> str | None:
+        value = self.string(key)
+        return None if value is None else value.value
+
+    def comment(self, key: str = "comment") -> str | None:
+        """The member `key`, a string for people, that may be empty."""
+        value = self.values.get(key)
+        if isinstance(value, JsonString):
+            return value.value
+        self.source.wrong_kind(value, f"`{key}` is written as a string")
+        return None
+
+    def flag(self, key: str) -> bool | None:
+        value = self.values.get(key)
+        if isinstance(value, JsonBool):
+            return value.value
+        self.source.wrong_kind(value, f"`{key}` is written as true or false")
+        return None
+
+    def integer(self, key: str) -> int | None:
+        value = self.values.get(key)
+        if isinstance(value, JsonNumber) and isinstance(value.value, int):
+            return value.value
+        if isinstance(value, JsonNumber):
+            self.notes.syntax(value.span, f"`{key}` is a whole number")
+        else:
+            self.source.wrong_kind(value, f"`{key}` is written as a whole number")
+        return None
+
+    def items(self, key: str) -> tuple[JsonValue, ...]:
+        """The items of the list `key`; none if there is no such list."""
+        value = self.values.get(key)
+        if isinstance(value, JsonArray):
+            return value.items
+        self.source.wrong_kind(value, f"`{key}` is written as a list `[ ]`")
+        return ()

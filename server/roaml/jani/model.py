@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A JANI model: automata that share variables and synchronise on actions.
+
+- Frozen; every part keeps its `origin`, which equality does not look at.
+- A synchronisation names only the automata that take part: the table of automata x vectors, which the JSON form has,
+  is never built.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.jani.expressions import Expression, LValue
+from roaml.jani.node import CommentedNode, Node
+from roaml.jani.properties import Property
+from roaml.jani.types import Type
+
+
+class ModelType(enum.Enum):
+    """What kind of transition system the model describes."""
+
+    LTS = "lts"
+    DTMC = "dtmc"
+    CTMC = "ctmc"
+    MDP = "mdp"
+    CTMDP = "ctmdp"
+    MA = "ma"
+    TA = "ta"
+    PTA = "pta"
+    STA = "sta"
+    HA = "ha"
+    PHA = "pha"
+    SHA = "sha"
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata(Node):
+    """Who wrote the model, and what for."""
+
+    version: str | None = None
+    author: str | None = None
+    description: str | None = None
+    doi: str | None = None
+    url: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Clause(CommentedNode):
+    """An expression where JANI leaves room for a comment: a guard, rate, probability, time progress, restriction."""
+
+    exp: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(CommentedNode):
+    """Without `value`, whoever analyses the model chooses one."""
+
+    name: str
+    type: Type
+    value: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Variable(CommentedNode):
+    """Without `initial_value`, any value is possible at first. A transient variable falls back to it in each state."""
+
+    name: str
+    type: Type
+    initial_value: Expression | None = None
+    transient: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Action(CommentedNode):
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeMember(CommentedNode):
+    name: str
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Datatype(CommentedNode):
+    name: str
+    members: tuple[DatatypeMember, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter(CommentedNode):
+    name: str
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Function(CommentedNode):
+    name: str
+    type: Type
+    parameters: tuple[Parameter, ...]
+    body: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class TransientValue(CommentedNode):
+    """The value that a transient variable has in a location."""
+
+    target: LValue
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Location(CommentedNode):
+    name: str
+    time_progress: Clause | None = None
+    transient_values: tuple[TransientValue, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment(CommentedNode):
+    """`target := value`. Assignments of one `index` are simultaneous, those of a smaller one come before."""
+
+    target: LValue
+    value: Expression
+    index: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Destination(CommentedNode):
+    """Where an edge leads, with which probability (without one: 1), and what it assigns."""
+
+    location: str
+    probability: Clause | None = None
+    assignments: tuple[Assignment, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Edge(CommentedNode):
+    """From the location `source` to one of `destinations`. Without `action` it is silent, without `guard` enabled."""
+
+    source: str
+    destinations: tuple[Destination, ...]
+    action: str | None = None
+    guard: Clause | None = None
+    rate: Clause | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton(CommentedNode):
+    name: str
+    locations: tuple[Location, ...]
+    initial_locations: tuple[str, ...]
+    edges: tuple[Edge, ...] = ()
+    variables: tuple[Variable, ...] = ()
+    functions: tuple[Function, ...] = ()
+    restrict_initial: Clause | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Element(CommentedNode):
+    """An automaton as a part of the system."""
+
+    automaton: str
+    input_enable: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sync(CommentedNode):
+    """Edges that are taken together.
+
+    Attributes:
+        participants: index of a system element, and the action of its edge, in the order of the elements. All
+            other elements stay where they are.
+        result: the action of the whole; None if it is silent.
+    """
+
+    participants: tuple[tuple[int, str], ...]
+    result: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class System(CommentedNode):
+    """The parallel composition of `elements`, and all ways in which their actions synchronise."""
+
+    elements: tuple[Element, ...]
+    syncs: tuple[Sync, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Model(Node):
+    """A whole model. `features` need not name what its parts require; the writer adds that."""
+
+    type: ModelType
+    automata: tuple[Automaton, ...]
+    system: System
+    name: str = ""
+    features: tuple[str, ...] = ()
+    metadata: Metadata | None = None
+    constants: tuple[Constant, ...] = ()
+    variables: tuple[Variable, ...] = ()
+    actions: tuple[Action, ...] = ()
+    datatypes: tuple[Datatype, ...] = ()
+    functions: tuple[Function, ...] = ()
+    restrict_initial: Clause | None = None
+    properties: tuple[Property, ...] = ()

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names that are declared in one part of a JANI file."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.jani.notes import NAME, Notes
+from roaml.json import JsonString
+from roaml.text import Span
+
+
+class Names:
+    """Names of one kind; names declared twice and names that do not exist are reported."""
+
+    def __init__(self, what: str, notes: Notes, outer: Names | None = None) -> None:
+        self.what = what
+        self._notes = notes
+        self._outer = outer
+        self._first: dict[str, Span] = {}
+
+    def declare(self, name: JsonString) -> None:
+        text, span = name.value, name.content_span
+        first = self._first.setdefault(text, span)
+        if first is not span:
+            self._report(name, f"{self.what} `{text}` is declared twice", first)
+        elif self._outer and text in self._outer._first:
+            message = f"{self.what} `{text}` hides the one of the model"
+            self._report(name, message, self._outer._first[text], Severity.WARNING)
+
+    def use(self, name: JsonString) -> None:
+        if name.value not in self._first:
+            self._notes.unknown(self.what, name.value, name.content_span, self._first)
+
+    def _report(self, name: JsonString, message: str, first: Span, severity: Severity | None = None) -> None:
+        related = (Related(first, "declared here"),)
+        self._notes.add(Finding(NAME, name.content_span, message, severity, related=related))

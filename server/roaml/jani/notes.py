@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is wrong with a JANI file, collected while it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.jani.suggest import nearest
+from roaml.json import quote
+from roaml.text import Span, TextEdit
+
+SYNTAX = "jani-syntax"
+NAME = "jani-name"
+TYPE = "jani-type"
+
+_MAX_GUESSES = 20
+"""A file with more unknown names than this gets no suggestions for the rest; each costs a look at all known names."""
+
+_LONGEST_GUESSED = 200
+
+
+class Notes:
+    """A growing list of findings."""
+
+    def __init__(self) -> None:
+        self._findings: list[Finding] = []
+        self._guesses: dict[tuple[str, str], str | None] = {}
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All findings, in the order of the text."""
+        return tuple(sorted(self._findings, key=lambda finding: finding.span))
+
+    def add(self, finding: Finding) -> None:
+        self._findings.append(finding)
+
+    def syntax(self, span: Span, message: str, severity: Severity | None = None) -> None:
+        self.add(Finding(SYNTAX, span, message, severity))
+
+    def type(self, span: Span, message: str) -> None:
+        self.add(Finding(TYPE, span, message))
+
+    def unknown(
+        self,
+        what: str,
+        name: str,
+        span: Span,
+        known: Iterable[str],
+        *,
+        code: str = NAME,
+        severity: Severity | None = None,
+        fix: bool = True,
+    ) -> None:
+        """`name` is none of the `known` ones; the nearest of them is suggested.
+
+        With `fix`, `span` is the text of the name and nothing else.
+        """
+        message = f"there is no {what} `{name[:80]}`"
+        fixes: tuple[Fix, ...] = ()
+        if guess := self._guess(what, name, known):
+            message += f"; did you mean `{guess}`?"
+        if guess and fix:
+            fixes = (Fix(f"Change to `{guess}`", (TextEdit(span, quote(guess)[1:-1]),)),)
+        self.add(Finding(code, span, message, severity, fixes))
+
+    def _guess(self, what: str, name: str, known: Iterable[str]) -> str | None:
+        key = (what, name)
+        if key not in self._guesses:
+            if len(self._guesses) >= _MAX_GUESSES or len(name) > _LONGEST_GUESSED:
+                return None
+            self._guesses[key] = nearest(name, known)
+        return self._guesses[key]

@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Properties: formulas about the states, paths and probabilities of a model.
+
+A `Formula` is an expression or has something in it that no single state can tell: a path, a probability, a reward, a
+set of states. Operators above such a part are `UnaryFormula`, `BinaryFormula` and `ConditionalFormula`, so an
+`Expression` never contains one.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.jani import expressions
+from roaml.jani.expressions import ArrayConstructor, Derivative, Expression, Name, Selection
+from roaml.jani.node import CommentedNode, Node
+from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.text import Span
+
+
+class FilterFunction(enum.Enum):
+    """What a filter does with the values in its states."""
+
+    MIN = "min"
+    MAX = "max"
+    SUM = "sum"
+    AVG = "avg"
+    COUNT = "count"
+    FORALL = "∀"
+    EXISTS = "∃"
+    ARGMIN = "argmin"
+    ARGMAX = "argmax"
+    VALUES = "values"
+
+
+class ProbabilityOperator(enum.Enum):
+    """The least or greatest probability over all resolutions of nondeterminism."""
+
+    PMIN = "Pmin"
+    PMAX = "Pmax"
+
+
+class ExpectationOperator(enum.Enum):
+    EMIN = "Emin"
+    EMAX = "Emax"
+
+
+class SteadyStateOperator(enum.Enum):
+    SMIN = "Smin"
+    SMAX = "Smax"
+
+
+class PathQuantifier(enum.Enum):
+    FORALL = "∀"
+    EXISTS = "∃"
+
+
+class UnaryPathOperator(enum.Enum):
+    """`F`: at some time; `G`: always; `X`: in the next state. F and G are derived operators."""
+
+    FINALLY = "F"
+    GLOBALLY = "G"
+    NEXT = "X"
+
+
+class BinaryPathOperator(enum.Enum):
+    """`U`: right at some time, left until then; `W`: the same, or left always; `R`: right until left, or always.
+
+    R is a derived operator.
+    """
+
+    UNTIL = "U"
+    WEAK_UNTIL = "W"
+    RELEASE = "R"
+
+
+class StatePredicate(enum.Enum):
+    """States that no expression can describe."""
+
+    INITIAL = "initial"
+    DEADLOCK = "deadlock"
+    TIMELOCK = "timelock"
+
+
+class Accumulation(enum.Enum):
+    """When a reward is counted: on every step, over time, on leaving a state (feature `state-exit-rewards`)."""
+
+    STEPS = "steps"
+    TIME = "time"
+    EXIT = "exit"
+
+
+@dataclass(frozen=True, slots=True)
+class Interval(CommentedNode):
+    """Bounds of a number; a missing one is no bound, `None` for `…_exclusive` means false."""
+
+    lower: Expression | None = None
+    upper: Expression | None = None
+    lower_exclusive: bool | None = None
+    upper_exclusive: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RewardBound(CommentedNode):
+    """The accumulated value of `reward` stays in `bounds`."""
+
+    reward: Expression
+    accumulate: tuple[Accumulation, ...]
+    bounds: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class RewardInstant(CommentedNode):
+    """The moment at which the accumulated value of `reward` reaches `instant`."""
+
+    reward: Expression
+    accumulate: tuple[Accumulation, ...]
+    instant: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class UnaryFormula(CommentedNode):
+    operator: UnaryOperator
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class BinaryFormula(CommentedNode):
+    """For example a probability and its threshold: `Pmin(...) ≥ 0.95`."""
+
+    operator: BinaryOperator
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionalFormula(CommentedNode):
+    test: Formula
+    then: Formula
+    otherwise: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Filter(CommentedNode):
+    """`function` of the values that `values` has in the states for which `states` holds."""
+
+    function: FilterFunction
+    values: Formula
+    states: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Probability(CommentedNode):
+    operator: ProbabilityOperator
+    path: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified(CommentedNode):
+    """`path` holds on all paths, or on some."""
+
+    quantifier: PathQuantifier
+    path: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation(CommentedNode):
+    """The expected value of `reward`: accumulated if `accumulate` is given, until `reach` holds or at an instant.
+
+    What is None does not stand in the file.
+    """
+
+    operator: ExpectationOperator
+    reward: Expression
+    accumulate: tuple[Accumulation, ...] | None = None
+    reach: Formula | None = None
+    step_instant: Expression | None = None
+    time_instant: Expression | None = None
+    reward_instants: tuple[RewardInstant, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyState(CommentedNode):
+    """The long-run probability of `value`, if it is a state formula, or else the long-run average reward."""
+
+    operator: SteadyStateOperator
+    value: Formula
+    accumulate: tuple[Accumulation, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathBounds(CommentedNode):
+    """Limits on the steps, the time and the rewards within which a path formula is decided."""
+
+    step_bounds: Interval | None = None
+    time_bounds: Interval | None = None
+    reward_bounds: tuple[RewardBound, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class UnaryPath(PathBounds):
+    operator: UnaryPathOperator
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class BinaryPath(PathBounds):
+    operator: BinaryPathOperator
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate(CommentedNode):
+    predicate: StatePredicate
+
+
+ProperFormula: TypeAlias = (
+    UnaryFormula
+    | BinaryFormula
+    | ConditionalFormula
+    | Filter
+    | Probability
+    | Quantified
+    | Expectation
+    | SteadyState
+    | UnaryPath
+    | BinaryPath
+    | Predicate
+)
+"""A formula that is not an expression."""
+
+Formula: TypeAlias = Expression | ProperFormula
+
+
+@dataclass(frozen=True, slots=True)
+class Property(CommentedNode):
+    name: str
+    expression: Formula
+
+
+def children(formula: Formula) -> tuple[Formula, ...]:
+    """The direct subformulas and subexpressions, those in bounds included."""
+    match formula:
+        case UnaryFormula():
+            return (formula.operand,)
+        case BinaryFormula():
+            return (formula.left, formula.right)
+        case ConditionalFormula():
+            return (formula.test, formula.then, formula.otherwise)
+        case Filter():
+            return (formula.values, formula.states)
+        case Probability() | Quantified():
+            return (formula.path,)
+        case Expectation():
+            optional = (formula.reach, formula.step_instant, formula.time_instant)
+            instants = formula.reward_instants or ()
+            return (
+                formula.reward,
+                *(part for part in optional if part is not None),
+                *(part for instant in instants for part in (instant.reward, instant.instant)),
+            )
+        case SteadyState():
+            return (formula.value,)
+        case UnaryPath():
+            return (formula.operand, *_in_bounds(formula))
+        case BinaryPath():
+            return (formula.left, formula.right, *_in_bounds(formula))
+        case Predicate():
+            return ()
+        case _:
+            return expressions.children(formula)
+
+
+def walk(formula: Formula) -> Iterator[Formula]:
+    """`formula` and all that is in it, outer before inner."""
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(children(node)))
+
+
+def identifiers(formula: Formula) -> Iterator[tuple[str, Span]]:
+    """The variables and constants of the model that `formula` uses, with the place of each use, in the order written.
+
+    Names that the formula itself binds (in array constructors and selections) are left out. The place of a name that
+    was not read from a file is empty.
+    """
+    stack: list[tuple[Formula, frozenset[str]]] = [(formula, frozenset())]
+    while stack:
+        node, bound = stack.pop()
+        match node:
+            case Name(identifier) if identifier not in bound:
+                yield identifier, _place(node)
+            case Derivative(identifier):
+                yield identifier, _place(node)
+            case ArrayConstructor(variable, length, body):
+                stack += ((body, bound | {variable}), (length, bound))
+            case Selection(variable, condition):
+                stack.append((condition, bound | {variable}))
+            case _:
+                stack.extend((child, bound) for child in reversed(children(node)))
+
+
+def _in_bounds(path: PathBounds) -> tuple[Expression, ...]:
+    rewards = path.reward_bounds or ()
+    intervals = (path.step_bounds, path.time_bounds, *(reward.bounds for reward in rewards))
+    ends = (end for interval in intervals if interval for end in (interval.lower, interval.upper))
+    return (*(reward.reward for reward in rewards), *(end for end in ends if end is not None))
+
+
+def _place(node: Node) -> Span:
+    return node.origin.span if node.origin else Span(0, 0)

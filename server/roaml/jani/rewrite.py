@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Changing formulas and expressions from the leaves up, however deep they are."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from roaml.jani.deep import Steps, run
+from roaml.jani.node import Node
+
+N = TypeVar("N", bound=Node)
+
+
+def rewrite(node: N, change: Callable[[Node], Node]) -> N:
+    """`node` with `change` applied to everything in it, inner before outer, and to itself.
+
+    `change` must give something of a kind that may stand in the same place. What does not change is shared.
+    """
+    result: N = run(_rewritten(node, change))
+    return result
+
+
+def _rewritten(node: Any, change: Callable[[Node], Node]) -> Steps[Any]:
+    changed = {}
+    for field in dataclasses.fields(node):
+        value = getattr(node, field.name)
+        if isinstance(value, Node):
+            new: Any = yield _rewritten(value, change)
+        elif isinstance(value, tuple) and any(isinstance(each, Node) for each in value):
+            parts = []
+            for each in value:
+                parts.append((yield _rewritten(each, change)))
+            new = value if all(a is b for a, b in zip(parts, value, strict=True)) else tuple(parts)
+        else:
+            continue
+        if new is not value:
+            changed[field.name] = new
+    return change(dataclasses.replace(node, **changed) if changed else node)

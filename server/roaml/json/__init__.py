@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tolerant JSON: any text gives a tree in which every value and every name knows its place.
+
+Knows RFC 8259 only; what the members mean is stated by the packages above.
+"""
+
+from roaml.json.layout import indented
+from roaml.json.parse import MAX_DEPTH, parse
+from roaml.json.strings import quote
+from roaml.json.values import (
+    JsonArray,
+    JsonBool,
+    JsonError,
+    JsonNull,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+    Member,
+    kind,
+)
+
+__all__ = [
+    "MAX_DEPTH",
+    "JsonArray",
+    "JsonBool",
+    "JsonError",
+    "JsonNull",
+    "JsonNumber",
+    "JsonObject",
+    "JsonString",
+    "JsonValue",
+    "Member",
+    "indented",
+    "kind",
+    "parse",
+    "quote",
+]

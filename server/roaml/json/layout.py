@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Compact JSON -> JSON for people, as a stream: nothing but the current nesting depth is kept in memory."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[^\[\]{},:"]+|[\[{][\]}]?|[\]},:]')
+
+
+def indented(chunks: Iterable[str], indent: int) -> Iterator[str]:
+    """The same JSON with one member or item a line, `indent` spaces a level, laid out as `json.dumps(indent=...)` does.
+
+    `chunks` are compact JSON without white space between the tokens, split between tokens and not between two brackets
+    that hold nothing.
+    """
+    depth = 0
+    for chunk in chunks:
+        parts: list[str] = []
+        for token in _TOKEN.findall(chunk):
+            if token in ("[", "{"):
+                depth += 1
+                parts += (token, "\n", " " * (indent * depth))
+            elif token in ("]", "}"):
+                depth -= 1
+                parts += ("\n", " " * (indent * depth), token)
+            elif token == ",":
+                parts += (",\n", " " * (indent * depth))
+            elif token == ":":
+                parts.append(": ")
+            else:
+                parts.append(token)
+        yield "".join(parts)

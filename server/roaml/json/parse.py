@@ -1,0 +1,462 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text -> JSON tree, whatever the text.
+
+- Never fails and takes time linear in the text: every mistake becomes a finding (`json-syntax`, or
+  `duplicate-json-key`), the tree goes on behind it. A text without `json-syntax` findings is JSON as RFC 8259 has it.
+- Recovers the way people type: a string whose quote is still open ends with its line; a name without value stays a
+  member without value; what other notations allow (comments, single quotes, bare words) is understood and reported.
+- Does not recurse.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, NamedTuple, NoReturn
+
+from roaml.diagnostics import Finding, Fix, Related
+from roaml.json.strings import quote, unescape
+from roaml.json.values import (
+    JsonArray,
+    JsonBool,
+    JsonError,
+    JsonNull,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+    Member,
+)
+from roaml.text import Span, TextEdit
+
+MAX_DEPTH = 1000
+"""A text with deeper nested brackets is not read beyond them."""
+
+MAX_FINDINGS = 100
+"""A text with more mistakes than this is hardly JSON; it is not read further."""
+
+
+def parse(text: str) -> tuple[JsonValue, tuple[Finding, ...]]:
+    """The value in `text`, and all that is wrong with its form, in the order of the text."""
+    parser = _Parser(text)
+    value = parser.run()
+    return value, tuple(sorted(parser.findings, key=lambda finding: finding.span))
+
+
+_SPACE = r"[ \t\n\r]*"
+_TOKEN = re.compile(
+    rf"{_SPACE}(,)?{_SPACE}(?:"
+    rf'"([^"\\\x00-\x1f]*)"(?:{_SPACE}(:))?'
+    r"|(-?(?:0|[1-9][0-9]*))((?:\.[0-9]+)?[eE][+-]?[0-9]+|\.[0-9]+)?(?![\w.+-])"
+    r"|(true|false)(?!\w)"
+    r"|(null(?:,null)*)(?!\w)"
+    r"|([\[{])"
+    r"|([\]}])"
+    r")?"
+)
+"""An ordinary token with the comma before it. Matches everywhere; `lastindex` tells what was found."""
+_STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7, 8, 9
+
+_COLON = re.compile(rf"{_SPACE}:")
+_ASSIGNMENT = re.compile(r"=>?")
+_STRING_BODY = {
+    '"': re.compile(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
+    "'": re.compile(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
+}
+_DELIMITERS = " \t,]}\\"
+_WORD = re.compile(r"""(?:(?!//|/\*)[^,:;\[\]{}"\n\r])+""")
+_INTERLUDES = (
+    (re.compile(rf",(?:{_SPACE},)*"), "one comma is enough", ""),
+    (re.compile(r"//[^\n\r]*|/\*(?:[^*]|\*(?!/))*(?:\*/)?|#[^\n\r]*"), "JSON has no comments", ""),
+    (re.compile(r"[^\S \t\n\r]+|\ufeff+"), "this is no white space in JSON", " "),
+    (re.compile(";"), "values are separated by commas", ","),
+)
+"""What may be stepped over: pattern, message, what to write instead."""
+_SLOPPY_NUMBER = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
+_FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "None": "null", "NULL": "null"}
+_NO_NUMBERS = {"nan", "infinity", "inf"}
+
+
+class _Key(NamedTuple):
+    """A name that waits for its value. `colon` is false until its colon has been seen."""
+
+    text: str
+    start: int
+    end: int
+    quotes: tuple[int, int] = (1, 1)
+    colon: bool = True
+
+    def member(self, value: JsonValue | None) -> Member:
+        return Member(self.text, self.start, self.end, value, self.quotes)
+
+
+class _Bracket(NamedTuple):
+    """An open bracket around the innermost one."""
+
+    start: int
+    is_object: bool
+    parts: list[Any]
+    key: _Key | None
+
+
+class _HopelessError(Exception):
+    """Unwinds when there is no point in reading on; never leaves this module."""
+
+
+class _Parser:
+    """Reads one text.
+
+    Attributes:
+        root: the value of the whole text, once it is complete.
+        start, is_object, parts: the innermost open bracket and the values or members in it (without one: the text).
+        key: the name whose value comes next.
+        wants_comma: whether something complete stands before, so that a comma must separate what follows.
+        stack: the brackets around the innermost one.
+        comma: offset of a comma that stood before something unusual, or -1.
+        hopeless: whether reading has stopped; what was open is then closed without further findings.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.findings: list[Finding] = []
+        self.root: JsonValue | None = None
+        self.start = 0
+        self.is_object = False
+        self.parts: list[Any] = []
+        self.key: _Key | None = None
+        self.wants_comma = False
+        self.stack: list[_Bracket] = []
+        self.comma = -1
+        self.hopeless = False
+
+    def run(self) -> JsonValue:
+        try:
+            end = self.read()
+            if rest := self.text[end:].strip(" \t\n\r"):
+                start = self.text.index(rest, end)
+                span = Span(start, start + len(rest))
+                self.report(span, "nothing may follow the value", _removal(span))
+        except _HopelessError:
+            self.close_all()
+        return self.root or JsonError(0, len(self.text))
+
+    def read(self) -> int:
+        """Read until there is a value; the offset behind it."""
+        text, match = self.text, _TOKEN.match
+        at = 0
+        while self.root is None and (token := match(text, at)):
+            kind, at, comma = token.lastindex, token.end(), token.start(1)
+            if self.comma >= 0:
+                comma, self.comma = max(comma, self.comma), -1
+            if kind == _STRING:
+                self.value(JsonString(token.start(2) - 1, at, token[2]), comma)
+            elif kind == _KEY:
+                self.name(token[2], token.start(2) - 1, token.end(2) + 1, comma)
+            elif kind == _CLOSE:
+                self.close(at - 1, comma)
+            elif kind == _OPEN:
+                self.open(at - 1, comma)
+            elif kind == _NULLS:
+                at = self.nulls(token.start(7), at, comma)
+            elif kind == _INTEGER:
+                self.value(self.integer(token[4], token.start(4), at), comma)
+            elif kind == _BOOL:
+                self.value(JsonBool(token.start(6), at, token[6] == "true"), comma)
+            elif kind == _REAL:
+                number = token[4] + token[5]
+                self.value(JsonNumber(token.start(4), at, float(number), number), comma)
+            else:
+                at = self.unusual(at, comma)
+        return at
+
+    # ---------------------------------------------------------------- structure
+
+    def value(self, value: JsonValue, comma: int) -> None:
+        """`value` stands here, behind a comma or not (`comma` < 0)."""
+        if (comma >= 0) is not self.wants_comma:
+            self.odd_comma(value.start, comma)
+        key = self.key
+        if key is not None:
+            if not key.colon:
+                self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", _insertion(key.end, ":"))
+            self.parts.append(key.member(value))
+            self.key = None
+            self.wants_comma = True
+        elif self.is_object:
+            self.value_without_name(value)
+        elif self.stack:
+            self.parts.append(value)
+            self.wants_comma = True
+        else:
+            self.root = value
+
+    def nulls(self, start: int, end: int, comma: int) -> int:
+        """`null` or, in a list, `null,null,...`: most values of a JANI file are those of its synchronisation table."""
+        self.value(JsonNull(start, start + 4), comma)
+        if self.is_object or not self.stack:
+            return start + 4
+        self.parts.extend(map(JsonNull, range(start + 5, end, 5), range(start + 9, end + 1, 5)))
+        return end
+
+    def name(self, text: str, start: int, end: int, comma: int, quotes: tuple[int, int] = (1, 1)) -> None:
+        """A string, or what was meant as one, stands before a colon."""
+        if not self.is_object:
+            self.report(Span(start, end), "a name with a value stands in `{ }`, not here")
+            self.value(JsonString(start, end, text), comma)
+            return
+        if self.key is not None:
+            self.key_without_value()
+        elif (comma >= 0) is not self.wants_comma:
+            self.odd_comma(start, comma)
+        self.key = _Key(text, start, end, quotes)
+        self.wants_comma = False
+
+    def open(self, at: int, comma: int) -> None:
+        if (comma >= 0) is not self.wants_comma:
+            self.odd_comma(at, comma)
+        if self.key is None and self.is_object:
+            self.report(Span(at, at + 1), "a name is missing before this bracket")
+            self.key = _Key("", at, at, (0, 0))
+        if len(self.stack) >= MAX_DEPTH:
+            self.report(Span(at, at + 1), f"nested too deeply: more than {MAX_DEPTH} brackets are open")
+            self.give_up()
+        self.stack.append(_Bracket(self.start, self.is_object, self.parts, self.key))
+        self.start, self.is_object, self.parts = at, self.text[at] == "{", []
+        self.key, self.wants_comma = None, False
+
+    def close(self, at: int, comma: int) -> None:
+        bracket = self.text[at]
+        if self.key is not None:
+            self.key_without_value()
+        elif comma >= 0:
+            self.report(Span(comma, comma + 1), f"no comma before `{bracket}`", _removal(Span(comma, comma + 1)))
+        is_object = bracket == "}"
+        if not self.stack or (is_object is not self.is_object and is_object not in self.outer_kinds()):
+            self.report(Span(at, at + 1), f"`{bracket}` closes nothing", _removal(Span(at, at + 1)))
+            return
+        while is_object is not self.is_object:
+            missing = "}" if self.is_object else "]"
+            opened = Related(Span(self.start, self.start + 1), "opened here")
+            fix = _insertion(self.end_before(at), missing)
+            self.report(Span(at, at + 1), f"`{missing}` is missing before `{bracket}`", fix, opened)
+            self.leave(at)
+        self.leave(at + 1)
+
+    def outer_kinds(self) -> Iterator[bool]:
+        """Whether the brackets around the innermost one are objects. The first frame is the text, not a bracket."""
+        return (bracket.is_object for bracket in self.stack[1:])
+
+    def leave(self, end: int) -> None:
+        """The innermost bracket ends at `end`; it becomes a value of the one around it."""
+        value: JsonValue
+        if self.is_object:
+            value = JsonObject(self.start, end, tuple(self.parts))
+            if len({member.key for member in self.parts}) != len(self.parts):
+                self.duplicate_names()
+        else:
+            value = JsonArray(self.start, end, tuple(self.parts))
+        self.start, self.is_object, self.parts, self.key = self.stack.pop()
+        self.wants_comma = False
+        self.value(value, -1)
+
+    def close_all(self) -> str:
+        """Close what is still open at the end of the text; the brackets that were missing."""
+        missing = ""
+        while self.stack:
+            if self.key is not None:
+                self.parts.append(self.key.member(None))
+            missing += "}" if self.is_object else "]"
+            self.leave(len(self.text))
+        return missing
+
+    def end_before(self, at: int) -> int:
+        """Where the last thing before `at` ends."""
+        while at and self.text[at - 1] in " \t\n\r,":
+            at -= 1
+        return at
+
+    # ---------------------------------------------------------------- mistakes of structure
+
+    def odd_comma(self, at: int, comma: int) -> None:
+        """Something begins at `at`; a comma before it is missing, or there is one too many."""
+        if comma < 0:
+            fix = _insertion(self.end_before(at), ",")
+            self.report(Span(at, at + 1), "a comma is missing before this", fix)
+        elif self.key is not None:
+            self.key_without_value()
+        else:
+            self.report(Span(comma, comma + 1), "no comma here", _removal(Span(comma, comma + 1)))
+
+    def key_without_value(self) -> None:
+        assert self.key is not None
+        text, start, end, _, colon = self.key
+        self.parts.append(self.key.member(None))
+        self.key, self.wants_comma = None, True
+        self.report(Span(start, end), f"{'a value' if colon else '`:` and a value'} must follow `{text[:40]}`")
+
+    def value_without_name(self, value: JsonValue) -> None:
+        """In an object, where a name is expected, there is a value; a string is taken for a name without colon."""
+        if isinstance(value, JsonString):
+            self.key, self.wants_comma = _Key(value.value, value.start, value.end, value.quotes, False), False
+            return
+        self.parts.append(Member("", value.start, value.start, value, (0, 0)))
+        self.wants_comma = True
+        self.report(value.span, "a name is missing before this value")
+
+    def duplicate_names(self) -> None:
+        first: dict[str, Member] = {}
+        for member in self.parts:
+            known = first.setdefault(member.key, member)
+            if known is not member and member.key and len(self.findings) < MAX_FINDINGS:
+                message = f"`{member.key[:40]}` stands twice in this object; only the last one counts"
+                related = (Related(known.key_span, "it also stands here"),)
+                self.findings.append(Finding("duplicate-json-key", member.key_span, message, related=related))
+
+    # ---------------------------------------------------------------- unusual text
+
+    def unusual(self, at: int, comma: int) -> int:
+        """Read what stands at `at` and is no ordinary token; the offset behind it."""
+        text = self.text
+        if at == len(text):
+            return self.end(at)
+        character = text[at]
+        if character in _STRING_BODY:
+            return self.string(at, comma)
+        if character == ":":
+            return self.colon(Span(at, at + 1), comma)
+        if (assignment := _ASSIGNMENT.match(text, at)) and self.key is not None and not self.key.colon:
+            span = Span(*assignment.span())
+            self.report(span, "a name is followed by `:`", _replacement(span, ":"))
+            return self.colon(span, comma)
+        for pattern, message, replacement in _INTERLUDES:
+            if found := pattern.match(text, at):
+                span = Span(*found.span())
+                self.comma = at if character == ";" else comma
+                fix = _replacement(span, replacement) if replacement else _removal(span)
+                self.report(span, message, fix)
+                return span.end
+        return self.word(at, comma)
+
+    def end(self, at: int) -> int:
+        """The text ends without a complete value."""
+        if not self.stack:
+            self.root = JsonError(0, at)
+            self.report(Span(0, at), "there is no value" if self.text.strip() else "the file is empty")
+            return at
+        bracket = Span(self.start, self.start + 1)
+        end = self.end_before(at)
+        missing = self.close_all()
+        what = f"`{self.text[bracket.start]}` is never closed"
+        if len(missing) > 1:
+            what += f"; `{missing[:20]}` is missing at the end"
+        self.report(bracket, what, _insertion(end, missing))
+        return at
+
+    def colon(self, span: Span, comma: int) -> int:
+        """A colon that does not stand directly behind its name."""
+        self.comma = comma
+        if self.key is not None and not self.key.colon:
+            self.key = self.key._replace(colon=True)
+        elif self.text[span.start] == ":":
+            self.report(span, "no colon here", _removal(span))
+        return span.end
+
+    def string(self, at: int, comma: int) -> int:
+        """A string with escapes, with single quotes, with something forbidden in it or without its end."""
+        mark = self.text[at]
+        body = _STRING_BODY[mark].match(self.text, at + 1)
+        assert body is not None
+        raw, closed = body[1], body[2] is not None
+        if not closed:
+            raw = raw.rstrip(_DELIMITERS)
+        span = Span(at, at + 1 + len(raw) + closed)
+        value, mistakes = unescape(raw, at + 1)
+        if not closed:
+            self.report(span, "the string is never closed", _replacement(span, quote(value)))
+        elif mark == "'":
+            self.report(span, "strings stand in double quotes", _replacement(span, quote(value)))
+        else:
+            for message, edit in mistakes:
+                self.report(edit.span, message, _replacement(*edit))
+        return self.string_or_name(JsonString(*span, value, (1, int(closed))), comma)
+
+    def word(self, at: int, comma: int) -> int:
+        """A run of characters without quotes: a misspelled number or literal, a string or a name."""
+        found = _WORD.match(self.text, at)
+        assert found is not None
+        text = found[0].rstrip()
+        span = Span(at, at + len(text))
+        if self.is_object and _COLON.match(self.text, span.end):
+            self.report(span, "names stand in double quotes", _replacement(span, quote(text)))
+            return self.string_or_name(JsonString(*span, text, (0, 0)), comma)
+        self.value(self.bare(text, span), comma)
+        return span.end
+
+    def string_or_name(self, string: JsonString, comma: int) -> int:
+        if self.is_object and (colon := _COLON.match(self.text, string.end)):
+            self.name(string.value, string.start, string.end, comma, string.quotes)
+            return colon.end()
+        self.value(string, comma)
+        return string.end
+
+    def bare(self, text: str, span: Span) -> JsonValue:
+        """What a word without quotes was meant to be."""
+        if literal := _FOREIGN_LITERALS.get(text):
+            self.report(span, f"JSON writes `{literal}`", _replacement(span, literal))
+            return JsonNull(*span) if literal == "null" else JsonBool(*span, literal == "true")
+        if text.lstrip("+-").lower() in _NO_NUMBERS:
+            self.report(span, f"JSON has no number `{text[:40]}`")
+            return JsonError(*span)
+        if text[0] not in "+-.0123456789":
+            self.report(span, f"`{text[:40]}` is a string and stands in double quotes", _replacement(span, quote(text)))
+            return JsonString(*span, text, (0, 0))
+        number = _number(text)
+        if number is None:
+            self.report(span, f"`{text[:40]}` is not a number")
+            return JsonError(*span)
+        self.report(span, f"JSON writes this number as `{number[:40]}`", _replacement(span, number))
+        if number.lstrip("-").isdigit():
+            return self.integer(number, *span)
+        return JsonNumber(*span, float(number), number)
+
+    def integer(self, text: str, start: int, end: int) -> JsonValue:
+        try:
+            return JsonNumber(start, end, int(text), text)
+        except ValueError:  # Python limits the number of digits
+            self.report(Span(start, end), "this number has too many digits")
+            return JsonError(start, end)
+
+    def report(self, span: Span, message: str, fix: Fix | None = None, *related: Related) -> None:
+        if self.hopeless:
+            return
+        self.findings.append(Finding("json-syntax", span, message, fixes=(fix,) if fix else (), related=related))
+        if len(self.findings) >= MAX_FINDINGS:
+            self.give_up()
+
+    def give_up(self) -> NoReturn:
+        self.hopeless = True
+        raise _HopelessError
+
+
+def _insertion(at: int, inserted: str) -> Fix:
+    return Fix(f"Insert `{inserted[:20]}`", (TextEdit(Span(at, at), inserted),))
+
+
+def _replacement(span: Span, new_text: str) -> Fix:
+    return Fix(f"Write `{new_text[:40]}`", (TextEdit(span, new_text),))
+
+
+def _removal(span: Span) -> Fix:
+    return Fix("Remove it", (TextEdit(span, ""),))
+
+
+def _number(text: str) -> str | None:
+    """The JSON number that `text` probably means: `+1`, `007`, `.5`, `1.`; None if it is none."""
+    match = _SLOPPY_NUMBER.match(text)
+    if match is None or not (match[2] or match[3]):
+        return None
+    sign, whole, fraction, exponent = match.groups()
+    number = ("-" if sign == "-" else "") + (whole.lstrip("0") or "0")
+    if fraction is not None:
+        number += "." + (fraction or "0")
+    return number + (f"e{exponent}" if exponent else "")

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JSON strings: resolving their escapes and writing them (RFC 8259, section 7)."""
+
+from __future__ import annotations
+
+import re
+from json.encoder import encode_basestring
+from typing import NamedTuple
+
+from roaml.text import Span, TextEdit
+
+_SIMPLE_ESCAPES = {
+    '"': '"',
+    "\\": "\\",
+    "/": "/",
+    "b": "\b",
+    "f": "\f",
+    "n": "\n",
+    "r": "\r",
+    "t": "\t",
+}
+_SPECIAL = re.compile(
+    r"\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})"  # two halves of one character
+    r"|\\u([0-9a-fA-F]{4})"
+    r'|\\(["\\/bfnrt])'
+    r"|(\\.?)"
+    r"|([\x00-\x1f])",
+    re.DOTALL,
+)
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
+
+class Mistake(NamedTuple):
+    """Something that may not stand in a string, and what to write instead."""
+
+    message: str
+    edit: TextEdit
+
+
+def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
+    """What `raw`, the text between the quotes, means, and what is wrong in it. `start` is its offset in the source.
+
+    A wrong escape keeps the character behind the backslash; a control character stays as it is.
+    """
+    mistakes: list[Mistake] = []
+
+    def resolve(match: re.Match[str]) -> str:
+        high, low, code, simple, wrong, control = match.groups()
+        if high:
+            return chr(0x10000 + ((int(high, 16) & 0x3FF) << 10) + (int(low, 16) & 0x3FF))
+        if code:
+            return chr(int(code, 16))
+        if simple:
+            return _SIMPLE_ESCAPES[simple]
+        span = Span(start + match.start(), start + match.end())
+        if control:
+            written = quote(control)[1:-1]
+            mistakes.append(Mistake(f"inside a string this character is written `{written}`", TextEdit(span, written)))
+            return control
+        message = (
+            "`\\u` is followed by four hexadecimal digits"
+            if wrong == "\\u"
+            else f"JSON has no escape `{wrong}`; a backslash itself is written `\\\\`"
+        )
+        mistakes.append(Mistake(message, TextEdit(span, "\\" + wrong)))
+        return wrong[1:]
+
+    return _SPECIAL.sub(resolve, raw), mistakes
+
+
+def quote(text: str) -> str:
+    """`text` as a JSON string: only what must be escaped is, lone halves of surrogate pairs included."""
+    quoted: str = encode_basestring(text)
+    if text.isascii():
+        return quoted
+    return _SURROGATE.sub(lambda match: f"\\u{ord(match[0]):04x}", quoted)

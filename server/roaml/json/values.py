@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The JSON tree.
+
+- Frozen; every value has the `span` of its text, brackets and quotes included. (It is kept as two offsets: there are
+  hundreds of thousands of values in one JANI file, and a second object for each would double the time to read them.)
+- Where something is missing or unreadable there is a `JsonError` (or a `Member` without value), so the rest of the tree
+  stays usable; a finding has said why.
+- Values may nest up to `roaml.json.parse.MAX_DEPTH`: functions over trees must not recurse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    start: int
+    end: int
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.end)
+
+
+@dataclass(frozen=True, slots=True)
+class JsonObject(_Value):
+    """`members` are in the order of the text; of two with one key both are kept."""
+
+    members: tuple[Member, ...]
+
+    def get(self, key: str) -> JsonValue | None:
+        """The value of the last member called `key` (the one that other readers use), if there is any."""
+        for member in reversed(self.members):
+            if member.key == key:
+                return member.value
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class JsonArray(_Value):
+    items: tuple[JsonValue, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class JsonString(_Value):
+    """`value` has its escapes resolved. `quotes` are the lengths of the opening and the closing quote in the text."""
+
+    value: str
+    quotes: tuple[int, int] = (1, 1)
+
+    @property
+    def content_span(self) -> Span:
+        """The text between the quotes."""
+        return Span(self.start + self.quotes[0], self.end - self.quotes[1])
+
+
+@dataclass(frozen=True, slots=True)
+class JsonNumber(_Value):
+    """`value` is an int if `text` has neither a point nor an exponent; `text` is as written."""
+
+    value: int | float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class JsonBool(_Value):
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class JsonNull(_Value):
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class JsonError(_Value):
+    """A value stands here that cannot be read, or none where one is needed; a finding says why."""
+
+
+JsonValue: TypeAlias = JsonObject | JsonArray | JsonString | JsonNumber | JsonBool | JsonNull | JsonError
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """One `"key": value`. The key stands from `start` to `key_end`, quotes of the given lengths included.
+
+    `value` is None while nothing stands behind the key.
+    """
+
+    key: str
+    start: int
+    key_end: int
+    value: JsonValue | None
+    quotes: tuple[int, int] = (1, 1)
+
+    @property
+    def key_span(self) -> Span:
+        return Span(self.start, self.key_end)
+
+    @property
+    def key_content_span(self) -> Span:
+        """The text of the key between its quotes."""
+        return Span(self.start + self.quotes[0], self.key_end - self.quotes[1])
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.value.end if self.value else self.key_end)
+
+
+_KINDS: dict[type, str] = {
+    JsonObject: "an object",
+    JsonArray: "a list",
+    JsonString: "a string",
+    JsonNumber: "a number",
+    JsonBool: "true or false",
+    JsonNull: "null",
+    JsonError: "nothing readable",
+}
+
+
+def kind(value: JsonValue) -> str:
+    """What `value` is, in words for a message."""
+    return _KINDS[type(value)]

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The grammar of the languages, read from `schemas/`.
+
+The schemas are the one statement of what may be written and what it means; completion, hover, validation, navigation
+and the reference manual read them through this package.
+"""
+
+from roaml.language.grammar import (
+    BEHAVIOR_TREE,
+    HL_SCXML,
+    PLAIN_SCXML,
+    STRUCTS,
+    SYSTEM,
+    AttributeType,
+    ElementType,
+    Grammar,
+)
+
+__all__ = [
+    "BEHAVIOR_TREE",
+    "HL_SCXML",
+    "PLAIN_SCXML",
+    "STRUCTS",
+    "SYSTEM",
+    "AttributeType",
+    "ElementType",
+    "Grammar",
+]

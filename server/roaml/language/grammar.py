@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The elements and attributes of a language as tables, read from its XSD.
+
+- Only what the schemas in `schemas/` use of XML Schema is understood; the tests hold the tables against `xmlschema`.
+- Documentation is the text of `xs:documentation` (Markdown); roles are those of `xs:appinfo` (urn:roaml:roles).
+- A grammar is read on first use and kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from lxml import etree
+
+from roaml.language.resources import schema_path
+
+_XS = "{http://www.w3.org/2001/XMLSchema}"
+_R = "{urn:roaml:roles}"
+
+UNBOUNDED = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class ValueChoice:
+    """One value of an enumeration. `use` names its successor if it is deprecated."""
+
+    value: str
+    documentation: str
+    use: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SimpleType:
+    """What text a value may be: a base type of XML Schema (without prefix) narrowed by facets."""
+
+    base: str = "string"
+    choices: tuple[ValueChoice, ...] = ()
+    pattern: str = ""
+    non_empty: bool = False
+    above: float | None = None
+    least: float | None = None
+    most: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PortType:
+    """A port of a tree node: "in" or "out", its base type or "any", whether it must be set, and what it holds else."""
+
+    direction: str
+    type: str
+    required: bool
+    default: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class AttributeType:
+    """An attribute of an element.
+
+    Attributes:
+        defines: kind of symbol that the value names first, or "".
+        refers: kinds of symbols that the value may name.
+        value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
+            child-index, script), or "".
+        value_type: the type wanted of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
+        ignored: None, or whether a tool should keep quiet about the attribute having no effect.
+        use: the successor, if the attribute is deprecated.
+        port: what port of a tree node the attribute is, if any.
+    """
+
+    name: str
+    documentation: str
+    required: bool = False
+    simple: SimpleType = SimpleType()
+    defines: str = ""
+    refers: tuple[str, ...] = ()
+    value: str = ""
+    value_type: str = ""
+    ignored: bool | None = None
+    use: str = ""
+    port: PortType | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """How often a child may stand in its parent."""
+
+    least: int
+    most: int
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """An event variable. `only` restricts it to "cond" or "body"."""
+
+    name: str
+    only: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ElementType:
+    """An element.
+
+    Attributes:
+        children: name -> how often; what kind of element it is there tells `Grammar.child`.
+        any_child: how many children of any name there may be, or None; children in foreign namespaces do not count.
+        any_is_opaque: what such children are and hold is no business of the grammar.
+        any_attribute: attributes not listed are allowed; those in foreign namespaces always are.
+        text: character data is allowed.
+        sends, receives: part of an interface or of the tree protocol, or "".
+        code: the result code that goes with it, or 0.
+        ignored: has no effect on the model.
+        use: the successor, if the element is deprecated.
+        node: control, decorator, action, condition or subtree, or "".
+        translated: false for tree nodes that are known but cannot be translated.
+    """
+
+    name: str
+    documentation: str
+    attributes: dict[str, AttributeType]
+    children: dict[str, Occurrence]
+    local: dict[str, ElementType]
+    any_child: Occurrence | None = None
+    any_is_opaque: bool = False
+    any_attribute: bool = False
+    text: bool = False
+    refers: tuple[str, ...] = ()
+    value: str = ""
+    value_type: str = ""
+    sends: str = ""
+    receives: str = ""
+    code: int = 0
+    binds: tuple[Binding, ...] = ()
+    ignored: bool = False
+    use: str = ""
+    node: str = ""
+    translated: bool = True
+
+    @property
+    def ports(self) -> tuple[AttributeType, ...]:
+        return tuple(attribute for attribute in self.attributes.values() if attribute.port)
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """One language: the schema file and the names of its root elements."""
+
+    schema: str
+    roots: tuple[str, ...]
+    title: str
+
+    @cached_property
+    def elements(self) -> dict[str, ElementType]:
+        """All global elements by name."""
+        return self._reader.elements
+
+    @cached_property
+    def groups(self) -> dict[str, frozenset[str]]:
+        """The names of the elements in each named group."""
+        return self._reader.group_names()
+
+    @cached_property
+    def _reader(self) -> _Reader:
+        return _Reader(self.schema)
+
+    @cached_property
+    def validator(self) -> etree.XMLSchema:
+        """The compiled schema (libxml2)."""
+        return etree.XMLSchema(etree.parse(str(schema_path(self.schema))))
+
+    def child(self, parent: ElementType, name: str) -> ElementType | None:
+        """The element that `name` is inside `parent`, or None if it is not allowed there."""
+        if name in parent.local:
+            return parent.local[name]
+        if name in parent.children or (parent.any_child is not None and not parent.any_is_opaque):
+            return self.elements.get(name)
+        return None
+
+    def element_at(self, names: list[str]) -> ElementType | None:
+        """The element at the end of a path of names that begins at a root."""
+        if not names or names[0] not in self.roots:
+            return None
+        element: ElementType | None = self.elements[names[0]]
+        for name in names[1:]:
+            if element is None:
+                return None
+            element = self.child(element, name)
+        return element
+
+    def find(self, name: str) -> ElementType | None:
+        """The element called `name` wherever it is allowed; global ones first."""
+        if name in self.elements:
+            return self.elements[name]
+        return next((element for element in self._everywhere if element.name == name), None)
+
+    def parents(self, name: str) -> tuple[str, ...]:
+        """The names of the elements in which `name` may stand."""
+        return tuple(dict.fromkeys(element.name for element in self._everywhere if name in element.children))
+
+    @cached_property
+    def _everywhere(self) -> tuple[ElementType, ...]:
+        """All elements, the global ones first, then those that are only known inside others."""
+        found = list(self.elements.values())
+        for element in found:
+            found += element.local.values()
+        return tuple(found)
+
+
+HL_SCXML = Grammar("ascxml.xsd", ("ascxml", "scxml"), "HL-SCXML")
+PLAIN_SCXML = Grammar("scxml.xsd", ("scxml",), "plain SCXML")
+SYSTEM = Grammar("roaml.xsd", ("roaml", "convince_mc_tc"), "system file")
+STRUCTS = Grammar("structs.xsd", ("types",), "struct declarations")
+BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
+
+
+@dataclass
+class _Shape:
+    """What is collected about one complex type."""
+
+    attributes: dict[str, AttributeType] = field(default_factory=dict)
+    children: dict[str, Occurrence] = field(default_factory=dict)
+    local: dict[str, ElementType] = field(default_factory=dict)
+    any_child: Occurrence | None = None
+    any_is_opaque: bool = False
+    any_attribute: bool = False
+    text: bool = False
+
+
+class _Reader:
+    """Reads one schema file."""
+
+    def __init__(self, schema: str) -> None:
+        top = etree.parse(str(schema_path(schema))).getroot()
+        self.named: dict[tuple[str, str], Any] = {
+            (_local(node), name): node for node in top if isinstance(node.tag, str) and (name := node.get("name"))
+        }
+        self.elements = {name: self.element(node) for (kind, name), node in self.named.items() if kind == "element"}
+
+    def group_names(self) -> dict[str, frozenset[str]]:
+        return {
+            name: frozenset(child.get("ref") for child in node.iter(f"{_XS}element"))
+            for (kind, name), node in self.named.items()
+            if kind == "group"
+        }
+
+    def element(self, node: Any) -> ElementType:
+        shape = _Shape()
+        complex_type = node.find(f"{_XS}complexType")
+        if complex_type is None and ("complexType", node.get("type")) in self.named:
+            complex_type = self.named["complexType", node.get("type")]
+        if complex_type is not None:
+            self.collect(complex_type, shape, Occurrence(1, 1))
+        roles = dict(_roles(node))
+        ignored, deprecated = roles.get("ignored"), roles.get("deprecated")
+        tree_node = roles.get("node", {})
+        value = roles.get("value", {})
+        return ElementType(
+            node.get("name"),
+            _documentation(node),
+            shape.attributes,
+            shape.children,
+            shape.local,
+            shape.any_child,
+            shape.any_is_opaque,
+            shape.any_attribute,
+            shape.text,
+            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            value=value.get("is", ""),
+            value_type=value.get("type", ""),
+            sends=roles.get("sends", {}).get("part", ""),
+            receives=roles.get("receives", {}).get("part", ""),
+            code=int({**roles.get("sends", {}), **roles.get("receives", {})}.get("code", "0")),
+            binds=tuple(Binding(r["name"], r.get("only", "")) for kind, r in _roles(node) if kind == "binds"),
+            ignored=ignored is not None,
+            use=deprecated["use"] if deprecated else "",
+            node=tree_node.get("kind", ""),
+            translated=tree_node.get("translated") != "false",
+        )
+
+    def collect(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+        """Add what `node`, a part of a complex type that may stand `occurs` times, contributes to `shape`."""
+        if node.get("mixed") == "true":
+            shape.text = True
+        for part in node:
+            if not isinstance(part.tag, str):
+                continue
+            kind = _local(part)
+            if kind in ("sequence", "choice", "all"):
+                inner = _times(part, occurs)
+                if kind == "choice" and len([p for p in part if isinstance(p.tag, str)]) > 1:
+                    inner = Occurrence(0, inner.most)
+                self.collect(part, shape, inner)
+            elif kind == "group":
+                self.collect(self.named["group", part.get("ref")], shape, _times(part, occurs))
+            elif kind == "element":
+                self.child(part, shape, _times(part, occurs))
+            elif kind == "any" and part.get("namespace") is None:
+                shape.any_child = _times(part, occurs)
+                shape.any_is_opaque = part.get("processContents") == "skip"
+            elif kind in ("complexContent", "extension"):
+                base = part.get("base")
+                if base:
+                    self.collect(self.named["complexType", base], shape, occurs)
+                self.collect(part, shape, occurs)
+            elif kind == "attributeGroup":
+                self.collect(self.named["attributeGroup", part.get("ref")], shape, occurs)
+            elif kind == "attribute":
+                shape.attributes[part.get("name")] = self.attribute(part)
+            elif kind == "anyAttribute" and part.get("namespace") is None:
+                shape.any_attribute = True
+
+    def child(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+        name = node.get("ref") or node.get("name")
+        if node.get("name"):
+            shape.local[name] = self.element(node)
+        if name in shape.children:
+            before = shape.children[name]
+            occurs = Occurrence(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
+        shape.children[name] = occurs
+
+    def attribute(self, node: Any) -> AttributeType:
+        roles = dict(_roles(node))
+        value, ignored, port = roles.get("value", {}), roles.get("ignored"), roles.get("port")
+        return AttributeType(
+            node.get("name"),
+            _documentation(node),
+            node.get("use") == "required",
+            self.simple(node),
+            defines=roles.get("defines", {}).get("symbol", ""),
+            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            value=value.get("is", ""),
+            value_type=value.get("type", value.get("kind", "")),
+            ignored=None if ignored is None else ignored.get("quietly") == "true",
+            use=roles.get("deprecated", {}).get("use", ""),
+            port=_port(port) if port else None,
+        )
+
+    def simple(self, node: Any) -> SimpleType:
+        """The simple type of an attribute: built in, named, or written inside it."""
+        definition = node.find(f"{_XS}simpleType")
+        if definition is None:
+            name = node.get("type", "xs:string")
+            if name.startswith("xs:"):
+                return SimpleType(name.removeprefix("xs:"))
+            definition = self.named["simpleType", name]
+        restriction = definition.find(f"{_XS}restriction")
+        facets = {_local(f): f.get("value") for f in restriction if isinstance(f.tag, str)}
+        return SimpleType(
+            restriction.get("base").removeprefix("xs:"),
+            tuple(
+                ValueChoice(
+                    choice.get("value"),
+                    _documentation(choice),
+                    dict(_roles(choice)).get("deprecated", {}).get("use", ""),
+                )
+                for choice in restriction.findall(f"{_XS}enumeration")
+            ),
+            facets.get("pattern", ""),
+            "minLength" in facets,
+            _number(facets.get("minExclusive")),
+            _number(facets.get("minInclusive")),
+            _number(facets.get("maxInclusive")),
+        )
+
+
+def _local(node: Any) -> str:
+    return str(etree.QName(node).localname)
+
+
+def _documentation(node: Any) -> str:
+    text = node.findtext(f"{_XS}annotation/{_XS}documentation")
+    return text.strip() if text else ""
+
+
+def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:
+    for role in node.findall(f"{_XS}annotation/{_XS}appinfo/*"):
+        if role.tag.startswith(_R):
+            yield _local(role), dict(role.attrib)
+
+
+def _times(node: Any, outer: Occurrence) -> Occurrence:
+    most = node.get("maxOccurs", "1")
+    return Occurrence(
+        int(node.get("minOccurs", "1")) * outer.least,
+        min(UNBOUNDED, outer.most * (UNBOUNDED if most == "unbounded" else int(most))),
+    )
+
+
+def _number(text: str | None) -> float | None:
+    return None if text is None else float(text)
+
+
+def _port(role: Mapping[str, str]) -> PortType:
+    return PortType(role["direction"], role["type"], role.get("required") == "true", role.get("default", ""))

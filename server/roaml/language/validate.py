@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a document does not follow its grammar.
+
+- libxml2 decides whether a document is valid; the tables of the grammar say what is wrong, and where, in our words.
+- What libxml2 refuses and the tables do not explain is explained by `xmlschema` (`SchemaViolation`), so that nothing
+  that the schema forbids passes in silence. Only while the XML itself is broken the tables alone are asked.
+- Elements and attributes of foreign namespaces are no business of the grammar.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from lxml import etree
+
+from roaml.language.grammar import AttributeType, ElementType, Grammar, SimpleType
+from roaml.language.resources import schema_path
+from roaml.text import Span
+from roaml.xml import Attribute, CData, Document, Element, Text
+from roaml.xml.names import SPACE, is_local_name
+
+_UNREAD = ("xml-syntax", "nesting-too-deep")
+"""Findings that say that the tree is not the whole document, or not yet."""
+
+SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownElement:
+    """No element of the grammar has this name."""
+
+    element: Element
+    parent: ElementType
+
+
+@dataclass(frozen=True, slots=True)
+class MisplacedElement:
+    """An element of the grammar that may not stand in `parent`."""
+
+    element: Element
+    type: ElementType
+    parent: ElementType
+
+
+@dataclass(frozen=True, slots=True)
+class TooManyElements:
+    """More elements of this name than `most`; `first` is the first of them."""
+
+    element: Element
+    first: Element
+    parent: ElementType
+    most: int
+
+
+@dataclass(frozen=True, slots=True)
+class MissingElement:
+    """`element` lacks a child it must have; `names` are those that would do, empty for any."""
+
+    element: Element
+    type: ElementType
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownAttribute:
+    element: Element
+    attribute: Attribute
+    type: ElementType
+
+
+@dataclass(frozen=True, slots=True)
+class MissingAttribute:
+    element: Element
+    type: ElementType
+    attribute: AttributeType
+
+
+@dataclass(frozen=True, slots=True)
+class InvalidValue:
+    """The value of an attribute is not what the grammar allows; `wanted` describes that as a noun phrase."""
+
+    element: Element
+    attribute: Attribute
+    type: AttributeType
+    wanted: str
+
+
+@dataclass(frozen=True, slots=True)
+class StrayText:
+    """Character data where the grammar has none."""
+
+    span: Span
+    parent: ElementType
+
+
+@dataclass(frozen=True, slots=True)
+class SchemaViolation:
+    """Anything else that the schema forbids."""
+
+    element: Element
+    reason: str
+
+
+Violation: TypeAlias = (
+    UnknownElement
+    | MisplacedElement
+    | TooManyElements
+    | MissingElement
+    | UnknownAttribute
+    | MissingAttribute
+    | InvalidValue
+    | StrayText
+    | SchemaViolation
+)
+
+
+def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
+    """All places where `document` does not follow `grammar`. A root that is not the grammar's is no business here."""
+    root = document.root
+    if root is None or root.name not in grammar.roots:
+        return ()
+    found = list(_walk(document, root, grammar))
+    if not found and not any(finding.code in _UNREAD for finding in document.findings):
+        tree, back = to_lxml(document, root)
+        if not grammar.validator.validate(tree):
+            found.extend(_explain(tree, back, grammar))
+    return tuple(found)
+
+
+def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
+    """Whether a prefixed element belongs to another language than SCXML."""
+    return bool(element.prefix) and document_namespaces.get(element.prefix, SCXML_NAMESPACE) != SCXML_NAMESPACE
+
+
+# ---------------------------------------------------------------- by the tables
+
+
+def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Violation]:
+    namespaces = dict(document.namespaces)
+    stack: list[tuple[Element, ElementType]] = [(root, grammar.elements[root.name])]
+    while stack:
+        element, type_ = stack.pop()
+        yield from _attributes(element, type_)
+        if not type_.text:
+            yield from _stray_text(document, element, type_)
+        counts: dict[str, list[Element]] = {}
+        below: list[tuple[Element, ElementType]] = []
+        for child in element.elements:
+            if is_foreign(namespaces, child):
+                continue
+            child_type = grammar.child(type_, child.name)
+            if child_type is not None:
+                below.append((child, child_type))
+            elif type_.any_child is None:
+                known = grammar.find(child.name)
+                if known is None:
+                    yield UnknownElement(child, type_)
+                else:
+                    yield MisplacedElement(child, known, type_)
+                    below.append((child, known))
+            counts.setdefault(child.name, []).append(child)
+        yield from _counts(element, type_, counts)
+        stack.extend(reversed(below))
+
+
+def _attributes(element: Element, type_: ElementType) -> Iterator[Violation]:
+    present = set()
+    for attribute in element.attributes:
+        name = attribute.name
+        present.add(name)
+        known = type_.attributes.get(name)
+        if known is not None:
+            if attribute.has_value and (wanted := unmet(known.simple, attribute.value)):
+                yield InvalidValue(element, attribute, known, wanted)
+        elif not type_.any_attribute and ":" not in name and name != "xmlns":
+            yield UnknownAttribute(element, attribute, type_)
+    if element.complete or element.self_closing or element.close_span:
+        for known in type_.attributes.values():
+            if known.required and known.name not in present:
+                yield MissingAttribute(element, type_, known)
+
+
+def _stray_text(document: Document, element: Element, type_: ElementType) -> Iterator[Violation]:
+    for node in element.nodes:
+        if isinstance(node, (Text, CData)) and node.value.strip():
+            raw = document.text[node.span.start : node.span.end]
+            start = node.span.start + len(raw) - len(raw.lstrip())
+            yield StrayText(Span(start, start + len(raw.strip())), type_)
+
+
+def _counts(element: Element, type_: ElementType, counts: dict[str, list[Element]]) -> Iterator[Violation]:
+    for name, children in counts.items():
+        occurs = type_.children.get(name)
+        if occurs is not None and len(children) > occurs.most:
+            for extra in children[occurs.most :]:
+                yield TooManyElements(extra, children[0], type_, occurs.most)
+    if not element.complete:
+        return
+    for name, occurs in type_.children.items():
+        if occurs.least > len(counts.get(name, ())):
+            yield MissingElement(element, type_, (name,))
+    if type_.any_child is not None:
+        every = [child for children in counts.values() for child in children]
+        if len(every) < type_.any_child.least:
+            yield MissingElement(element, type_, ())
+        for extra in every[type_.any_child.most :]:
+            yield TooManyElements(extra, every[0], type_, type_.any_child.most)
+
+
+def unmet(simple: SimpleType, value: str) -> str:
+    """What `value` should be but is not, as a noun phrase; "" if it is all right."""
+    text = value.strip(SPACE)
+    if simple.choices:
+        choices = [choice.value for choice in simple.choices if not choice.use]
+        return "" if any(choice.value == value for choice in simple.choices) else _one_of(choices)
+    if simple.base in _NUMBERS:
+        return _unmet_number(simple, text)
+    if not text and (simple.non_empty or simple.pattern):
+        return "something"
+    if simple.pattern and not re.fullmatch(simple.pattern, value, re.ASCII):
+        return "`package/Type`" if "/" in simple.pattern else "something"
+    return ""
+
+
+_INTEGER = re.compile(r"[+-]?\d+\Z", re.ASCII)
+_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)\Z", re.ASCII)
+_DOUBLE = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+_NUMBERS: dict[str, tuple[re.Pattern[str], str, float | None]] = {
+    "integer": (_INTEGER, "a whole number", None),
+    "nonNegativeInteger": (_INTEGER, "a whole number, at least 0", 0),
+    "positiveInteger": (_INTEGER, "a whole number, at least 1", 1),
+    "decimal": (_DECIMAL, "a number", None),
+    "double": (_DOUBLE, "a number", None),
+}
+
+
+def _unmet_number(simple: SimpleType, text: str) -> str:
+    form, noun, least = _NUMBERS[simple.base]
+    if simple.above is not None:
+        noun += f" above {simple.above:g}"
+    if simple.most is not None:
+        noun += f" and up to {simple.most:g}" if simple.above is not None else f" up to {simple.most:g}"
+    if not form.match(text) or len(text) > 300:
+        return noun
+    value = float(text)
+    too_small = (least is not None and value < least) or (simple.above is not None and value <= simple.above)
+    return noun if too_small or (simple.most is not None and value > simple.most) else ""
+
+
+def _one_of(choices: list[str]) -> str:
+    quoted = [f"`{choice}`" for choice in choices]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+
+
+# ------------------------------------------------------------------- by libxml2
+
+
+def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]:
+    """The tree for libxml2, without namespaces, comments and white space; and the way back to our elements."""
+    namespaces = dict(document.namespaces)
+    top = _new(None, root)
+    back = {top: root}
+    stack = [(root, top)]
+    while stack:
+        element, copy = stack.pop()
+        last = None
+        for node in element.nodes:
+            if isinstance(node, Element):
+                if is_foreign(namespaces, node):
+                    continue
+                last = _new(copy, node)
+                back[last] = node
+                stack.append((node, last))
+            elif isinstance(node, (Text, CData)) and (text := _clean(node.value.strip())):
+                if last is None:
+                    copy.text = (copy.text or "") + text
+                else:
+                    last.tail = (last.tail or "") + text
+    return top, back
+
+
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+def _clean(value: str) -> str:
+    return _FORBIDDEN.sub("\ufffd", value)
+
+
+def _new(parent: Any, element: Element) -> Any:
+    attributes = {
+        a.name: _clean(a.value) for a in element.attributes if is_local_name(a.name) and not a.name.startswith("xml")
+    }
+    tag = element.name if is_local_name(element.name) else "not-a-name"
+    return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)
+
+
+@functools.cache
+def _explainer(schema: str) -> Any:
+    import xmlschema  # noqa: PLC0415 - takes 0.2 s to import and is seldom needed
+
+    return xmlschema.XMLSchema(str(schema_path(schema)))
+
+
+def _explain(tree: Any, back: dict[Any, Element], grammar: Grammar) -> Iterator[SchemaViolation]:
+    for error in _explainer(grammar.schema).iter_errors(tree):
+        reason = " ".join(str(error.reason or error.message).split())
+        yield SchemaViolation(back.get(error.elem, back[tree]), reason)

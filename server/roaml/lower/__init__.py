@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""HL-SCXML systems -> plain SCXML (spec/04).
+
+- Total: a system without errors is lowered; whatever has no plain form, a rule has reported. An assertion that fails
+  here is our mistake, never the user's.
+- Everything that comes out has an origin, the synthesised automata included.
+- Pure, but for the package's own resources: the nodes of BehaviorTree.CPP in `nodes/`.
+"""
+
+from roaml.lower.program import Program
+from roaml.lower.system import lower
+
+__all__ = ["Program", "lower"]

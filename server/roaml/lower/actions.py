@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The handler between the clients and the server of a ROS action (spec/04 §7): one goal is decided on at a time.
+
+A client is known by its goal id, its place among the clients of the action.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from roaml.expr.types import BASE_TYPES
+from roaml.lower.build import default_value, equal, event_data, integer, name
+from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
+from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
+from roaml.lower.program import Program
+from roaml.model.system import Automaton as SystemAutomaton
+from roaml.model.system import Channel, sanitise
+from roaml.scxml.model import Assign, Automaton, Branch, Data, If, Param, Role, Send, State, Statement
+from roaml.text import Location
+
+GOAL_ID = "goal_id"
+CODE = "code"
+
+
+def action_handler(action: Channel, program: Program) -> Automaton:
+    events = ActionEvents(action.name)
+    goal, feedback, result = (fields(action, part, program.environment) for part in ("goal", "feedback", "result"))
+    origin = handler_place(action, program)
+    requests = []
+    for number, client in enumerate(action.users):
+        place = declared_at(client, program)
+        asked = copied(goal, sent_parameters(client, "goal"), place)
+        passed_on = Send(events.goal, (Param(GOAL_ID, integer(number), place), *stored(goal, place)), place)
+        requests.append(on(events.goal_of(client.automaton), "goal_requested", (*asked, passed_on), place))
+
+    def sent(part: str) -> set[str]:
+        return set[str]().union(*(sent_parameters(server, part) for server in action.sources))
+
+    remember = _store(GOAL_ID, origin)
+    reported = on(
+        events.feedback,
+        "waiting",
+        (
+            remember,
+            *copied(feedback, sent("feedback"), origin),
+            _to_client(action, events.feedback_for, stored(feedback, origin), origin),
+        ),
+        origin,
+    )
+    code = Param(CODE, name(CODE), origin)
+    finished = on(
+        events.result,
+        "waiting",
+        (
+            _store(CODE, origin),
+            remember,
+            *copied(result, sent("result"), origin),
+            _to_client(action, events.result_for, (code, *stored(result, origin)), origin),
+        ),
+        origin,
+    )
+    decided = (
+        on(events.accepted, "waiting", (remember, _to_client(action, events.accept_for, (), origin)), origin),
+        on(events.rejected, "waiting", (remember, _to_client(action, events.reject_for, (), origin)), origin),
+    )
+    states = (
+        State("waiting", (), (), (*requests, reported, finished), origin),
+        State("goal_requested", (), (), decided, origin),
+    )
+    int32 = BASE_TYPES["int32"]
+    own = tuple(Data(each, int32, default_value(int32), origin) for each in (GOAL_ID, CODE))
+    data = (*variables({**goal, **feedback, **result}, origin), *own)
+    return Automaton(f"action_handler_{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
+
+
+def _store(parameter: str, origin: Location) -> Statement:
+    return Assign(name(parameter), event_data(parameter), origin)
+
+
+def _to_client(
+    action: Channel, event: Callable[[SystemAutomaton], str], params: tuple[Param, ...], origin: Location
+) -> Statement:
+    """Sends the client with the remembered goal id the event that `event` names for it."""
+    branches = tuple(
+        Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
+        for number, client in enumerate(action.users)
+    )
+    return If(branches, (), origin)

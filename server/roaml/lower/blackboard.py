@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The automaton that holds the blackboard (spec/02 §6)."""
+
+from __future__ import annotations
+
+from roaml.expr.types import BASE_TYPES, Type
+from roaml.lower.build import default_value, event_data, name
+from roaml.lower.context import any_type
+from roaml.lower.machine import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
+from roaml.lower.program import Program
+from roaml.scxml.model import Assign, Automaton, Data, Param, Role, Send, State, Target, Transition
+from roaml.text import Location
+
+
+def variable_types(program: Program) -> dict[str, Type]:
+    """The blackboard variables and their types, as the ports that are bound to them have it."""
+    found: dict[str, Type] = {}
+    for variable, ports in program.system.blackboard.items():
+        definite = [BASE_TYPES[bound.port.type] for bound in ports if bound.port.type in BASE_TYPES]
+        found[variable] = definite[0] if definite else any_type(ports[0].automaton, program)
+    return found
+
+
+def blackboard(program: Program) -> Automaton | None:
+    """None if the tree uses no variables."""
+    variables = variable_types(program)
+    if not variables:
+        return None
+    places = {variable: _place(program, variable) for variable in variables}
+    data = tuple(Data(v, type_, default_value(type_), places[v]) for v, type_ in variables.items())
+    origin = next(iter(places.values()))
+    writes = tuple(
+        Transition(
+            f"bt_blackboard_set_{v}",
+            None,
+            (Target("idle", 1.0, (Assign(name(v), event_data("value"), places[v]),), places[v]),),
+            places[v],
+        )
+        for v in variables
+    )
+    answer = Send(BLACKBOARD_ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
+    asked = Transition(BLACKBOARD_REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
+    idle = State("idle", (), (), (*writes, asked), origin)
+    return Automaton("bt_blackboard_fsm", Role.BLACKBOARD, "idle", data, (idle,), origin)
+
+
+def _place(program: Program, variable: str) -> Location:
+    """The first node that uses a variable."""
+    instance = program.system.blackboard[variable][0].automaton.instance
+    return program.node(instance.number if instance else 0)

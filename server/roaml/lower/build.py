@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small expressions that lowering makes up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from roaml.expr.operators import Operator
+from roaml.expr.tree import ArrayLiteral, Binary, Boolean, Expr, Index, Member, Name, Number, String
+from roaml.expr.types import Array, Type, is_kind
+from roaml.lower.program import NOWHERE
+from roaml.text import Span
+
+EVENT_DATA = "_event"
+
+
+def name(identifier: str, span: Span = NOWHERE) -> Name:
+    return Name(span, identifier)
+
+
+def integer(value: int, span: Span = NOWHERE) -> Number:
+    return Number(span, value, False)
+
+
+def event_data(parameter: str, span: Span = NOWHERE) -> Expr:
+    """`_event.data.<parameter>`: a parameter of the event that the transition waits for."""
+    return Member(span, Member(span, Name(span, EVENT_DATA), "data", span), parameter, span)
+
+
+def length(array: Expr, span: Span = NOWHERE) -> Expr:
+    return Member(span, array, "length", span)
+
+
+def indexed(expr: Expr, indexes: Iterable[Expr], span: Span = NOWHERE) -> Expr:
+    for index in indexes:
+        expr = Index(span, expr, index)
+    return expr
+
+
+def binary(left: Expr, operator: Operator, right: Expr, span: Span = NOWHERE) -> Expr:
+    return Binary(span, operator, span, left, right)
+
+
+def equal(left: Expr, right: Expr, span: Span = NOWHERE) -> Expr:
+    return binary(left, Operator.EQUAL, right, span)
+
+
+def both(left: Expr | None, right: Expr, span: Span = NOWHERE) -> Expr:
+    """`left && right`; without left just `right`."""
+    return right if left is None else binary(left, Operator.AND, right, span)
+
+
+def default_value(type_: Type, span: Span = NOWHERE) -> Expr:
+    """What a variable of a flat type holds if nothing is said: 0, 0.0, false, '' or []."""
+    if isinstance(type_, Array):
+        return ArrayLiteral(span, ())
+    if is_kind(type_, "bool"):
+        return Boolean(span, False)
+    if is_kind(type_, "string"):
+        return String(span, "")
+    return Number(span, 0, is_kind(type_, "real"))

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One chart being lowered: where it stands in the system, and what its names mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roaml.expr.parse import parse
+from roaml.expr.tree import Boolean, Expr, String
+from roaml.expr.types import BASE_TYPES, STRING, UNKNOWN, Type, is_kind, resolve_type
+from roaml.lower.data import as_type
+from roaml.lower.expressions import Scope
+from roaml.lower.program import Program
+from roaml.model.expand import Constant, PortValue, Reference
+from roaml.model.machine import Chart, Communicate, Data, Declaration, Handler, Machine
+from roaml.model.outline import InterfaceUse
+from roaml.model.syntax import PortRead
+from roaml.model.system import Automaton, Channel
+from roaml.model.typing import bindings, find_handle, port_type
+from roaml.text import Decoded, Location, Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Context:
+    """
+    Attributes:
+        name: of the plain automaton.
+        thread: which copy of an action thread this is; None for the machine itself.
+        timers: timer handle -> the event of its ticks for this chart.
+        ports: key -> what ports hold that the tree does not set.
+        variables: the chart's variables with their types.
+    """
+
+    program: Program
+    automaton: Automaton
+    machine: Machine
+    chart: Chart
+    name: str
+    thread: int | None
+    timers: Mapping[str, str]
+    ports: Mapping[str, str]
+    variables: Mapping[str, Type]
+
+    def origin(self, span: Span) -> Location:
+        """A place in the machine's file; for nodes of BehaviorTree.CPP, which have none, the tree node."""
+        if self.automaton.path:
+            return Location(self.automaton.path, span)
+        return self.program.place_of(self.automaton)
+
+    def scope(self, handler: Handler | None = None, part: str = "body") -> Scope:
+        """What names mean in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
+        if handler is None:
+            return Scope(self.variables, {}, {})
+        return Scope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
+
+    def port(self, read: PortRead) -> PortValue:
+        """What the port holds. A port that is not set has been reported; it counts as empty."""
+        key = read.key.value if read.key else ""
+        value = self.automaton.port(key)
+        return Constant(self.ports.get(key, "")) if value is None else value
+
+    def constant(self, read: PortRead, value: Constant) -> Expr:
+        """The literal that a port with a constant value stands for."""
+        return literal(value.text, port_type(self.machine, read), read.span)
+
+    def is_reference(self, value: object) -> bool:
+        return isinstance(value, PortRead) and isinstance(self.port(value), Reference)
+
+    def use(self, user: Handler | Communicate) -> InterfaceUse:
+        """The outline of the declaration that a handler or sending element refers to."""
+        declaration = find_handle(self.machine, user)
+        assert declaration is not None
+        return self.use_of(declaration)
+
+    def use_of(self, declaration: Declaration) -> InterfaceUse:
+        declared = [d for d in self.machine.declarations if d.kind != "timer"]
+        return self.automaton.outline.interfaces[declared.index(declaration)]
+
+    def channel(self, user: Handler | Communicate) -> Channel:
+        channel = self.program.system.channel(self.automaton, self.use(user))
+        assert channel is not None
+        return channel
+
+
+def variables_of(chart: Chart, program: Program) -> dict[str, Type]:
+    """The variables of a chart with their types; of equal ids the first counts."""
+    found: dict[str, Type] = {}
+    for data in chart.data:
+        if data.id is not None:
+            found.setdefault(data.id.value, type_of(data, program))
+    return found
+
+
+def type_of(data: Data, program: Program) -> Type:
+    name = data.type.name if data.type else None
+    return (resolve_type(name, program.environment.struct) if name else None) or UNKNOWN
+
+
+def literal(text: str, type_: Type, span: Span) -> Expr:
+    """A port's text as a value of its type; strings need no quotes (spec/02 §3.4)."""
+    if type_ in (STRING, UNKNOWN):
+        return String(span, text)
+    if is_kind(type_, "bool"):
+        return Boolean(span, text.strip() == "true")
+    tree, _ = parse(Decoded(text, span.start))
+    return as_type(tree, type_)
+
+
+def any_type(automaton: Automaton, program: Program) -> Type:
+    """The type of the ports that take any type, those of `Switch`.
+
+    It is that of the blackboard variables that they are bound to; string if there is none.
+    """
+    board = program.system.blackboard
+    bound = {
+        BASE_TYPES[other.port.type]
+        for port in automaton.outline.ports
+        if isinstance(value := automaton.port(port.key), Reference)
+        for other in board.get(value.variable, ())
+        if other.port.type in BASE_TYPES
+    }
+    return min(bound, key=str, default=STRING)

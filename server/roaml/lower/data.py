@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Variables of HL-SCXML -> plain ones: a struct becomes one variable per leaf member (spec/04 §3.5).
+
+Numbers keep their point here: `1.0` is a real initial value (spec/03 §5.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from roaml.expr.tree import ArrayLiteral, Expr, Number, ObjectLiteral, Unary
+from roaml.expr.types import Array, Struct, Type, is_kind, leaves, unwrap
+from roaml.lower.build import default_value
+from roaml.lower.expressions import SEPARATOR, Path
+from roaml.scxml.model import Data
+from roaml.text import Location
+
+
+def lower_data(identifier: str, type_: Type, value: Expr | None, origin: Location) -> Iterator[Data]:
+    """The plain variables of one variable; without `value` they get their defaults."""
+    given = {} if value is None else dict(_leaf_values(type_, value))
+    for path, leaf in leaves(type_):
+        yield Data(SEPARATOR.join((identifier, *path)), leaf, given.get(path) or default_value(leaf), origin)
+
+
+def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
+    """The initial values of the leaf members; a list of objects is turned into one list per leaf."""
+    match type_, value:
+        case Struct(), ObjectLiteral():
+            for member in value.members:
+                inner = type_.member(member.key)
+                if inner is not None:
+                    yield from (((member.key, *path), leaf) for path, leaf in _leaf_values(inner, member.value))
+        case Array(), ArrayLiteral() if isinstance(unwrap(type_)[0], Struct):
+            elements = [dict(_leaf_values(type_.element, element)) for element in value.elements]
+            for path, leaf in leaves(type_.element):
+                yield path, ArrayLiteral(value.span, tuple(e.get(path) or default_value(leaf) for e in elements))
+        case _:
+            yield (), as_type(value, unwrap(type_)[0])
+
+
+def as_type(value: Expr, element: Type) -> Expr:
+    """Literals of a real type are reals, also those written without a point (spec/07 1.25)."""
+    if not is_kind(element, "real"):
+        return value
+    match value:
+        case Number():
+            return replace(value, is_real=True)
+        case Unary():
+            return replace(value, operand=as_type(value.operand, element))
+        case ArrayLiteral():
+            return replace(value, elements=tuple(as_type(each, element) for each in value.elements))
+    return value

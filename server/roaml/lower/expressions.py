@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Expressions of HL-SCXML -> plain ones (spec/04 §3): event variables renamed, structs flattened, indexes last.
+
+- `a[i].b[j].c` -> `a__b__c[i][j]`, `_msg.pose.x` -> `_event.data.ros_fields__pose__x`, `points.length` ->
+  `points__x.length`.
+- A value that is a struct becomes one value per leaf member.
+- `2.0` becomes `2`, as in the reference (spec/03 §5.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Call,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    ObjectLiteral,
+    Unary,
+)
+from roaml.expr.types import UNKNOWN, Array, Struct, Type, leaves, unwrap, wrap
+from roaml.lower.build import event_data, indexed, integer, length, name
+from roaml.model.globals import FIELD_PREFIX
+from roaml.text import Span
+
+SEPARATOR = "__"
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What names mean at one place.
+
+    Attributes:
+        variables: the machine's own, with their types.
+        event: the event variables (`_msg`, `_event`, ...) with their types.
+        constants: words that stand for a number (`SUCCESS` in the condition of a child's answer).
+    """
+
+    variables: Mapping[str, Type]
+    event: Mapping[str, Type]
+    constants: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """A variable or parameter, or a part of one.
+
+    Attributes:
+        event: it is data of an event.
+        names: the variable and the members on the way.
+        indexes: all of them, lowered, in order.
+        length: its `.length` is meant.
+        type: of the part, `.length` left aside.
+    """
+
+    span: Span
+    event: bool
+    names: Path
+    indexes: tuple[Expr, ...]
+    length: bool
+    type: Type
+
+    def leaf(self, path: Path = ()) -> Expr:
+        """The plain expression of the leaf member at `path`."""
+        identifier = SEPARATOR.join((*self.names, *path))
+        variable = event_data(identifier, self.span) if self.event else name(identifier, self.span)
+        expr = indexed(variable, self.indexes, self.span)
+        return length(expr, self.span) if self.length else expr
+
+
+def lower_expr(expr: Expr, scope: Scope) -> Expr:
+    """The plain form of a value that is no struct."""
+    match expr:
+        case Number():
+            return integer(int(expr.value), expr.span) if expr.is_real and expr.value == int(expr.value) else expr
+        case Name() if expr.name in scope.constants:
+            return integer(scope.constants[expr.name], expr.span)
+        case Name() | Member() | Index():
+            access = access_of(expr, scope)
+            return access.leaf(first_leaf(access.type)) if access is not None else _lower_part(expr, scope)
+        case Binary():
+            left, right = lower_expr(expr.left, scope), lower_expr(expr.right, scope)
+            return Binary(expr.span, expr.operator, expr.operator_span, left, right)
+        case Unary():
+            return Unary(expr.span, expr.operator, lower_expr(expr.operand, scope))
+        case Call():
+            return Call(expr.span, expr.function, tuple(lower_expr(each, scope) for each in expr.arguments))
+        case Conditional():
+            test, then, otherwise = (lower_expr(each, scope) for each in (expr.test, expr.then, expr.otherwise))
+            return Conditional(expr.span, test, then, otherwise)
+        case ArrayLiteral():
+            return ArrayLiteral(expr.span, tuple(lower_expr(each, scope) for each in expr.elements))
+        case ObjectLiteral() | ErrorExpr():
+            raise AssertionError("a rule reports what cannot be lowered")
+        case _:
+            return expr
+
+
+def _lower_part(expr: Name | Member | Index, scope: Scope) -> Expr:
+    """A part of a value that no name stands for: `'abc'.length`."""
+    match expr:
+        case Member():
+            return replace(expr, object=lower_expr(expr.object, scope))
+        case Index():
+            return Index(expr.span, lower_expr(expr.object, scope), lower_expr(expr.index, scope))
+    return expr
+
+
+def lower_leaves(expr: Expr, scope: Scope) -> list[tuple[Path, Expr]]:
+    """A value as one plain value per leaf member of its type; one with an empty path if it is no struct."""
+    if isinstance(expr, Conditional):
+        test = lower_expr(expr.test, scope)
+        parts = zip(lower_leaves(expr.then, scope), lower_leaves(expr.otherwise, scope), strict=False)
+        return [(path, Conditional(expr.span, test, then, otherwise)) for (path, then), (_, otherwise) in parts]
+    access = access_of(expr, scope)
+    if access is not None and not access.length:
+        return [(path, access.leaf(path)) for path, _ in leaves(access.type)]
+    return [((), lower_expr(expr, scope))]
+
+
+def first_leaf(type_: Type) -> Path:
+    """The path of the first leaf member of a struct; empty for everything else."""
+    return next((path for path, _ in leaves(type_)), ())
+
+
+def access_of(expr: Expr, scope: Scope) -> Access | None:
+    """What `expr` reads or writes, if it is a chain of members and indexes that begins with a name."""
+    steps: list[Member | Index] = []
+    root = expr
+    while isinstance(root, (Member, Index)):
+        steps.append(root)
+        root = root.object
+    if not isinstance(root, Name):
+        return None
+    steps.reverse()
+    is_event = root.name in scope.event or root.name == "_event"
+    type_ = (scope.event if is_event else scope.variables).get(root.name, UNKNOWN)
+    names: list[str] = []
+    indexes: list[Expr] = []
+    ends_with_length = False
+    for step in steps:
+        if isinstance(step, Index):
+            indexes.append(lower_expr(step.index, scope))
+            type_ = type_.element if isinstance(type_, Array) else UNKNOWN
+        elif step is steps[-1] and step.name == "length" and _member(type_, "length") is None:
+            ends_with_length = True
+        else:
+            names.append(step.name)
+            type_ = _member(type_, step.name) or UNKNOWN
+    path = _event_parameter(root.name, names) if is_event else (root.name, *names)
+    return Access(expr.span, is_event, path, tuple(indexes), ends_with_length, type_)
+
+
+def _member(type_: Type, member: str) -> Type | None:
+    """A member of a struct, or of the structs in an array."""
+    inner, bounds = unwrap(type_)
+    found = inner.member(member) if isinstance(inner, Struct) else None
+    return None if found is None else wrap(found, bounds)
+
+
+def _event_parameter(variable: str, names: list[str]) -> Path:
+    """The parameter that an event variable means (spec/01 §12.1)."""
+    match variable:
+        case "_event":
+            return tuple(names[1:])
+        case "_action" | "_bt":
+            return tuple(names)
+        case "_wrapped_result" if names[:1] == ["code"]:
+            return tuple(names)
+        case "_wrapped_result":
+            names = names[1:]
+    first, *rest = names or [""]
+    return (FIELD_PREFIX + first, *rest)

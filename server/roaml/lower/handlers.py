@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the handlers of services and actions have in common: they pass fields on by way of variables of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Set
+
+from roaml.expr.types import Type
+from roaml.lower.build import event_data, name
+from roaml.lower.data import lower_data
+from roaml.lower.program import Program
+from roaml.model.system import Channel, Endpoint
+from roaml.scxml.model import Assign, Body, Data, Param, Statement, Target, Transition
+from roaml.text import Location
+
+
+def copied(fields: Iterable[str], sent: Set[str], origin: Location) -> Body:
+    """Stores the fields of the event, as far as its sender sends them."""
+    return tuple(Assign(name(field), event_data(field), origin) for field in fields if field in sent)
+
+
+def stored(fields: Iterable[str], origin: Location) -> tuple[Param, ...]:
+    """The stored fields as parameters."""
+    return tuple(Param(field, name(field), origin) for field in fields)
+
+
+def variables(fields: dict[str, Type], origin: Location) -> tuple[Data, ...]:
+    return tuple(data for field, type_ in fields.items() for data in lower_data(field, type_, None, origin))
+
+
+def on(event: str, target: str, body: Iterable[Statement], origin: Location) -> Transition:
+    return Transition(event, None, (Target(target, 1.0, tuple(body), origin),), origin)
+
+
+def declared_at(endpoint: Endpoint, program: Program) -> Location:
+    """Where a client or server is declared."""
+    machine = program.machines.get(endpoint.automaton.path)
+    for declaration in machine.declarations if machine else ():
+        if (
+            declaration.kind == endpoint.use.kind
+            and declaration.handle
+            and declaration.handle.value == endpoint.use.handle
+        ):
+            return Location(endpoint.automaton.path, declaration.element.span)
+    return program.place_of(endpoint.automaton)
+
+
+def handler_place(channel: Channel, program: Program) -> Location:
+    """A handler exists for the server; without one (which is reported) for the first client."""
+    return declared_at(channel.endpoints[0], program)

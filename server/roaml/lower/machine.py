@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A machine in its place in the system -> plain automata: its own, then one per copy of its action threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from decimal import Decimal, InvalidOperation
+
+from roaml.expr.tree import Expr
+from roaml.expr.types import Type
+from roaml.lower.build import both, equal, event_data, integer, name
+from roaml.lower.context import Context, type_of, variables_of
+from roaml.lower.data import lower_data
+from roaml.lower.expressions import Scope, lower_expr
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
+from roaml.lower.nodes import builtin_ports
+from roaml.lower.program import Program
+from roaml.lower.statements import StatementLowering, literal_index
+from roaml.model import machine as hl
+from roaml.model.expand import Constant
+from roaml.model.machine import Chart, Handler, Machine, statements
+from roaml.model.syntax import Expression, PortRead, Value
+from roaml.model.system import Automaton, sanitise
+from roaml.model.typing import STATUSES
+from roaml.scxml.model import Automaton as PlainAutomaton
+from roaml.scxml.model import Data, Role, Send, State, Target, Transition
+
+BLACKBOARD_REQUEST = "bt_blackboard_req"
+BLACKBOARD_ANSWER = "bt_blackboard_get"
+
+TimerEvents = Mapping[tuple[str, str], str]
+"""(name of a plain automaton, timer handle) -> the event of its ticks."""
+
+
+def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart, int | None]]:
+    """The plain automata that a machine becomes: their names, their charts and the number of the thread."""
+    yield automaton.name, machine.chart, None
+    for thread in machine.threads:
+        server = next(
+            (
+                use
+                for use in automaton.outline.interfaces
+                if thread.server and use.kind == "action-server" and use.handle == thread.server.value
+            ),
+            None,
+        )
+        action = automaton.interface_name(server) if server else None
+        if action is None:
+            raise AssertionError("a rule reports a thread of no action")
+        for k in range(thread.count or 0):
+            yield f"{sanitise(action)}_thread_{k}", thread.chart, k
+
+
+def lower_machine(
+    automaton: Automaton, machine: Machine, program: Program, timers: TimerEvents
+) -> Iterator[PlainAutomaton]:
+    ports = {} if automaton.path else builtin_ports(automaton, program)
+    for plain_name, chart, thread in copies(automaton, machine):
+        events = {timer: event for (user, timer), event in timers.items() if user == plain_name}
+        variables = variables_of(chart, program)
+        yield _ChartLowering(
+            Context(program, automaton, machine, chart, plain_name, thread, events, ports, variables)
+        ).automaton()
+
+
+class _ChartLowering:
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.statements = StatementLowering(context)
+        self.state_ids = {state.id.value for state in context.chart.states if state.id}
+
+    def automaton(self) -> PlainAutomaton:
+        context, chart = self.context, self.context.chart
+        assert chart.initial is not None
+        states = tuple(plain for state in chart.states for plain in self.state(state))
+        data = (*self.data(), *self.statements.drawn)
+        origin = context.origin(chart.element.name_span)
+        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin)
+
+    # -------------------------------------------------------------------- data
+
+    def data(self) -> Iterator[Data]:
+        seen: set[str] = set()
+        for data in self.context.chart.data:
+            assert data.id is not None
+            if data.id.value not in seen:
+                seen.add(data.id.value)
+                type_ = type_of(data, self.context.program)
+                origin = self.context.origin(data.element.span)
+                yield from lower_data(data.id.value, type_, self.initial(data.value, type_), origin)
+
+    def initial(self, value: Value | None, type_: Type) -> Expr | None:
+        match value:
+            case Expression():
+                return value.tree
+            case PortRead():
+                held = self.context.port(value)
+                assert isinstance(held, Constant)
+                return self.context.constant(value, held)
+        return None
+
+    # ------------------------------------------------------------------ states
+
+    def state(self, state: hl.State) -> Iterator[State]:
+        """The state, and a further one after each handler that reads the blackboard."""
+        assert state.id is not None
+        scope = self.context.scope()
+        entry = self.statements.body(state.entry.statements, scope) if state.entry else ()
+        leave = self.statements.body(state.exit.statements, scope) if state.exit else ()
+        transitions: list[Transition] = []
+        split: list[State] = []
+        for handler in state.handlers:
+            if not handler.effective:
+                continue
+            if self.reads_blackboard(handler):
+                waiting = self.waiting_state(state.id.value, handler, len(split) + 1)
+                split.append(waiting)
+                transitions += self.asking(handler, waiting.id)
+            else:
+                transitions += self.transitions(handler)
+        yield State(state.id.value, entry, leave, tuple(transitions), self.context.origin(state.element.span))
+        yield from split
+
+    # -------------------------------------------------------------- blackboard
+
+    def reads_blackboard(self, handler: Handler) -> bool:
+        return any(
+            self.context.is_reference(value)
+            for target in handler.targets
+            for statement in statements(target.body)
+            for value in values_in(statement)
+        )
+
+    def waiting_state(self, state: str, handler: Handler, number: int) -> State:
+        """Where the machine waits for the blackboard's answer, and does then what the handler says (spec/04 §8.4)."""
+        origin = self.context.origin(handler.element.span)
+        target = handler.targets[0]
+        scope = Scope(self.context.variables, {}, {})
+        identifier = f"{state}_{handler.element.name}_{number}"
+        while identifier in self.state_ids:
+            identifier += "_"
+        self.state_ids.add(identifier)
+        assert target.state is not None
+        body = self.statements.body(target.body, scope)
+        answered = Transition(BLACKBOARD_ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
+        return State(identifier, (), (), (answered,), origin)
+
+    def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
+        """The first half of such a handler: its trigger and condition, and the question to the blackboard."""
+        origin = self.context.origin(handler.element.span)
+        ask = (Send(BLACKBOARD_REQUEST, (), origin),)
+        for event, cond in self.triggers(handler):
+            yield Transition(event, cond, (Target(waiting, 1.0, ask, origin),), origin)
+
+    # ------------------------------------------------------------- transitions
+
+    def transitions(self, handler: Handler) -> Iterator[Transition]:
+        origin = self.context.origin(handler.element.span)
+        if handler.trigger == "goal-response":
+            yield from self.goal_response(handler)
+            return
+        for event, cond in self.triggers(handler):
+            yield Transition(event, cond, self.targets(handler), origin)
+
+    def goal_response(self, handler: Handler) -> Iterator[Transition]:
+        origin = self.context.origin(handler.element.span)
+        events = ActionEvents(self.context.channel(handler).name)
+        answers = (events.accept_for(self.context.automaton), events.reject_for(self.context.automaton))
+        for event, target in zip(answers, handler.targets, strict=True):
+            assert target.state is not None
+            yield Transition(event, None, (Target(target.state.value, 1.0, (), origin),), origin)
+
+    def targets(self, handler: Handler) -> tuple[Target, ...]:
+        scope = self.context.scope(handler)
+        found = []
+        for target, probability in zip(handler.targets, probabilities(handler), strict=True):
+            assert target.state is not None
+            origin = self.context.origin((target.element or handler.element).span)
+            found.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
+        return tuple(found)
+
+    def triggers(self, handler: Handler) -> Iterator[tuple[str, Expr | None]]:
+        """The events that the handler waits for, each with its condition; mostly one."""
+        cond = self.condition(handler)
+        match handler.trigger:
+            case "child-status" | "child-halted":
+                yield from self.child_triggers(handler, cond)
+            case "thread-start":
+                assert self.context.thread is not None
+                yield self.event(handler), equal(event_data("thread_id"), integer(self.context.thread))
+            case "result" if handler.type.code:
+                yield self.event(handler), both(cond, equal(event_data("code"), integer(handler.type.code)))
+            case _:
+                yield self.event(handler), cond
+
+    def condition(self, handler: Handler) -> Expr | None:
+        if handler.cond is None:
+            return None
+        scope = self.context.scope(handler, "cond")
+        if handler.trigger in ("child-status", "child-halted"):
+            scope = replace(scope, constants=STATUSES)
+        return lower_expr(handler.cond.tree, scope)
+
+    def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[str, Expr | None]]:
+        assert handler.child is not None
+        answer = "response" if handler.trigger == "child-status" else "halt_response"
+        children = self.statements.children
+        if (index := literal_index(handler.child)) is not None:
+            yield f"bt_{children[index]}_{answer}", cond
+            return
+        variable = name(handler.child.value, handler.child.span)
+        for i, child in enumerate(children):
+            yield f"bt_{child}_{answer}", both(cond, equal(variable, integer(i)))
+
+    def event(self, handler: Handler) -> str:
+        automaton, trigger = self.context.automaton, handler.trigger
+        match trigger:
+            case "":
+                return ""
+            case "event":
+                assert handler.event is not None
+                return handler.event.value
+            case "tick":
+                assert handler.handle is not None
+                return self.context.timers[handler.handle.value]
+            case "bt-tick" | "bt-halt":
+                return f"bt_{self.statements.number}_{trigger.removeprefix('bt-')}"
+        channel = self.context.channel(handler)
+        service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
+        match trigger:
+            case "message":
+                return topic_event(channel.name)
+            case "request":
+                return service.request
+            case "response":
+                return service.response_to(automaton)
+            case "goal":
+                return action.goal
+            case "feedback":
+                return action.feedback_for(automaton)
+            case "result":
+                return action.result_for(automaton)
+            case "thread-start":
+                return action.thread_start
+            case "thread-free":
+                return action.thread_free
+        raise AssertionError(f"unknown trigger {trigger}")
+
+
+def values_in(statement: hl.Statement) -> Iterator[Value | None]:
+    """The values of a statement that may come from a port."""
+    match statement:
+        case hl.Assign():
+            yield statement.value
+        case hl.Send():
+            yield from (param.value for param in statement.params)
+        case hl.Communicate():
+            yield from (param.value for param in statement.fields)
+
+
+def probabilities(handler: Handler) -> list[float]:
+    """The probabilities of the targets, made to add up to 1: the last one may be left out (spec/01 §5.2)."""
+    given = [_decimal(target.probability.value) if target.probability else None for target in handler.targets]
+    rest = 1 - sum((p for p in given if p is not None), Decimal(0))
+    known = [rest if p is None else p for p in given]
+    total = sum(known, Decimal(0))
+    return [float(p if total == 1 else p / total) for p in known]
+
+
+def _decimal(text: str) -> Decimal:
+    try:
+        return Decimal(text)
+    except InvalidOperation:
+        raise AssertionError("a rule reports what is no probability") from None

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes of BehaviorTree.CPP as HL-SCXML machines (spec/02 §5, §7.2).
+
+Each is a document beside this module; `Switch`, whose size varies, is written on demand. Besides the ports that the
+schema describes they have some that are filled in here.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.resources
+from fractions import Fraction
+
+from roaml.language import BEHAVIOR_TREE
+from roaml.lower.context import any_type
+from roaml.lower.nodes.switch import switch
+from roaml.lower.program import Program
+from roaml.model.build_machine import build_machine
+from roaml.model.machine import Machine
+from roaml.model.system import CHILDREN_COUNT, Automaton
+from roaml.xml import parse
+
+_ALIASES = {"SequenceStar": "SequenceWithMemory"}
+_SWITCHES = {f"Switch{cases}": cases for cases in range(2, 7)}
+_MILLISECONDS_PER_SECOND = 1000
+
+
+def builtin_machine(automaton: Automaton, program: Program) -> Machine:
+    """The machine that a node of BehaviorTree.CPP is translated as."""
+    name = automaton.outline.name
+    if name in _SWITCHES:
+        return _parsed(switch(name, _SWITCHES[name], str(any_type(automaton, program))))
+    slots = str(_children(automaton) + 1)
+    return _parsed(_resource(_ALIASES.get(name, name)).replace("SLOTS", slots))
+
+
+def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:
+    """The ports of such a node that nobody sets: defaults of the schema, number of children, rate of the tree."""
+    rate = Fraction(str(program.parameters.tick_rate))
+    found = {
+        CHILDREN_COUNT: str(_children(automaton)),
+        "TICKS": str(rate.numerator),
+        "TICKS_MSEC": str(rate.denominator * _MILLISECONDS_PER_SECOND),
+    }
+    for attribute in BEHAVIOR_TREE.elements[automaton.outline.name].ports:
+        if attribute.port and attribute.port.default:
+            found[attribute.name] = attribute.port.default
+    return found
+
+
+def _children(automaton: Automaton) -> int:
+    return len(automaton.instance.children) if automaton.instance else 0
+
+
+@functools.cache
+def _resource(name: str) -> str:
+    return (importlib.resources.files(__name__) / f"{name}.ascxml").read_text(encoding="utf-8")
+
+
+@functools.lru_cache(maxsize=256)
+def _parsed(text: str) -> Machine:
+    machine = build_machine(parse(text))
+    assert machine is not None
+    return machine

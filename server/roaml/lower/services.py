@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The handler between the clients and the server of a ROS service: one request at a time (spec/04 §5)."""
+
+from __future__ import annotations
+
+from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
+from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
+from roaml.lower.program import Program
+from roaml.model.system import Channel, safe_name, sanitise
+from roaml.scxml.model import Automaton, Role, Send, State
+
+
+def service_handler(service: Channel, program: Program) -> Automaton:
+    events = ServiceEvents(service.name)
+    request, response = (fields(service, part, program.environment) for part in ("request", "response"))
+    answered = set[str]().union(*(sent_parameters(server, "response") for server in service.sources))
+    origin = handler_place(service, program)
+    waiting, processing = [], []
+    for client in service.users:
+        place = declared_at(client, program)
+        busy = f"processing_client_{safe_name(client.automaton.name)}"
+        asked = copied(request, sent_parameters(client, "request"), place)
+        passed_on = Send(events.request, stored(request, place), place)
+        waiting.append(on(events.request_of(client.automaton), busy, (*asked, passed_on), place))
+        given = copied(response, answered, place)
+        passed_back = Send(events.response_to(client.automaton), stored(response, place), place)
+        back = on(events.response, "waiting", (*given, passed_back), place)
+        processing.append(State(busy, (), (), (back,), place))
+    states = (State("waiting", (), (), tuple(waiting), origin), *processing)
+    data = variables({**request, **response}, origin)
+    return Automaton(f"srv_handler_{sanitise(service.name)}", Role.HANDLER, "waiting", data, states, origin)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A whole system -> a network of plain automata, in processing order (spec/02 §2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.lower.actions import action_handler
+from roaml.lower.blackboard import blackboard
+from roaml.lower.machine import TimerEvents, lower_machine
+from roaml.lower.nodes import builtin_machine
+from roaml.lower.program import Program
+from roaml.lower.services import service_handler
+from roaml.lower.timers import clock, timers_of
+from roaml.lower.tree import tick_timer, tree_root
+from roaml.model.machine import Machine
+from roaml.model.system import Automaton
+from roaml.scxml.model import Automaton as PlainAutomaton
+from roaml.scxml.model import Network
+
+
+def lower(program: Program) -> Network:
+    """The plain automata of a system without errors."""
+    members = [(automaton, _machine(automaton, program)) for automaton in program.system.automata]
+    timers = timers_of(program, members)
+    events = {(timer.user, timer.handle): timer.event for timer in timers if timer.event is not None}
+    automata = list(_automata(program, members, events))
+    if timers:
+        automata.append(clock(timers, program))
+    return Network(tuple(automata), program.parameters.max_array_size)
+
+
+def _machine(automaton: Automaton, program: Program) -> Machine:
+    if automaton.path:
+        return program.machines[automaton.path]
+    return builtin_machine(automaton, program)
+
+
+def _automata(
+    program: Program, members: Iterable[tuple[Automaton, Machine]], timers: TimerEvents
+) -> Iterator[PlainAutomaton]:
+    system = program.system
+    for automaton, machine in members:
+        if automaton.instance is None:
+            yield from lower_machine(automaton, machine, program, timers)
+    if system.instances:
+        yield tree_root(program, timers[tick_timer(program)])
+    for automaton, machine in members:
+        if automaton.instance is not None:
+            yield from lower_machine(automaton, machine, program, timers)
+    if (board := blackboard(program)) is not None:
+        yield board
+    for service in system.services.values():
+        yield service_handler(service, program)
+    for action in system.actions.values():
+        yield action_handler(action, program)

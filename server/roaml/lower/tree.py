@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The root of the behavior tree: ticks the topmost node at the tree's rate (spec/02 §4)."""
+
+from __future__ import annotations
+
+from roaml.expr.tree import Expr
+from roaml.lower.build import equal, event_data, integer
+from roaml.lower.program import Program
+from roaml.model.expand import ROOT_NUMBER
+from roaml.model.typing import STATUSES
+from roaml.scxml.model import Automaton, Role, Send, State, Target, Transition
+
+ANSWER = f"bt_{ROOT_NUMBER}_response"
+
+
+def _stem(program: Program) -> str:
+    """The name of the tree file without its extension."""
+    return program.system.tree_paths[0].replace("\\", "/").rpartition("/")[2].removesuffix(".xml")
+
+
+def tick_timer(program: Program) -> tuple[str, str]:
+    """The automaton that ticks the tree, and the timer that makes it do so."""
+    return f"bt_root_fsm_{_stem(program)}", f"{_stem(program)}_tick"
+
+
+def tree_root(program: Program, tick: str) -> Automaton:
+    """`tick` is the event of the tree's timer."""
+    origin = program.node(ROOT_NUMBER)
+
+    def on(event: str, target: str, cond: Expr | None = None, *body: Send) -> Transition:
+        return Transition(event, cond, (Target(target, 1.0, body, origin),), origin)
+
+    idle = (
+        on(tick, "wait_tick_res", None, Send(f"bt_{ROOT_NUMBER}_tick", (), origin)),
+        on(ANSWER, "error"),
+    )
+    if program.parameters.tick_if_not_running:
+        waiting: tuple[Transition, ...] = (on(ANSWER, "idle"),)
+    else:
+        running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
+        waiting = (on(ANSWER, "idle", running), on(ANSWER, "done"))
+    transitions = {"idle": idle, "wait_tick_res": waiting, "done": (), "error": ()}
+    states = tuple(State(name, (), (), known, origin) for name, known in transitions.items())
+    return Automaton(tick_timer(program)[0], Role.TREE_ROOT, "idle", (), states, origin)

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which of the languages that look alike a machine is written in (spec/08)."""
+
+from __future__ import annotations
+
+from roaml.model.machine import Dialect, Machine
+from roaml.xml import Document
+
+_FOREIGN_ATTRIBUTES = ("targetexpr", "eventexpr")
+
+
+def dialect_of(machine: Machine, document: Document, in_older_system: bool | None) -> Dialect:
+    """For a machine that a system lists the system decides (`in_older_system`); alone, its own root and content do."""
+    if in_older_system is not None:
+        return Dialect.OLDER if in_older_system else Dialect.CURRENT
+    if machine.root == "ascxml":
+        return Dialect.CURRENT
+    if any(element.name.startswith(("ros_", "bt_")) for element in machine.element.walk()):
+        return Dialect.OLDER
+    if _is_foreign(machine, document):
+        return Dialect.FOREIGN
+    return Dialect.PLAIN
+
+
+def _is_foreign(machine: Machine, document: Document) -> bool:
+    if "_event.origin" in document.text:
+        return True
+    return any(element.get(name) for element in machine.element.walk() for name in _FOREIGN_ATTRIBUTES)

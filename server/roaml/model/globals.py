@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The global variables that the translation of a system will have: what properties may refer to (spec/05 §2, §3.2).
+
+Every event that is sent gives `EVENT.valid` and one variable per parameter, arrays also their lengths. The translation
+itself does not read this table; a test holds the two against each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is_kind, leaves, unwrap, wrap
+from roaml.model.outline import InterfaceUse, SentField
+from roaml.model.ros import InterfaceType
+from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.typing import INTERFACE_KINDS
+
+FIELD_PREFIX = "ros_fields__"
+
+FindInterface = Callable[[str, str], InterfaceType | None]
+"""(kind, name as written) -> the ROS type."""
+
+
+@dataclass(frozen=True, slots=True)
+class GlobalVariable:
+    """A variable of the translated system.
+
+    `event` and `parameter` tell what it carries ("valid" for the flag); `source` is what in the models it comes from.
+    """
+
+    name: str
+    type: Type
+    event: str
+    parameter: str
+    source: Symbol | None
+
+
+def global_variables(system: System, interface: FindInterface) -> dict[str, GlobalVariable]:
+    """All of them by name."""
+    table: dict[str, GlobalVariable] = {}
+    for event, source, params in _events(system, interface):
+        table.setdefault(f"{event}.valid", GlobalVariable(f"{event}.valid", BOOL, event, "valid", source))
+        for name, type_ in params:
+            for variable, leaf in _flatten(f"{event}__{name}", type_):
+                table.setdefault(variable, GlobalVariable(variable, leaf, event, name, source))
+    return table
+
+
+def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
+    """The variables of a parameter: its leaves, and the lengths of arrays (spec/01 §3.3, spec/05 §3)."""
+    for path, leaf in leaves(type_):
+        full = "__".join((name, *path))
+        inner, bounds = unwrap(leaf)
+        if isinstance(inner, EmptyArray):
+            inner, bounds = INT, (*bounds, None)
+        if is_kind(inner, "string"):
+            inner, bounds = INT, (*bounds, None)
+        yield full, wrap(inner, bounds)
+        for dimension in range(len(bounds)):
+            yield f"{full}.d{dimension + 1}_len", wrap(INT, bounds[:dimension])
+
+
+_Params = Iterable[tuple[str, Type]]
+_Event = tuple[str, Symbol | None, _Params]
+
+
+def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
+    for event in system.events.values():
+        for automaton, sent in event.senders:
+            symbol = Symbol(automaton.path, "event", event.name)
+            yield event.name, symbol, [(p.name.replace(".", "__"), p.type) for p in sent.params]
+    for topic in system.topics.values():
+        for endpoint in topic.sources:
+            if "message" in endpoint.use.sends:
+                yield f"topic_{topic.name}_msg", endpoint.symbol, _sent(endpoint.use, "message")
+    if system.has_timer:
+        clock = ((f"{FIELD_PREFIX}sec", INT), (f"{FIELD_PREFIX}nanosec", INT))
+        yield "topic_clock_msg", None, clock
+    for service in system.services.values():
+        yield from _service(service, interface)
+    for action in system.actions.values():
+        yield from _action(action, interface)
+    yield from _tree(system)
+    yield from _blackboard(system)
+
+
+def _sent(use: InterfaceUse, part: str) -> list[tuple[str, Type]]:
+    """The fields of a part as parameters, with the types that they are sent with."""
+    return [_field(field) for field in dict(use.fields).get(part, ())]
+
+
+def _field(field: SentField) -> tuple[str, Type]:
+    return FIELD_PREFIX + field.name.replace(".", "__"), field.type
+
+
+def _declared(use: InterfaceUse, part: str, interface: FindInterface) -> list[tuple[str, Type]]:
+    """The fields of a part as parameters, with the types of the ROS definition."""
+    found = interface(INTERFACE_KINDS[use.kind], use.type)
+    if found is None:
+        return []
+    required = set(found.required(part))
+    struct: Struct = found.part(part)
+    return [(FIELD_PREFIX + "__".join(path), type_) for path, type_ in leaves(struct) if ".".join(path) in required]
+
+
+def _service(service: Channel, interface: FindInterface) -> Iterator[_Event]:
+    name = f"srv_{sanitise(service.name)}"
+    for client in service.users:
+        who = safe_name(client.automaton.name)
+        request, response = (_declared(client.use, part, interface) for part in ("request", "response"))
+        if "request" in client.use.sends:
+            yield f"{name}_req_client_{who}", client.symbol, _sent(client.use, "request")
+        yield f"{name}_request", client.symbol, request
+        yield f"{name}_response_client_{who}", client.symbol, response
+    for server in service.sources:
+        if "response" in server.use.sends:
+            yield f"{name}_response", server.symbol, _sent(server.use, "response")
+
+
+_GOAL_ID = ("goal_id", BASE_TYPES["int32"])
+_CODE = ("code", BASE_TYPES["int32"])
+_THREAD_ID = ("thread_id", BASE_TYPES["int32"])
+
+
+def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
+    name = f"action_{sanitise(action.name)}"
+    for client in action.users:
+        yield from _action_client(name, client, interface)
+    for server in action.sources:
+        sent: dict[str, list[tuple[str, Type]]] = {
+            "goal-accepted": [_GOAL_ID],
+            "goal-rejected": [_GOAL_ID],
+            "feedback": [*_sent(server.use, "feedback"), _GOAL_ID],
+            "result": [*_sent(server.use, "result"), _GOAL_ID, _CODE],
+            "thread-start": [*_sent(server.use, "thread-start"), _GOAL_ID, _THREAD_ID],
+            "thread-free": [_THREAD_ID],
+        }
+        for part in server.use.sends:
+            if part in sent:
+                yield f"{name}_{part.replace('-', '_')}", server.symbol, sent[part]
+
+
+def _action_client(name: str, client: Endpoint, interface: FindInterface) -> Iterator[_Event]:
+    who, symbol = safe_name(client.automaton.name), client.symbol
+    goal, feedback, result = (_declared(client.use, part, interface) for part in ("goal", "feedback", "result"))
+    if "goal" in client.use.sends:
+        yield f"{name}_goal_req_client_{who}", symbol, _sent(client.use, "goal")
+    yield f"{name}_goal_handle", symbol, [_GOAL_ID, *goal]
+    yield f"{name}_goal_accept_client_{who}", symbol, []
+    yield f"{name}_goal_reject_client_{who}", symbol, []
+    yield f"{name}_feedback_handle_client_{who}", symbol, feedback
+    yield f"{name}_result_handle_client_{who}", symbol, [_CODE, *result]
+
+
+def _tree(system: System) -> Iterator[_Event]:
+    for automaton in system.automata:
+        instance = automaton.instance
+        if instance is None:
+            continue
+        node = f"bt_{instance.number}"
+        symbol = Symbol(automaton.path, "machine", automaton.outline.name) if automaton.path else None
+        parent = None if instance.parent is None else system.by_instance.get(instance.parent)
+        plugin = automaton.outline.plugin
+        if parent is None or _calls(parent, instance.number):
+            yield f"{node}_tick", symbol, []
+        if parent is not None and parent.outline.plugin.halts_children and _calls(parent, instance.number):
+            yield f"{node}_halt", symbol, []
+        if plugin.answers_tick:
+            yield f"{node}_response", symbol, [("status", INT)]
+        if plugin.answers_halt:
+            yield f"{node}_halt_response", symbol, []
+
+
+def _calls(parent: Automaton, number: int) -> bool:
+    """Whether a parent ever calls its child `number`."""
+    assert parent.instance is not None
+    plugin = parent.outline.plugin
+    return plugin.any_child or parent.instance.children.index(number) < plugin.children
+
+
+def _blackboard(system: System) -> Iterator[_Event]:
+    variables: Mapping[str, Type] = {
+        name: BASE_TYPES.get(ports[0].port.type, INT) for name, ports in system.blackboard.items()
+    }
+    for name, ports in system.blackboard.items():
+        if any(bound.port.written for bound in ports):
+            yield f"bt_blackboard_set_{name}", None, [("value", variables[name])]
+    if any(bound.port.read for ports in system.blackboard.values() for bound in ports):
+        yield "bt_blackboard_req", None, []
+        yield "bt_blackboard_get", None, variables.items()

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Initial values against declared types (spec/01 §2.2, §3.4): constants, array and object literals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr import infer
+from roaml.expr.tree import ArrayLiteral, Expr, ObjectLiteral
+from roaml.expr.types import Array, Struct, Type, Unknown, fits
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class MissingMembers:
+    """An object literal leaves members out."""
+
+    span: Span
+    struct: Struct
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraMember:
+    """An object literal has a member that the struct has not, or has twice."""
+
+    span: Span
+    struct: Struct
+    name: str
+    twice: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WrongType:
+    span: Span
+    given: Type
+    wanted: Type
+
+
+@dataclass(frozen=True, slots=True)
+class TooLong:
+    """More elements than the array holds."""
+
+    span: Span
+    length: int
+    array: Array
+
+
+InitialProblem: TypeAlias = MissingMembers | ExtraMember | WrongType | TooLong | infer.Problem
+
+
+def check_initial(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
+    """What keeps `expr` from being an initial value of type `wanted`. Names are no constants."""
+    problems: list[InitialProblem] = []
+    _check(expr, wanted, problems)
+    return tuple(problems)
+
+
+def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
+    match expr, wanted:
+        case ObjectLiteral(), Struct():
+            _check_object(expr, wanted, problems)
+        case ArrayLiteral(), Array():
+            if wanted.bound is not None and len(expr.elements) > wanted.bound:
+                problems.append(TooLong(expr.span, len(expr.elements), wanted))
+            for element in expr.elements:
+                _check(element, wanted.element, problems)
+        case ObjectLiteral(), Unknown():
+            pass
+        case ObjectLiteral(), _:
+            problems.append(WrongType(expr.span, Struct("object", ()), wanted))
+        case _:
+            type_, found = infer.infer(expr, lambda _: None)
+            problems.extend(found)
+            if not fits(type_, wanted):
+                problems.append(WrongType(expr.span, type_, wanted))
+
+
+def _check_object(expr: ObjectLiteral, wanted: Struct, problems: list[InitialProblem]) -> None:
+    given: set[str] = set()
+    for member in expr.members:
+        type_ = wanted.member(member.key)
+        if type_ is None or member.key in given:
+            problems.append(ExtraMember(member.key_span, wanted, member.key, member.key in given))
+        else:
+            _check(member.value, type_, problems)
+        given.add(member.key)
+    missing = tuple(name for name, _ in wanted.members if name not in given)
+    if missing:
+        problems.append(MissingMembers(expr.span, wanted, missing))

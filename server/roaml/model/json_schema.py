@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Struct declarations given as a JSON Schema (spec/01 §3.2).
+
+The root object is a struct named by its `title`; an inline object is one named after its property; a `$ref` names a
+definition, of which only those that the root reaches exist. What the language has no type for is a finding.
+"""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Finding
+from roaml.expr.types import TypeName
+from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.model.structs import MemberDeclaration, StructDeclaration
+from roaml.model.syntax import Name, TypeRef
+
+CODE = "json-schema"
+
+_BASE = {"boolean": "bool", "integer": "int32", "number": "float32", "string": "string"}
+_MAX_DEPTH = 50
+_DEFINITIONS = ("$defs", "definitions")
+
+
+def structs_in_json(value: JsonValue) -> tuple[tuple[StructDeclaration, ...], tuple[Finding, ...]]:
+    """The structs of a schema, and what of it cannot be a struct."""
+    reader = _Reader(value)
+    reader.root()
+    return tuple(reader.structs), tuple(reader.findings)
+
+
+class _Reader:
+    def __init__(self, value: JsonValue) -> None:
+        self.value = value
+        self.structs: list[StructDeclaration] = []
+        self.findings: list[Finding] = []
+        self.done: set[str] = set()
+        self.depth = 0
+
+    def root(self) -> None:
+        schema = self.value
+        if not isinstance(schema, JsonObject):
+            self.report(schema, "struct declarations in JSON are a JSON Schema: an object")
+            return
+        if _text(schema.get("type")) != "object":
+            self.report(schema.get("type") or schema, 'the schema of a struct has `"type": "object"`')
+        title = schema.get("title")
+        if not isinstance(title, JsonString) or not title.value:
+            self.report(title or schema, 'the schema has no `"title"`: it is the name of the struct')
+            return
+        self.object(schema, Name(title.value, title.content_span))
+
+    def object(self, schema: JsonObject, name: Name) -> None:
+        """Declare the struct that an object schema describes."""
+        if name.value in self.done:
+            return
+        self.done.add(name.value)
+        if self.depth >= _MAX_DEPTH:
+            self.report(schema, f"structs are nested more than {_MAX_DEPTH} deep")
+            return
+        self.depth += 1
+        properties = schema.get("properties")
+        if not isinstance(properties, JsonObject) or not properties.members:
+            self.report(properties or schema, f"the struct `{name.value}` has no properties")
+            return
+        # Its place in the list is before the structs that it contains, as a reader meets them.
+        index = len(self.structs)
+        self.structs.append(StructDeclaration(name, (), schema.span))
+        members = tuple(self.member(member) for member in properties.members)
+        self.structs[index] = StructDeclaration(name, members, schema.span)
+        self.depth -= 1
+
+    def member(self, member: Member) -> MemberDeclaration:
+        name = Name(member.key, member.key_span)
+        type_ = self.type(member.value, name) if member.value is not None else None
+        text = "" if type_ is None else type_.base + "[]" * len(type_.dimensions)
+        ref = None if member.value is None or type_ is None else TypeRef(text, member.value.span, type_)
+        return MemberDeclaration(name, ref, member.span)
+
+    def type(self, schema: JsonValue, name: Name) -> TypeName | None:
+        dimensions: tuple[None, ...] = ()
+        while isinstance(schema, JsonObject) and _text(schema.get("type")) == "array":
+            items = schema.get("items")
+            if items is None:
+                self.report(schema, f"the array `{name.value}` has no `items`: its elements have no type")
+                return None
+            schema, dimensions = items, (*dimensions, None)
+        if not isinstance(schema, JsonObject):
+            self.report(schema, f"the schema of `{name.value}` is not an object")
+            return None
+        base = self.reference(schema) if schema.get("$ref") else self.base(schema, name)
+        return TypeName(base, dimensions) if base else None
+
+    def base(self, schema: JsonObject, name: Name) -> str:
+        kind = schema.get("type")
+        text = _text(kind)
+        if text == "object":
+            self.object(schema, name)
+            return name.value
+        if text in _BASE:
+            return _BASE[text]
+        if isinstance(kind, JsonArray):
+            self.report(kind, f"`{name.value}` may have several types; a member has one")
+        elif kind is None:
+            self.report(schema, f"`{name.value}` has no `type`; there are {', '.join(_BASE)}, array and object")
+        else:
+            self.report(
+                kind, f"the type of `{name.value}` is not supported; there are {', '.join(_BASE)}, array, object"
+            )
+        return ""
+
+    def reference(self, schema: JsonObject) -> str:
+        target = schema.get("$ref")
+        path = _text(target).split("/")
+        if not isinstance(target, JsonString) or len(path) != 3 or path[0] != "#" or path[1] not in _DEFINITIONS:
+            self.report(target or schema, "a `$ref` leads to a definition in this file: `#/$defs/NAME`")
+            return ""
+        definitions = self.value.get(path[1]) if isinstance(self.value, JsonObject) else None
+        definition = definitions.get(path[2]) if isinstance(definitions, JsonObject) else None
+        if not isinstance(definition, JsonObject):
+            self.report(target, f"there is no definition `{path[2]}` under `{path[1]}`")
+            return ""
+        if _text(definition.get("type")) in _BASE:
+            return _BASE[_text(definition.get("type"))]
+        self.object(definition, Name(path[2], target.content_span))
+        return path[2]
+
+    def report(self, value: JsonValue, message: str) -> None:
+        self.findings.append(Finding(CODE, value.span, message))
+
+
+def _text(value: JsonValue | None) -> str:
+    return value.value if isinstance(value, JsonString) else ""

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a file is. Content decides, never the extension alone (spec/08)."""
+
+from __future__ import annotations
+
+import enum
+import re
+
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+
+
+class FileKind(enum.Enum):
+    MACHINE = "state machine"
+    SYSTEM = "system file"
+    TREE = "behavior tree"
+    STRUCTS = "struct declarations"
+    JSON_STRUCTS = "struct declarations in JSON"
+    PROPERTIES = "property file"
+    JANI_MODEL = "JANI model"
+    INTERFACE = "ROS interface definition"
+    SPECIFICATION = "specification of another tool"
+    UNKNOWN = "file of another kind"
+
+
+MACHINE_EXTENSIONS = (".ascxml", ".scxml")
+INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")
+EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
+"""Files with other extensions are looked at only when they are named."""
+
+_ROOTS = {
+    **dict.fromkeys(HL_SCXML.roots, FileKind.MACHINE),
+    **dict.fromkeys(SYSTEM.roots, FileKind.SYSTEM),
+    **dict.fromkeys(STRUCTS.roots, FileKind.STRUCTS),
+    "specification": FileKind.SPECIFICATION,
+}
+
+_FIRST_TAG = re.compile(r"<(?:[^\s<>!?/:\"'=]+:)?([^\s<>!?/:\"'=]+)")
+_SKIPPED = re.compile(r"<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*>|>|\Z)", re.DOTALL)
+_TREE_MARK = re.compile(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|main_tree_to_execute")
+_JANI_MODEL = re.compile(r'"(?:jani-version|automata)"\s*:')
+_JSON_SCHEMA = re.compile(r'"type"\s*:\s*"object"')
+_HEAD = 20_000
+
+
+def root_name(text: str) -> str:
+    """The name of the first element, "" if there is none near the beginning."""
+    at, head = 0, text[:_HEAD]
+    while (less := head.find("<", at)) >= 0:
+        if skipped := _SKIPPED.match(head, less):
+            at = skipped.end()
+        elif tag := _FIRST_TAG.match(head, less):
+            return tag[1]
+        else:
+            at = less + 1
+    return ""
+
+
+def kind_of(path: str, text: str) -> FileKind:
+    """What the file is by itself. What a system lists it as may say more (`roaml.project.analysis`)."""
+    extension = f".{path.rpartition('.')[2].lower()}"
+    if extension in INTERFACE_EXTENSIONS:
+        return FileKind.INTERFACE
+    if extension in (".jani", ".json"):
+        if _JANI_MODEL.search(text[:_HEAD]):
+            return FileKind.JANI_MODEL
+        if extension == ".jani":
+            return FileKind.PROPERTIES
+        return FileKind.JSON_STRUCTS if _JSON_SCHEMA.search(text[:_HEAD]) else FileKind.UNKNOWN
+    root = root_name(text)
+    if root in _ROOTS:
+        return _ROOTS[root]
+    if root in BEHAVIOR_TREE.roots and _TREE_MARK.search(text):
+        return FileKind.TREE
+    if extension in MACHINE_EXTENSIONS:
+        return FileKind.MACHINE
+    return FileKind.UNKNOWN

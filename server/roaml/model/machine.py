@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A state machine document as typed data (spec/01): what was written, not yet what it means in a system.
+
+- Frozen; built from one file alone, so equal texts give equal models.
+- Half-written documents give models with holes: whatever may be missing is None, nothing is invented.
+- Every part keeps its XML element and, through it, its grammar (`ElementType`) and its place.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.language import ElementType
+from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
+from roaml.xml import Element
+
+
+class Dialect(enum.Enum):
+    """Which of the languages that look alike a machine is written in (spec/08)."""
+
+    CURRENT = "current HL-SCXML"
+    OLDER = "older HL-SCXML"
+    PLAIN = "plain SCXML"
+    FOREIGN = "a format of another tool"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Data:
+    """A variable. `comment_type` tells that the type stands in a comment before the element (spec/01 §2.3)."""
+
+    element: Element
+    id: Name | None
+    type: TypeRef | None
+    value: Value | None
+    lower: Value | None
+    upper: Value | None
+    comment_type: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Declaration:
+    """A ROS interface or timer that the machine uses.
+
+    Attributes:
+        kind: the kind of symbol it defines: publisher, subscriber, service-client, service-server, action-client,
+            action-server or timer.
+        handle: the name by which the rest of the file knows it; without `name` the interface as written.
+        interface: topic, service or action name; None for timers.
+        type: the ROS type; None for timers.
+        rate: of a timer, in Hz.
+    """
+
+    element: Element
+    kind: str
+    handle: Name | None
+    interface: Name | PortRead | None
+    type: Name | None
+    rate: Name | PortRead | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Port:
+    """A port of a behavior tree plugin. `direction` is "in" or "out"."""
+
+    element: Element
+    key: Name | None
+    type: TypeRef | None
+    direction: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Param:
+    """A `<param>` of an event or a `<field>` of a ROS message."""
+
+    element: Element
+    name: Name | None
+    value: Value | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assign:
+    element: Element
+    location: Expression | None
+    value: Value | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Send:
+    element: Element
+    event: Name | None
+    params: tuple[Param, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Branch:
+    """One part of an `<if>`; `element` is the `<if>`, `<elseif>` or `<else>`. Only `<else>` has no condition at all."""
+
+    element: Element
+    cond: Expression | None
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class If:
+    """`otherwise` is None without `<else/>`."""
+
+    element: Element
+    branches: tuple[Branch, ...]
+    otherwise: Branch | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Communicate:
+    """Sends a part of a ROS interface: a message, request, response, goal, feedback, result, ...
+
+    `goal_id` and `thread_id` are None where the element has no such attribute or it is missing.
+    """
+
+    element: Element
+    type: ElementType
+    handle: Name | None
+    fields: tuple[Param, ...]
+    goal_id: Expression | None = None
+    thread_id: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReturnStatus:
+    element: Element
+    status: Name | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReturnHalted:
+    element: Element
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CallChild:
+    """Ticks or halts a child; `halts` tells which. `child` is its index or a variable."""
+
+    element: Element
+    halts: bool
+    child: Name | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetOutput:
+    element: Element
+    key: Name | None
+    value: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NoEffect:
+    """An element that is accepted and does nothing: `<log>`."""
+
+    element: Element
+
+
+Statement: TypeAlias = Assign | Send | If | Communicate | ReturnStatus | ReturnHalted | CallChild | SetOutput | NoEffect
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Target:
+    """Where a transition leads. `probability` is its text; None if not given. `element` is the `<target>`, if any."""
+
+    element: Element | None
+    state: Name | None
+    probability: Name | None
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Handler:
+    """A transition or a callback that works like one.
+
+    Attributes:
+        trigger: what it waits for: "" for nothing (eventless), else the part that its element receives.
+        event: the event of a plain transition.
+        handle: the declaration that a ROS callback refers to.
+        child: the child index of `bt_child_status` and `bt_child_halted`.
+        targets: one for a `target` attribute or none of both; all `<target>` children otherwise; accept and reject
+            of a goal response.
+        effective: false for elements that are accepted without effect (`ros_service_handle_error`).
+    """
+
+    element: Element
+    type: ElementType
+    trigger: str
+    event: Name | None
+    handle: Name | None
+    child: Name | None
+    cond: Expression | None
+    targets: tuple[Target, ...]
+    effective: bool = True
+
+    @property
+    def is_probabilistic(self) -> bool:
+        return len(self.targets) > 1 and self.trigger != "goal-response"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """The content of `<onentry>` or `<onexit>`."""
+
+    element: Element
+    statements: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class State:
+    element: Element
+    id: Name | None
+    entry: Body | None
+    exit: Body | None
+    handlers: tuple[Handler, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chart:
+    """States and data that belong together: a machine's own, or those of one action thread.
+
+    `scope` is "" for the machine itself and tells the threads of a file apart.
+    """
+
+    element: Element
+    scope: str
+    initial: Name | None
+    data: tuple[Data, ...]
+    states: tuple[State, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Thread:
+    """An action thread: `count` copies of `chart` (None if that is no positive number)."""
+
+    element: Element
+    server: Name | None
+    count: int | None
+    chart: Chart
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Machine:
+    """One document.
+
+    Attributes:
+        root: `ascxml` or `scxml`.
+        plain: uses none of the elements, declarations and types that HL-SCXML adds to SCXML (spec/01 §12.3).
+    """
+
+    element: Element
+    root: str
+    name: Name | None
+    chart: Chart
+    declarations: tuple[Declaration, ...]
+    ports: tuple[Port, ...]
+    threads: tuple[Thread, ...]
+    plain: bool
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        return (self.chart, *(thread.chart for thread in self.threads))
+
+
+# ----------------------------------------------------------------- walking
+
+
+def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statement, ...]]]:
+    """Every sequence of statements of the chart that is executed as one, with the handler that starts it, if any."""
+    for state in chart.states:
+        for body in (state.entry, state.exit):
+            if body is not None:
+                yield state, None, body.statements
+        for handler in state.handlers:
+            for target in handler.targets:
+                yield state, handler, target.body
+
+
+def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
+    """All statements of a body, those inside `<if>` included, in document order."""
+    for statement in body:
+        yield statement
+        if isinstance(statement, If):
+            for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+                yield from statements(branch.body)
+
+
+def all_statements(chart: Chart) -> Iterator[Statement]:
+    for _, _, body in bodies(chart):
+        yield from statements(body)

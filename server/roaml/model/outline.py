@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the rest of the system sees of a machine: names and types, no places.
+
+Two versions of a file with equal outlines are the same to every other file, so typing inside a transition rechecks
+one file only.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.expr.tree import Expr, Member, walk
+from roaml.expr.tree import Name as NameExpr
+from roaml.expr.types import UNKNOWN, Type
+from roaml.model.machine import (
+    CallChild,
+    Communicate,
+    Handler,
+    Machine,
+    ReturnHalted,
+    ReturnStatus,
+    Send,
+    SetOutput,
+    Statement,
+    all_statements,
+)
+from roaml.model.syntax import Expression, Name, PortRead
+from roaml.model.typing import TypedMachine, Use, find_handle
+from roaml.xml import Element
+
+
+@dataclass(frozen=True, slots=True)
+class PortOutline:
+    """`direction` is "in" or "out"; `type` is as written; `read` and `written` tell what the machine does with it."""
+
+    key: str
+    type: str
+    direction: str
+    read: bool
+    written: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SentField:
+    """A field or parameter that is sent, with its type."""
+
+    name: str
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceUse:
+    """A declared ROS interface and what the machine does with it.
+
+    Attributes:
+        name: topic, service or action as written; "" if it comes from port `port`.
+        sends, receives: the parts, as in the roles of the schema.
+        fields: of each part that is sent, the fields with the types that they are sent with.
+    """
+
+    kind: str
+    handle: str
+    name: str
+    port: str
+    type: str
+    sends: frozenset[str]
+    receives: frozenset[str]
+    fields: tuple[tuple[str, tuple[SentField, ...]], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EventSent:
+    """A `<send>`. Structs are one parameter here."""
+
+    event: str
+    params: tuple[SentField, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EventReceived:
+    """A transition on an event, and the parameters of it that are read."""
+
+    event: str
+    reads: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class TimerOutline:
+    """A declared timer: its rate in Hz as written, or the port it comes from; how many charts have a callback."""
+
+    name: str
+    rate: str
+    port: str
+    users: int
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadOutline:
+    server: str
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class PluginOutline:
+    """How a machine takes part in a behavior tree.
+
+    Attributes:
+        children: the greatest literal child index that it ticks or halts, plus 1.
+        any_child: it ticks or halts children by a variable index.
+        halts_children: it halts children and waits for their answer.
+    """
+
+    ticked: bool
+    halted: bool
+    answers_tick: bool
+    answers_halt: bool
+    children: int
+    any_child: bool
+    halts_children: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MachineOutline:
+    """`sound` tells that all ROS types, handles and fields in it are known: it says what it means to say."""
+
+    name: str
+    root: str
+    plain: bool
+    sound: bool
+    ports: tuple[PortOutline, ...]
+    interfaces: tuple[InterfaceUse, ...]
+    sent: tuple[EventSent, ...]
+    received: tuple[EventReceived, ...]
+    timers: tuple[TimerOutline, ...]
+    threads: tuple[ThreadOutline, ...]
+    plugin: PluginOutline
+
+    def port(self, key: str) -> PortOutline | None:
+        return next((port for port in self.ports if port.key == key), None)
+
+
+def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
+    types = {value.element: value.sent for value in typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
+    reads = _reads(typed)
+    return MachineOutline(
+        machine.name.value if machine.name else "",
+        machine.root,
+        machine.plain,
+        _is_sound(machine, typed),
+        _ports(machine, typed),
+        _interfaces(machine, types),
+        tuple(
+            dict.fromkeys(
+                EventSent(
+                    statement.event.value,
+                    tuple(SentField(p.name.value, types.get(p.element, UNKNOWN)) for p in statement.params if p.name),
+                )
+                for chart in machine.charts
+                for statement in all_statements(chart)
+                if isinstance(statement, Send) and statement.event
+            )
+        ),
+        tuple(
+            EventReceived(handler.event.value, frozenset(reads[handler]))
+            for handler in _handlers(machine)
+            if handler.trigger == "event" and handler.event
+        ),
+        _timers(machine),
+        tuple(
+            ThreadOutline(thread.server.value if thread.server else "", thread.count or 1) for thread in machine.threads
+        ),
+        _plugin(machine),
+    )
+
+
+def _handlers(machine: Machine) -> Iterator[Handler]:
+    for chart in machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.effective:
+                    yield handler
+
+
+def _statements(machine: Machine) -> Iterator[Statement]:
+    for chart in machine.charts:
+        yield from all_statements(chart)
+
+
+def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
+    users = [s for s in _statements(machine) if isinstance(s, Communicate)]
+    declarations = [find_handle(machine, user) for user in users]
+    if any(
+        d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)
+    ):
+        return False
+    # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
+    return all(value.wanted is not None and value.wanted != UNKNOWN for value in typed.values if value.use is Use.FIELD)
+
+
+def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
+    values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
+    values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
+    read = {value.key.value for value in values if isinstance(value, PortRead) and value.key}
+    written = {s.key.value for s in _statements(machine) if isinstance(s, SetOutput) and s.key}
+    return tuple(
+        PortOutline(
+            port.key.value,
+            port.type.text if port.type else "",
+            port.direction,
+            port.key.value in read,
+            port.key.value in written,
+        )
+        for port in machine.ports
+        if port.key
+    )
+
+
+def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
+    sends: defaultdict[Element, set[str]] = defaultdict(set)
+    receives: defaultdict[Element, set[str]] = defaultdict(set)
+    fields: defaultdict[Element, dict[str, dict[str, Type]]] = defaultdict(dict)
+    for statement in _statements(machine):
+        if isinstance(statement, Communicate) and (declaration := find_handle(machine, statement)):
+            part = statement.type.sends
+            sends[declaration.element].add(part)
+            known = fields[declaration.element].setdefault(part, {})
+            for field in statement.fields:
+                if field.name:
+                    known.setdefault(field.name.value, types.get(field.element, UNKNOWN))
+    for handler in _handlers(machine):
+        if declaration := find_handle(machine, handler):
+            receives[declaration.element].add(handler.trigger)
+    return tuple(
+        InterfaceUse(
+            declaration.kind,
+            declaration.handle.value if declaration.handle else "",
+            declaration.interface.value if isinstance(declaration.interface, Name) else "",
+            _port_key(declaration.interface),
+            declaration.type.value if declaration.type else "",
+            frozenset(sends[declaration.element]),
+            frozenset(receives[declaration.element]),
+            tuple(
+                (part, tuple(SentField(name, type_) for name, type_ in known.items()))
+                for part, known in fields[declaration.element].items()
+            ),
+        )
+        for declaration in machine.declarations
+        if declaration.kind != "timer"
+    )
+
+
+def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
+    users = {
+        name: sum(
+            any(
+                handler.trigger == "tick" and handler.handle and handler.handle.value == name
+                for state in chart.states
+                for handler in state.handlers
+            )
+            for chart in machine.charts
+        )
+        for name in {d.handle.value for d in machine.declarations if d.kind == "timer" and d.handle}
+    }
+    return tuple(
+        TimerOutline(
+            declaration.handle.value,
+            declaration.rate.value if isinstance(declaration.rate, Name) else "",
+            _port_key(declaration.rate),
+            users[declaration.handle.value],
+        )
+        for declaration in machine.declarations
+        if declaration.kind == "timer" and declaration.handle
+    )
+
+
+def _port_key(value: Name | PortRead | None) -> str:
+    return value.key.value if isinstance(value, PortRead) and value.key else ""
+
+
+def _plugin(machine: Machine) -> PluginOutline:
+    triggers = {handler.trigger for handler in _handlers(machine)}
+    statements = list(_statements(machine))
+    calls = [statement for statement in statements if isinstance(statement, CallChild) and statement.child]
+    indexes = [c.child.value for c in calls if c.child]
+    literal = [int(index[:6]) for index in indexes if index.isascii() and index.isdigit()]
+    return PluginOutline(
+        "bt-tick" in triggers,
+        "bt-halt" in triggers,
+        any(isinstance(statement, ReturnStatus) for statement in statements),
+        any(isinstance(statement, ReturnHalted) for statement in statements),
+        max(literal, default=-1) + 1,
+        len(literal) < len(indexes),
+        any(call.halts for call in calls) and "child-halted" in triggers,
+    )
+
+
+def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
+    """Per handler, the event parameters `_event.data.NAME` that it reads."""
+    found: defaultdict[Handler, set[str]] = defaultdict(set)
+    for value in typed.values:
+        if value.place.handler is not None and isinstance(value.value, Expression):
+            found[value.place.handler].update(event_parameters(value.value.tree))
+    return found
+
+
+def event_parameters(tree: Expr) -> Iterator[str]:
+    """The names that stand behind `_event.data.` in an expression."""
+    for node in walk(tree):
+        match node:
+            case Member(object=Member(object=NameExpr(name="_event"), name="data")) if node.name:
+                yield node.name

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What HL-SCXML sees of a ROS interface type: its parts as structs of HL types (spec/01 §8).
+
+- Every kind of ROS field has an HL type here. Some kinds the reference translator does not know; models written for it
+  leave such fields out, so they need not be set (`InterfaceType.optional`).
+- A definition that contains itself, or a type that is not found, gives members of unknown type.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, leaves
+from roaml.interfaces.registry import NotFound
+from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, FieldType, Kind, Section
+
+FindMessage: TypeAlias = Callable[[str], Definition | NotFound]
+"""`package/Name` -> the message."""
+
+_HL_NAMES = {"byte": "uint8", "char": "uint8", "wstring": "string"}
+_REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceType:
+    """A ROS type as HL-SCXML sees it.
+
+    Attributes:
+        name: `package/Name`.
+        parts: (message,), (request, response) or (goal, result, feedback) with their structs.
+        optional: dotted leaf paths, per part, of the fields that need not be set.
+    """
+
+    name: str
+    kind: Kind
+    parts: tuple[tuple[str, Struct], ...]
+    optional: tuple[tuple[str, frozenset[str]], ...]
+
+    def part(self, name: str) -> Struct:
+        return dict(self.parts)[name]
+
+    def required(self, part: str) -> tuple[str, ...]:
+        """The dotted paths of the leaf fields that must be set, in order."""
+        skip = dict(self.optional)[part]
+        return tuple(path for path in self.leaf_paths(part) if path not in skip)
+
+    def leaf_paths(self, part: str) -> tuple[str, ...]:
+        return tuple(".".join(path) for path, _ in leaves(self.part(part)))
+
+
+def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
+    """`definition` in HL types; nested messages are looked up with `find`."""
+    parts, optional = [], []
+    for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
+        reader = _Reader(find)
+        what = name if definition.kind == "msg" else f"{name} of {definition.full_name}"
+        title = definition.full_name if definition.kind == "msg" else f"{definition.full_name} {name}"
+        own = (definition.full_name,) if definition.kind == "msg" else ()
+        parts.append((name, Struct(title, reader.members(section, (), own), what)))
+        optional.append((name, frozenset(reader.optional)))
+    return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
+
+
+class _Reader:
+    def __init__(self, find: FindMessage) -> None:
+        self.find = find
+        self.optional: list[str] = []
+
+    def members(self, section: Section, path: tuple[str, ...], inside: tuple[str, ...]) -> tuple[tuple[str, Type], ...]:
+        return tuple((field.name, self.member(field, (*path, field.name), inside)) for field in section.fields)
+
+    def member(self, field: Field, path: tuple[str, ...], inside: tuple[str, ...]) -> Type:
+        type_ = self.element(field.type.element, path, inside)
+        if not known_to_reference(field.type):
+            self.optional.append(".".join(path))
+        if field.type.is_array:
+            bound = None if field.type.array is ArrayKind.UNBOUNDED else field.type.size
+            return Array(type_, bound)
+        return type_
+
+    def element(self, type_: FieldType, path: tuple[str, ...], inside: tuple[str, ...]) -> Type:
+        if type_.is_primitive:
+            return BASE_TYPES[_HL_NAMES.get(type_.name, type_.name)]
+        definition = self.find(type_.name)
+        if isinstance(definition, NotFound) or type_.name in inside:
+            return UNKNOWN
+        section = definition.sections[0]
+        return Struct(type_.name, self.members(section, path, (*inside, type_.name)), "message")
+
+
+def known_to_reference(type_: FieldType) -> bool:
+    """Whether the reference translator wants a field of this type to be set (spec/01 §8, spec/07 1.17)."""
+    if not type_.is_primitive:
+        return True
+    if type_.is_array:
+        return type_.array is ArrayKind.UNBOUNDED and type_.name in _REFERENCE_SEQUENCES
+    return type_.name not in ("byte", "wstring")

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The smallest parts of every model: names, expressions and port reads, each with its place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.diagnostics import Finding
+from roaml.expr.parse import parse
+from roaml.expr.tree import Expr
+from roaml.expr.types import TypeName, parse_type
+from roaml.text import Decoded, Span
+from roaml.xml import Attribute, Document, Element, Text, children_text
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A word of the user's and where it stands."""
+
+    value: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """An expression and what is wrong with its form. `source` is its text and the way back to the file."""
+
+    source: Decoded
+    span: Span
+    tree: Expr
+    findings: tuple[Finding, ...]
+
+    @property
+    def text(self) -> str:
+        return self.source.text
+
+    @property
+    def broken(self) -> bool:
+        """Whether the tree stands for less than what is written."""
+        return bool(self.findings)
+
+
+@dataclass(frozen=True, slots=True)
+class PortRead:
+    """`<bt_get_input key="…"/>`: the value of a port."""
+
+    key: Name | None
+    span: Span
+
+
+Value: TypeAlias = Expression | PortRead
+
+
+@dataclass(frozen=True, slots=True)
+class TypeRef:
+    """A type as written; `name` is None if it has not the form of a type."""
+
+    text: str
+    span: Span
+    name: TypeName | None
+
+
+def name_of(attribute: Attribute | None) -> Name | None:
+    """The value of an attribute, without surrounding white space; None if it is missing or empty."""
+    if attribute is None or not attribute.value or attribute.value.isspace():
+        return None
+    value, span = attribute.value, attribute.value_span
+    stripped = value.strip()
+    if stripped == value:
+        return Name(value, span)
+    lead = len(value) - len(value.lstrip())
+    return Name(stripped, Span(span.start + lead, span.end - (len(value) - lead - len(stripped))))
+
+
+def expression_of(document: Document, attribute: Attribute | None) -> Expression | None:
+    """The expression in an attribute; None if the attribute is missing or has no value yet."""
+    if attribute is None or not attribute.has_value:
+        return None
+    return expression_in(document, attribute.value_span)
+
+
+def expression_in(document: Document, span: Span) -> Expression:
+    source = document.decoded(span)
+    tree, findings = parse(source)
+    return Expression(source, span, tree, findings)
+
+
+def type_of(attribute: Attribute | None) -> TypeRef | None:
+    name = name_of(attribute)
+    return None if name is None else TypeRef(name.value, name.span, parse_type(name.value))
+
+
+def value_of(document: Document, element: Element, name: str) -> Value | None:
+    """A value that may be given as attribute or child element `name` (spec/01 §1.4); the attribute wins."""
+    attribute = element.get(name)
+    if attribute is not None:
+        return expression_of(document, attribute)
+    child = element.find(name)
+    if child is None:
+        return None
+    if (read := port_read(child)) is not None:
+        return read
+    span = text_span(child)
+    return None if span is None else expression_in(document, span)
+
+
+def text_or_port(element: Element, name: str) -> Name | PortRead | None:
+    """Like `value_of`, for values that are plain text."""
+    attribute = element.get(name)
+    if attribute is not None:
+        return name_of(attribute)
+    child = element.find(name)
+    if child is None:
+        return None
+    if (read := port_read(child)) is not None:
+        return read
+    span, text = text_span(child), children_text(child).strip()
+    return None if span is None else Name(text, span)
+
+
+def port_read(element: Element) -> PortRead | None:
+    """The `<bt_get_input>` in a value element."""
+    read = element.find("bt_get_input")
+    return None if read is None else PortRead(name_of(read.get("key")), read.span)
+
+
+def text_span(element: Element) -> Span | None:
+    """Where the text of a value element stands, without surrounding white space; None if it has none."""
+    for node in element.nodes:
+        if isinstance(node, Text) and (text := node.value.strip()):
+            lead = len(node.value) - len(node.value.lstrip())
+            raw_length = node.span.end - node.span.start
+            trail = len(node.value) - lead - len(text)
+            return Span(node.span.start + lead, node.span.start + raw_length - trail)
+    return None

@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole system, linked across files: who publishes, serves, calls, sends, receives, reads and writes what.
+
+- Made of outlines only, so it holds no places; a `Symbol` leads back to the text.
+- Compared by identity: whoever makes it remembers it by its parts, and all that looks across files depends on it.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import UNKNOWN, Struct, Type, join
+from roaml.language import BEHAVIOR_TREE, ElementType
+from roaml.model.expand import Constant, Instance, PortValue, Reference, Source
+from roaml.model.outline import (
+    EventReceived,
+    EventSent,
+    InterfaceUse,
+    MachineOutline,
+    PluginOutline,
+    PortOutline,
+)
+from roaml.model.system_file import Parameters
+from roaml.model.tree import EXPLICIT, SUBTREES
+
+CLOCK_TOPIC = "clock"
+CLOCK_TYPE = "builtin_interfaces/Time"
+CHILDREN_COUNT = "CHILDREN_COUNT"
+
+
+def sanitise(name: str) -> str:
+    """The form of a topic, service or action name in events (spec/04 §1)."""
+    return name.removeprefix("/").replace("/", "__")
+
+
+def safe_name(automaton: str) -> str:
+    """An automaton name as part of an event name: what is no letter, digit, `_`, `.` or `-` becomes `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton:
+    """A machine in its place in the system: a node, or a plugin for one node of the tree.
+
+    Attributes:
+        path: the machine's file; "" for nodes that BehaviorTree.CPP brings along.
+        instance: the tree node, None for nodes of the system.
+        index: counts the listings in the system file, so that a file listed twice gives two automata.
+    """
+
+    name: str
+    path: str
+    outline: MachineOutline
+    instance: Instance | None = None
+    index: int = 0
+
+    def port(self, key: str) -> PortValue | None:
+        """What a declared port holds."""
+        if self.instance is None or self.outline.port(key) is None:
+            return None
+        if key == CHILDREN_COUNT:
+            return Constant(str(len(self.instance.children)))
+        return self.instance.port(key)
+
+    def interface_name(self, use: InterfaceUse) -> str | None:
+        """The topic, service or action of a declaration; None if its port gives no constant."""
+        if not use.port:
+            return use.name or None
+        value = self.port(use.port)
+        return value.text.strip() if isinstance(value, Constant) else None
+
+    def symbol(self, use: InterfaceUse) -> Symbol:
+        return Symbol(self.path, use.kind, use.handle)
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """One side of a topic, service or action."""
+
+    automaton: Automaton
+    use: InterfaceUse
+
+    @property
+    def symbol(self) -> Symbol:
+        return self.automaton.symbol(self.use)
+
+
+@dataclass(slots=True)
+class Channel:
+    """A topic, service or action with both sides: publishers or servers, subscribers or clients."""
+
+    name: str
+    sources: list[Endpoint] = field(default_factory=list)
+    users: list[Endpoint] = field(default_factory=list)
+
+    @property
+    def endpoints(self) -> list[Endpoint]:
+        return [*self.sources, *self.users]
+
+
+@dataclass(slots=True)
+class Event:
+    """A plain event with all who send and receive it."""
+
+    name: str
+    senders: list[tuple[Automaton, EventSent]] = field(default_factory=list)
+    receivers: list[tuple[Automaton, EventReceived]] = field(default_factory=list)
+
+    @property
+    def data(self) -> Struct:
+        """All parameters that any sender sends; where types disagree the first known one counts."""
+        params: dict[str, Type] = {}
+        for _, sent in self.senders:
+            for param in sent.params:
+                known = params.get(param.name, UNKNOWN)
+                params[param.name] = join(known, param.type) or known
+        return Struct("", tuple(params.items()), f"data of event {self.name}")
+
+
+@dataclass(frozen=True, slots=True)
+class BoundPort:
+    """A port that is bound to a blackboard variable."""
+
+    automaton: Automaton
+    port: PortOutline
+
+    @property
+    def source(self) -> Source:
+        assert self.automaton.instance is not None
+        return self.automaton.instance.source
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """A system file and everything that it names.
+
+    Attributes:
+        path: of the system file.
+        older: the system is written in the older dialect (spec/08, B).
+        nodes: listed nodes, in order; plugins: listed plugins, in order.
+        instances: the nodes of the executed tree, in pre-order.
+        tree_paths: the tree file and what it includes; empty without a tree.
+        structs: by name.
+        readable: every listed file could be read and is well-formed.
+        observed: the names of variables that the properties mention.
+    """
+
+    path: str
+    older: bool
+    parameters: Parameters
+    nodes: tuple[tuple[str, MachineOutline], ...]
+    plugins: tuple[tuple[str, MachineOutline], ...]
+    instances: tuple[Instance, ...]
+    tree_paths: tuple[str, ...]
+    structs: Mapping[str, Type]
+    readable: bool
+    observed: frozenset[str] = frozenset()
+
+    @cached_property
+    def automata(self) -> tuple[Automaton, ...]:
+        """In processing order: nodes, then the tree in pre-order (spec/02 §2.2)."""
+        found = [Automaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)]
+        for instance in self.instances:
+            path, outline = self.plugin(instance.plugin)
+            if outline is not None:
+                found.append(Automaton(instance.automaton, path, outline, instance))
+        return tuple(found)
+
+    @cached_property
+    def complete(self) -> bool:
+        """Whether everything is known that is said between the files. Only then does a missing side mean something."""
+        known = all(self.plugin(instance.plugin)[1] is not None for instance in self.instances)
+        return self.readable and known and all(automaton.outline.sound for automaton in self.automata)
+
+    @cached_property
+    def by_instance(self) -> Mapping[int, Automaton]:
+        return {automaton.instance.number: automaton for automaton in self.automata if automaton.instance}
+
+    @cached_property
+    def _plugins(self) -> Mapping[str, tuple[str, MachineOutline]]:
+        return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
+
+    def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
+        """File and outline of the plugin called `name`; the nodes of BehaviorTree.CPP come first (spec/07 1.20)."""
+        builtin = builtin_plugins().get(name)
+        if builtin is not None:
+            return "", builtin
+        return self._plugins.get(name, ("", None))
+
+    def automata_of(self, path: str) -> tuple[Automaton, ...]:
+        """What the machine in the file `path` is in this system."""
+        return tuple(automaton for automaton in self.automata if automaton.path == path)
+
+    @cached_property
+    def has_timer(self) -> bool:
+        return bool(self.instances) or any(a.outline.timers for a in self.automata)
+
+    # ------------------------------------------------------------- channels
+
+    @cached_property
+    def topics(self) -> Mapping[str, Channel]:
+        """By sanitised name."""
+        return self._channels("publisher", "subscriber", sanitise)
+
+    @cached_property
+    def services(self) -> Mapping[str, Channel]:
+        """By name as written (spec/01 §9)."""
+        return self._channels("service-server", "service-client", str)
+
+    @cached_property
+    def actions(self) -> Mapping[str, Channel]:
+        """By name as written."""
+        return self._channels("action-server", "action-client", str)
+
+    def _channels(self, source: str, user: str, key: Callable[[str], str]) -> Mapping[str, Channel]:
+        found: dict[str, Channel] = {}
+        for automaton in self.automata:
+            for use in automaton.outline.interfaces:
+                name = automaton.interface_name(use) if use.kind in (source, user) else None
+                if name is not None:
+                    channel = found.setdefault(key(name), Channel(key(name)))
+                    (channel.sources if use.kind == source else channel.users).append(Endpoint(automaton, use))
+        return found
+
+    def channel(self, automaton: Automaton, use: InterfaceUse) -> Channel | None:
+        """The topic, service or action that a declaration of an automaton means."""
+        name = automaton.interface_name(use)
+        if name is None:
+            return None
+        match use.kind:
+            case "publisher" | "subscriber":
+                return self.topics.get(sanitise(name))
+            case "service-client" | "service-server":
+                return self.services.get(name)
+        return self.actions.get(name)
+
+    # --------------------------------------------------------------- events
+
+    @cached_property
+    def events(self) -> Mapping[str, Event]:
+        found: dict[str, Event] = {}
+        for automaton in self.automata:
+            for sent in automaton.outline.sent:
+                found.setdefault(sent.event, Event(sent.event)).senders.append((automaton, sent))
+            for received in automaton.outline.received:
+                found.setdefault(received.event, Event(received.event)).receivers.append((automaton, received))
+        return found
+
+    def is_observed(self, event: str) -> bool:
+        """Whether a property looks at the event: at its flag or at a parameter."""
+        return any(name == f"{event}.valid" or name.startswith(f"{event}__") for name in self.observed)
+
+    @cached_property
+    def event_data(self) -> Mapping[str, Struct]:
+        return {name: event.data for name, event in self.events.items()}
+
+    # ----------------------------------------------------------- blackboard
+
+    @cached_property
+    def blackboard(self) -> Mapping[str, tuple[BoundPort, ...]]:
+        """Every blackboard variable with the ports that are bound to it."""
+        found: dict[str, list[BoundPort]] = {}
+        for automaton in self.automata:
+            for port in automaton.outline.ports:
+                value = automaton.port(port.key)
+                if isinstance(value, Reference):
+                    found.setdefault(value.variable, []).append(BoundPort(automaton, port))
+        return {name: tuple(ports) for name, ports in found.items()}
+
+
+# ---------------------------------------------------- nodes of BehaviorTree.CPP
+
+
+@functools.cache
+def builtin_plugins() -> Mapping[str, MachineOutline]:
+    """The nodes that come along and can be translated, as the schema describes them."""
+    return {
+        element.name: _builtin(element)
+        for element in BEHAVIOR_TREE.elements.values()
+        if element.node and element.translated and element.name not in (*EXPLICIT, *SUBTREES)
+    }
+
+
+def _builtin(element: ElementType) -> MachineOutline:
+    has_children = element.any_child is not None
+    ports = tuple(
+        PortOutline(a.name, a.port.type, a.port.direction, a.port.direction == "in", a.port.direction == "out")
+        for a in element.ports
+        if a.port
+    )
+    plugin = PluginOutline(True, True, True, True, 0, has_children, has_children)
+    return MachineOutline(element.name, "ascxml", False, True, ports, (), (), (), (), (), plugin)

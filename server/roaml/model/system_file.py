@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The system file as typed data (spec/02 §2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roaml.language import SYSTEM
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import Name, name_of
+from roaml.xml import Document, Element
+
+SECTIONS = ("data_declarations", "behavior_tree", "node_models", "properties")
+
+TREE_TYPES = ("bt.cpp-xml",)
+PLUGIN_TYPES = ("bt-plugin-ascxml", "bt-plugin-ros-scxml")
+NODE_TYPES = ("node-ascxml", "ros-scxml")
+
+DEFAULT_MAX_ARRAY_SIZE = 100
+DEFAULT_TICK_RATE = 1.0
+NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Input:
+    """An `<input>`: a file that belongs to the system. `section` is the name of the element around it."""
+
+    element: Element
+    section: str
+    type: Name | None
+    src: Name | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ListedFile:
+    """An `<input>` and the file it names.
+
+    Attributes:
+        path: "" if no file is named.
+        problem: why the file cannot be used, as a clause; "" if it can.
+        wanted: what the system takes it for, None if its type says nothing that is known.
+        found: what it is.
+    """
+
+    input: Input
+    path: str
+    problem: str
+    wanted: FileKind | None
+    found: FileKind
+
+    @property
+    def usable(self) -> bool:
+        return bool(self.path) and not self.problem and self.found is self.wanted
+
+
+_WANTED = {
+    **dict.fromkeys(TREE_TYPES, FileKind.TREE),
+    **dict.fromkeys((*PLUGIN_TYPES, *NODE_TYPES), FileKind.MACHINE),
+    "xml": FileKind.STRUCTS,
+    "json": FileKind.JSON_STRUCTS,
+    "jani": FileKind.PROPERTIES,
+}
+
+
+def wanted_kind(entry: Input) -> FileKind | None:
+    """What a system takes a listed file for."""
+    return _WANTED.get(entry.type.value) if entry.type else None
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """How the system is translated.
+
+    Attributes:
+        max_time: the bound of the clock in ns; None if it is not given or no number.
+        tick_rate: of the behavior tree, in Hz.
+    """
+
+    max_time: int | None = None
+    max_array_size: int = DEFAULT_MAX_ARRAY_SIZE
+    tick_rate: float = DEFAULT_TICK_RATE
+    tick_if_not_running: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SystemFile:
+    """One system file. `older` tells that it has the older root (spec/08, dialect B)."""
+
+    element: Element
+    older: bool
+    parameters: Parameters
+    inputs: tuple[Input, ...]
+
+
+def build_system_file(document: Document) -> SystemFile | None:
+    """The system file in `document`, or None if its root is not one."""
+    root = document.root
+    if root is None or root.name not in SYSTEM.roots:
+        return None
+    inputs = [
+        Input(child, section.name, name_of(child.get("type")), name_of(child.get("src")))
+        for section in root.elements
+        if section.name in SECTIONS
+        for child in section.elements
+        if child.name == "input"
+    ]
+    return SystemFile(root, root.name == "convince_mc_tc", _parameters(root), tuple(inputs))
+
+
+def _parameters(root: Element) -> Parameters:
+    section = root.find("parameters") or root.find("mc_parameters")
+    max_time = None
+    size, rate, keep_ticking = DEFAULT_MAX_ARRAY_SIZE, DEFAULT_TICK_RATE, False
+    for element in section.elements if section else ():
+        value = name_of(element.get("value"))
+        text = value.value if value else ""
+        if element.name == "max_time":
+            unit = name_of(element.get("unit"))
+            number = _integer(text)
+            if number is not None and unit and unit.value in NANOSECONDS:
+                max_time = number * NANOSECONDS[unit.value]
+        elif element.name == "max_array_size":
+            size = _integer(text) or size
+        elif element.name == "bt_tick_rate":
+            rate = _positive(text) or rate
+        elif element.name == "bt_tick_if_not_running":
+            keep_ticking = text == "true"
+    return Parameters(max_time, size, rate, keep_ticking)
+
+
+def _integer(text: str) -> int | None:
+    return int(text[:18]) if text.isascii() and text.isdigit() else None
+
+
+def _positive(text: str) -> float | None:
+    """A positive finite number, or None."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if 0 < value < float("inf") else None

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A file of behavior trees as typed data (spec/02 §3, §7): what was written, before subtrees are put in place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.language import BEHAVIOR_TREE, ElementType
+from roaml.model.syntax import Name, name_of
+from roaml.xml import Attribute, Document, Element
+
+EXPLICIT = ("Action", "Condition", "Control", "Decorator")
+SUBTREES = ("SubTree", "SubTreePlus")
+
+_REFERENCE = re.compile(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
+_VARIABLE = re.compile(r"@?[A-Za-z_]\w*\Z", re.ASCII)
+_BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PortSetting:
+    """An attribute of a node that sets a port."""
+
+    attribute: Attribute
+    key: Name
+    value: Name
+
+    @property
+    def variable(self) -> str | None:
+        """The blackboard variable that the value refers to, or None if it is a constant."""
+        return blackboard_variable(self.value.value)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreeNode:
+    """A node of a tree.
+
+    Attributes:
+        plugin: what it is an instance of: from `ID` or, in the compact form, from the tag.
+        is_subtree: it stands for the tree named `plugin`.
+        type: the grammar of the node if BehaviorTree.CPP brings it along.
+        scripts: pre- and post-conditions.
+        compact: written as `<X/>`, not as `<Action ID="X"/>`.
+    """
+
+    element: Element
+    plugin: Name | None
+    name: Name | None
+    is_subtree: bool
+    type: ElementType | None
+    ports: tuple[PortSetting, ...]
+    scripts: tuple[Attribute, ...]
+    children: tuple[TreeNode, ...]
+    compact: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tree:
+    """A `<BehaviorTree>`; `roots` holds one node unless the file is wrong."""
+
+    element: Element
+    id: Name | None
+    roots: tuple[TreeNode, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PortModel:
+    """A port as `<TreeNodesModel>` describes it; `default` is None if it has none."""
+
+    element: Element
+    name: Name | None
+    direction: str
+    default: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NodeModel:
+    element: Element
+    id: Name | None
+    kind: str
+    ports: tuple[PortModel, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Include:
+    element: Element
+    path: Name | None
+    package: Name | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreeFile:
+    """One file. `format` is "" if it is not given."""
+
+    element: Element
+    format: str
+    main: Name | None
+    trees: tuple[Tree, ...]
+    models: tuple[NodeModel, ...]
+    includes: tuple[Include, ...]
+
+
+def build_tree_file(document: Document) -> TreeFile | None:
+    """The trees in `document`, or None if its root is not `<root>`."""
+    root = document.root
+    if root is None or root.name not in BEHAVIOR_TREE.roots:
+        return None
+    version = root.get("BTCPP_format")
+    return TreeFile(
+        root,
+        version.value.strip() if version else "",
+        name_of(root.get("main_tree_to_execute")),
+        tuple(
+            Tree(child, name_of(child.get("ID")), tuple(_node(node) for node in child.elements))
+            for child in root.elements
+            if child.name == "BehaviorTree"
+        ),
+        tuple(_model(model) for child in root.elements if child.name == "TreeNodesModel" for model in child.elements),
+        tuple(
+            Include(child, name_of(child.get("path")), name_of(child.get("ros_pkg")))
+            for child in root.elements
+            if child.name == "include"
+        ),
+    )
+
+
+def _node(element: Element) -> TreeNode:
+    explicit = element.name in EXPLICIT
+    is_subtree = element.name in SUBTREES
+    type_ = None if explicit else BEHAVIOR_TREE.elements.get(element.name)
+    plugin = name_of(element.get("ID")) if explicit or is_subtree else Name(element.name, element.name_span)
+    if explicit and plugin is not None:
+        type_ = BEHAVIOR_TREE.elements.get(plugin.value)
+    known = (type_ or BEHAVIOR_TREE.elements["Action"]).attributes
+    ports, scripts = [], []
+    for attribute in element.attributes:
+        name = attribute.name
+        if known.get(name) and known[name].value == "script":
+            scripts.append(attribute)
+        elif not _is_port(name, explicit or is_subtree):
+            continue
+        elif name not in known or known[name].port:
+            value = Name(attribute.value, attribute.value_span)
+            ports.append(PortSetting(attribute, Name(name, attribute.name_span), value))
+    return TreeNode(
+        element,
+        plugin,
+        name_of(element.get("name")),
+        is_subtree,
+        type_,
+        tuple(ports),
+        tuple(scripts),
+        tuple(_node(child) for child in element.elements),
+        not explicit and not is_subtree,
+    )
+
+
+def _is_port(name: str, has_id: bool) -> bool:
+    """Whether an attribute can be a port: not a part of the node itself, nor of a namespace."""
+    return name != "name" and not (has_id and name == "ID") and name != "xmlns" and ":" not in name
+
+
+def _model(element: Element) -> NodeModel:
+    ports = []
+    for child in element.elements:
+        direction, _, kind = child.name.partition("_")
+        if kind == "port":
+            default = child.get("default")
+            direction = {"input": "in", "output": "out"}.get(direction, direction)
+            ports.append(PortModel(child, name_of(child.get("name")), direction, default.value if default else None))
+    return NodeModel(element, name_of(element.get("ID")), element.name, tuple(ports))
+
+
+def nodes(tree: Tree) -> Iterator[TreeNode]:
+    """All nodes of a tree, parents before children."""
+    stack = list(reversed(tree.roots))
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(node.children))
+
+
+def blackboard_variable(value: str) -> str | None:
+    """The name in a value `{name}`; None if the value is a constant. The name may be ill-formed."""
+    match = _REFERENCE.match(value)
+    return match[1].strip() if match else None
+
+
+def is_variable_name(name: str) -> bool:
+    """Whether `name` can be a blackboard variable; a leading `@` refers to the main tree's blackboard."""
+    return bool(_VARIABLE.match(name))
+
+
+def looks_like_reference(value: str) -> bool:
+    """Whether a value begins with `{…}` (the reference translator takes it for a reference, spec/02 §3.4)."""
+    return bool(_BEGINS_LIKE_REFERENCE.match(value))

@@ -1,0 +1,394 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every value in a machine with its type, what was wanted there, and what is wrong in it.
+
+One walk over the machine; the rules, hover and completion read its result. What other files contribute comes in as an
+`Environment`; the walk itself looks at one machine only.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+from roaml.expr.infer import Problem, infer
+from roaml.expr.tree import Call, Expr, Member, Name, Number, walk
+from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
+from roaml.language.grammar import Binding
+from roaml.model.initial import InitialProblem, check_initial
+from roaml.model.machine import (
+    Assign,
+    Chart,
+    Communicate,
+    Data,
+    Declaration,
+    Handler,
+    If,
+    Machine,
+    Param,
+    Send,
+    SetOutput,
+    State,
+    Statement,
+)
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Expression, PortRead, Value
+from roaml.xml import Element
+
+
+class Environment(Protocol):
+    """What a machine needs to know of the rest of the world."""
+
+    def struct(self, name: str) -> Type | None:
+        """The struct of that name."""
+
+    def interface(self, kind: str, name: str) -> InterfaceType | None:
+        """The ROS type `name` (as written in the model) of kind msg, srv or action."""
+
+    def event_data(self, event: str) -> Struct | None:
+        """The parameters that the senders of a plain event send; None if that is not known."""
+
+
+class Use(enum.Enum):
+    """What a value is for."""
+
+    CONDITION = "condition of a transition"
+    BRANCH = "condition of an if"
+    ASSIGNED = "assigned value"
+    LOCATION = "assigned location"
+    PARAMETER = "event parameter"
+    FIELD = "field"
+    ARGUMENT = "goal or thread id"
+    OUTPUT = "output port"
+    INITIAL = "initial value"
+    BOUND = "bound"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Place:
+    """Where a value stands.
+
+    Attributes:
+        part: "data", "cond", "body", "onentry" or "onexit".
+        late: something was sent, or a condition evaluated, between the arrival of the event and this value, so the
+            event data may be newer (spec/01 §12.2).
+        branch_conditions: conditions of the enclosing `<if>` parts, with whether they hold here.
+    """
+
+    chart: Chart
+    state: State | None
+    handler: Handler | None
+    part: str
+    late: bool = False
+    branch_conditions: tuple[tuple[Expression, bool], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TypedValue:
+    """A value with its type and problems. `wanted` is the type that it should have, None if any will do.
+
+    `target` is the field, parameter, location or variable that the value is for, in words ("" if none). `sent` is the
+    type that the value has in the translation if it is sent: there `2.0` is an int (spec/03 §5.2).
+    """
+
+    use: Use
+    value: Value
+    type: Type
+    wanted: Type | None
+    problems: tuple[Problem | InitialProblem, ...]
+    element: Element
+    place: Place
+    target: str = ""
+    sent: Type = UNKNOWN
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TypedMachine:
+    """Attributes:
+    values: in document order within each chart.
+    variables: per chart scope, the types of its data; of equal ids the first counts.
+    """
+
+    values: tuple[TypedValue, ...]
+    variables: Mapping[str, Mapping[str, Type]]
+
+
+def type_machine(machine: Machine, environment: Environment) -> TypedMachine:
+    typer = _Typer(machine, environment)
+    for chart in machine.charts:
+        typer.chart(chart)
+    return TypedMachine(tuple(typer.values), typer.variables)
+
+
+# ------------------------------------------------------------- event variables
+
+GOAL_ID = BASE_TYPES["int32"]
+STATUS = BASE_TYPES["int8"]
+
+
+def bindings(handler: Handler, part: str, machine: Machine, environment: Environment) -> dict[str, Type]:
+    """The event variables known in the `part` ("cond" or "body") of a handler, with their types (spec/01 §12.1)."""
+    found = {}
+    for binding in handler.type.binds:
+        if binding.only in ("", part):
+            found[binding.name] = event_variable(binding, handler, machine, environment)
+    return found
+
+
+def event_variable(binding: Binding, handler: Handler, machine: Machine, environment: Environment) -> Type:
+    match binding.name:
+        case "_action":
+            return Struct("", (("goal_id", GOAL_ID),), "goal handle")
+        case "_bt":
+            return Struct("", (("status", STATUS),), "answer of the child")
+        case "_event":
+            return Struct("", (("data", _event_data(handler, environment)),), "event")
+        case "_wrapped_result":
+            part = interface_part(handler.trigger, find_handle(machine, handler), environment)
+            return Struct("", (("code", STATUS), ("result", part)), "wrapped result")
+    return interface_part(handler.trigger, find_handle(machine, handler), environment)
+
+
+def _event_data(handler: Handler, environment: Environment) -> Type:
+    match handler.trigger:
+        case "child-status":
+            return Struct("", (("status", STATUS),), "event data")
+        case "thread-free":
+            return Struct("", (("thread_id", GOAL_ID),), "event data")
+        case "event":
+            data = environment.event_data(handler.event.value) if handler.event else None
+            return UNKNOWN if data is None else data
+    return Struct("", (), "event data")
+
+
+SECTIONS = {"thread-start": "goal"}
+"""Parts of the protocol that carry another part's fields."""
+
+INTERFACE_KINDS = {
+    "publisher": "msg",
+    "subscriber": "msg",
+    "service-client": "srv",
+    "service-server": "srv",
+    "action-client": "action",
+    "action-server": "action",
+}
+
+
+def find_handle(machine: Machine, user: Handler | Communicate) -> Declaration | None:
+    """The declaration that a handler or sending element refers to: of the kind it wants, else the first so named."""
+    if user.handle is None:
+        return None
+    wanted = user.type.attributes["name"].refers
+    named = [d for d in machine.declarations if d.handle and d.handle.value == user.handle.value]
+    right = [d for d in named if d.kind in wanted]
+    return right[0] if right else (named[0] if named else None)
+
+
+def interface_part(part: str, declaration: Declaration | None, environment: Environment) -> Type:
+    """The struct of fields that `part` of the declared interface has; unknown if that cannot be told."""
+    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+        return UNKNOWN
+    interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    section = SECTIONS.get(part, part)
+    return dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+
+
+# -------------------------------------------------------------------- the walk
+
+
+@dataclass(eq=False)
+class _Typer:
+    machine: Machine
+    environment: Environment
+    values: list[TypedValue] = field(default_factory=list)
+    variables: dict[str, dict[str, Type]] = field(default_factory=dict)
+
+    def chart(self, chart: Chart) -> None:
+        variables: dict[str, Type] = {}
+        for data in chart.data:
+            if data.id is not None:
+                variables.setdefault(data.id.value, self.declared(data))
+        self.variables[chart.scope] = variables
+        place = Place(chart, None, None, "data")
+        for data in chart.data:
+            self.data(data, place)
+        for state in chart.states:
+            for body, part in ((state.entry, "onentry"), (state.exit, "onexit")):
+                if body is not None:
+                    _Body(self, variables, {}, Place(chart, state, None, part)).run(body.statements)
+            late = state.exit is not None and any(not isinstance(s, Assign) for s in state.exit.statements)
+            for handler in state.handlers:
+                self.handler(handler, chart, state, variables, late)
+
+    def declared(self, data: Data) -> Type:
+        if data.type is None or data.type.name is None:
+            return UNKNOWN
+        return resolve_type(data.type.name, self.environment.struct) or UNKNOWN
+
+    def data(self, data: Data, place: Place) -> None:
+        wanted = self.declared(data)
+        target = data.id.value if data.id else ""
+        for value, use in ((data.value, Use.INITIAL), (data.lower, Use.BOUND), (data.upper, Use.BOUND)):
+            if isinstance(value, Expression):
+                problems = () if value.broken else check_initial(value.tree, wanted)
+                self.values.append(TypedValue(use, value, wanted, wanted, problems, data.element, place, target))
+            elif value is not None:
+                self.port(use, value, wanted, data.element, place, target)
+
+    def port(self, use: Use, value: PortRead, wanted: Type | None, element: Element, place: Place, target: str) -> None:
+        type_ = port_type(self.machine, value)
+        self.values.append(TypedValue(use, value, type_, wanted, (), element, place, target, type_))
+
+    def handler(self, handler: Handler, chart: Chart, state: State, variables: Mapping[str, Type], late: bool) -> None:
+        if not handler.effective:
+            return
+        if handler.cond is not None:
+            known = bindings(handler, "cond", self.machine, self.environment)
+            if "_bt" in known:
+                known |= dict.fromkeys(STATUSES, STATUS)
+            body = _Body(self, variables, known, Place(chart, state, handler, "cond"))
+            body.value(Use.CONDITION, handler.cond, BOOL, handler.element)
+        known = bindings(handler, "body", self.machine, self.environment)
+        for target in handler.targets:
+            _Body(self, variables, known, Place(chart, state, handler, "body", late)).run(target.body)
+
+
+STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
+"""The answers of a tree node and the numbers that stand for them (spec/01 §11.2)."""
+
+
+def port_type(machine: Machine, read: PortRead) -> Type:
+    for port in machine.ports:
+        if port.key and read.key and port.key.value == read.key.value and port.type and port.type.name:
+            return BASE_TYPES.get(port.type.name.base, UNKNOWN) if not port.type.name.dimensions else UNKNOWN
+    return UNKNOWN
+
+
+_SENT = (Use.PARAMETER, Use.FIELD, Use.OUTPUT)
+
+
+class _Body:
+    """Types one sequence of statements, keeping track of what happens before what."""
+
+    def __init__(self, typer: _Typer, variables: Mapping[str, Type], known: Mapping[str, Type], place: Place) -> None:
+        self.typer = typer
+        self.variables = variables
+        self.known = known
+        self.place = place
+
+    def scope(self, name: str) -> Type | None:
+        return self.known.get(name) or self.variables.get(name)
+
+    def run(self, body: tuple[Statement, ...]) -> None:
+        for statement in body:
+            self.statement(statement)
+
+    def statement(self, statement: Statement) -> None:
+        match statement:
+            case Assign():
+                self.assign(statement)
+                if isinstance(statement.value, Expression) and uses_random(statement.value.tree):
+                    self.later()
+                return
+            case Send():
+                for param in statement.params:
+                    self.param(Use.PARAMETER, param, None)
+            case Communicate():
+                self.communicate(statement)
+            case SetOutput():
+                self.output(statement)
+            case If():
+                self.choice(statement)
+        self.later()
+
+    def later(self) -> None:
+        if not self.place.late:
+            self.place = replace(self.place, late=True)
+
+    def value(self, use: Use, value: Value | None, wanted: Type | None, element: Element, target: str = "") -> None:
+        if isinstance(value, Expression):
+            type_, problems = infer(value.tree, self.scope)
+            if value.broken:
+                type_ = UNKNOWN
+            sent = type_
+            if use in _SENT and any(isinstance(node, Number) and node.is_real for node in walk(value.tree)):
+                sent, _ = infer(value.tree, self.scope, reprinted=True)
+            self.typer.values.append(TypedValue(use, value, type_, wanted, problems, element, self.place, target, sent))
+        elif value is not None:
+            self.typer.port(use, value, wanted, element, self.place, target)
+
+    def assign(self, statement: Assign) -> None:
+        wanted: Type | None = None
+        target = ""
+        if statement.location is not None:
+            self.value(Use.LOCATION, statement.location, None, statement.element)
+            wanted, target = self.typer.values[-1].type, statement.location.text
+        self.value(Use.ASSIGNED, statement.value, wanted, statement.element, target)
+
+    def param(self, use: Use, param: Param, wanted: Type | None) -> None:
+        self.late_value(use, param.value, wanted, param.element, param.name.value if param.name else "")
+
+    def late_value(self, use: Use, value: Value | None, wanted: Type | None, element: Element, target: str) -> None:
+        """A value that is sent: it is evaluated in the step of the sending, after the event arrived."""
+        before = self.place
+        self.later()
+        self.value(use, value, wanted, element, target)
+        self.place = before
+
+    def communicate(self, statement: Communicate) -> None:
+        declaration = find_handle(self.typer.machine, statement)
+        part = interface_part(statement.type.sends, declaration, self.typer.environment)
+        for param in statement.fields:
+            wanted = _leaf(part, param.name.value) if param.name else None
+            self.param(Use.FIELD, param, wanted)
+        for expression, name in ((statement.goal_id, "goal_id"), (statement.thread_id, "thread_id")):
+            self.late_value(Use.ARGUMENT, expression, INT, statement.element, name)
+
+    def output(self, statement: SetOutput) -> None:
+        wanted = port_type(self.typer.machine, PortRead(statement.key, statement.element.span))
+        target = statement.key.value if statement.key else ""
+        self.late_value(Use.OUTPUT, statement.value, wanted, statement.element, target)
+
+    def choice(self, statement: If) -> None:
+        """The first condition is evaluated in a step of its own, so even it is late."""
+        before = self.place
+        self.later()
+        outer = self.place.branch_conditions
+        failed: tuple[tuple[Expression, bool], ...] = ()
+        for branch in statement.branches:
+            self.value(Use.BRANCH, branch.cond, BOOL, branch.element)
+            holds = ((branch.cond, True),) if branch.cond else ()
+            self.place = replace(self.place, branch_conditions=(*outer, *failed, *holds))
+            self.run(branch.body)
+            failed = (*failed, *(((branch.cond, False),) if branch.cond else ()))
+            self.place = replace(self.place, branch_conditions=outer)
+        if statement.otherwise is not None:
+            self.place = replace(self.place, branch_conditions=(*outer, *failed))
+            self.run(statement.otherwise.body)
+        self.place = replace(before, late=True)
+
+
+def _leaf(part: Type, path: str) -> Type | None:
+    """The type of the leaf field at a dotted path; None if there is none such, unknown if the part is not known."""
+    type_ = part
+    bounds: tuple[int | None, ...] = ()
+    for name in path.split("."):
+        inner, more = unwrap(type_)
+        bounds = (*bounds, *more)
+        member = inner.member(name) if isinstance(inner, Struct) else None
+        if member is None:
+            return UNKNOWN if inner == UNKNOWN else None
+        type_ = member
+    return wrap(type_, bounds)
+
+
+def uses_random(expr: Expr) -> bool:
+    return any(
+        isinstance(node, Call)
+        and isinstance(node.function, Member)
+        and node.function.name == "random"
+        and isinstance(node.function.object, Name)
+        and node.function.object.name == "Math"
+        for node in walk(expr)
+    )

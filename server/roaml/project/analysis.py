@@ -1,0 +1,404 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From the files of one moment to models and systems.
+
+- An `Analysis` is one moment: it never changes, and every answer is a function of the files' content.
+- Results are memoised by content (`Memo`), so the next moment pays only for what differs: parse and build by the file's
+  digest, types and outline by digest and declarations, a system by the outlines of its files.
+- Nothing here judges; `roaml.project.checking` does.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+from roaml.diagnostics import Finding
+from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.interfaces.registry import NotFound, Registry
+from roaml.interfaces.types import Definition, Kind
+from roaml.jani.properties import Property, identifiers
+from roaml.jani.reader import read_properties
+from roaml.json import JsonValue
+from roaml.json import parse as parse_json
+from roaml.language import HL_SCXML, Grammar
+from roaml.language.validate import MisplacedElement, UnknownElement, Violation, validate
+from roaml.model.build_machine import build_machine
+from roaml.model.expand import TreeFileOutline, expand, tree_file_outline
+from roaml.model.globals import GlobalVariable, global_variables
+from roaml.model.json_schema import structs_in_json
+from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
+from roaml.model.machine import Machine
+from roaml.model.outline import MachineOutline, outline
+from roaml.model.ros import InterfaceType, interface_type
+from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
+from roaml.model.system import System
+from roaml.model.system_file import Input, ListedFile, SystemFile, build_system_file, wanted_kind
+from roaml.model.tree import TreeFile, build_tree_file
+from roaml.model.typing import Environment, TypedMachine, type_machine
+from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
+from roaml.project.memo import Memo
+from roaml.text import SourceFile
+from roaml.xml import Document
+from roaml.xml import parse as parse_xml
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Structs:
+    """The structs of a system. `outlines` is what they are made of: equal outlines, equal structs."""
+
+    outlines: tuple[StructOutline, ...]
+    types: Mapping[str, Type]
+
+
+NO_STRUCTS = Structs((), {})
+
+
+class _MachineEnvironment:
+    """`roaml.model.typing.Environment` for one machine."""
+
+    def __init__(self, analysis: Analysis, structs: Structs, events: Mapping[str, Struct]) -> None:
+        self.struct = structs.types.get
+        self.event_data = events.get
+        self._analysis = analysis
+
+    def interface(self, kind: str, name: str) -> InterfaceType | None:
+        found = self._analysis.interface(kind, name)
+        return found if isinstance(found, InterfaceType) else None
+
+
+class Analysis:
+    """Everything that is known about the files of one moment.
+
+    Args:
+        files: the files.
+        registry: where ROS types are looked up.
+        memo: results of earlier moments.
+        systems: the paths of the system files that count.
+    """
+
+    def __init__(self, files: Files, registry: Registry, memo: Memo, systems: Iterable[str]) -> None:
+        self.files = files
+        self.registry = registry
+        self.memo = memo
+        self.system_paths = tuple(dict.fromkeys(systems))
+        self._interfaces: dict[tuple[str, str], InterfaceType | NotFound] = {}
+        self._systems: dict[str, System | None] = {}
+        self._listed: dict[str, tuple[ListedFile, ...]] = {}
+
+    # ---------------------------------------------------------- single files
+
+    def source(self, path: str) -> SourceFile | None:
+        return self.files.text(path)
+
+    def kind(self, path: str) -> FileKind:
+        """What the file is by itself."""
+        source = self.source(path)
+        if source is None:
+            return FileKind.UNKNOWN
+        return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
+
+    def document(self, path: str) -> Document | None:
+        return self._of("document", path, lambda source: parse_xml(source.text))
+
+    def json(self, path: str) -> tuple[JsonValue, tuple[Finding, ...]] | None:
+        return self._of("json", path, lambda source: parse_json(source.text))
+
+    def properties(self, path: str) -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
+        """The properties in a file, and what is wrong with their form."""
+        value = self.json(path)
+        if value is None:
+            return (), ()
+        return self._of("properties", path, lambda _: read_properties(value[0], path)) or ((), ())
+
+    def violations(self, path: str, grammar: Grammar) -> tuple[Violation, ...]:
+        """Where a file does not follow a grammar."""
+        found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
+        return found or ()
+
+    def machine(self, path: str) -> Machine | None:
+        return self._of_document("machine", path, build_machine)
+
+    def tree(self, path: str) -> TreeFile | None:
+        return self._of_document("tree", path, build_tree_file)
+
+    def system_file(self, path: str) -> SystemFile | None:
+        return self._of_document("system file", path, build_system_file)
+
+    def struct_declarations(self, path: str) -> tuple[StructDeclaration, ...]:
+        """The structs that a file declares, in XML or in JSON."""
+        if self.kind(path) is FileKind.STRUCTS:
+            return self._of_document("structs", path, structs_in_xml) or ()
+        value = self.json(path)
+        if value is None:
+            return ()
+        return self._of("structs", path, lambda _: structs_in_json(value[0])[0]) or ()
+
+    def _of(self, computation: str, path: str, compute: Callable[[SourceFile], T]) -> T | None:
+        """What a file's text gives; None if it cannot be read or is too large to be looked into."""
+        source = self.source(path)
+        if source is None or len(source.text) > MAX_CHARACTERS:
+            return None
+        return self.memo.get(computation, path, source.digest, lambda: compute(source))
+
+    def _of_document(self, computation: str, path: str, compute: Callable[[Document], T]) -> T | None:
+        document = self.document(path)
+        if document is None:
+            return None
+        return self._of(computation, path, lambda _: compute(document))
+
+    # ------------------------------------------------------------- ROS types
+
+    def interface(self, kind: str, name: str) -> InterfaceType | NotFound:
+        """The ROS type `name` (as written) of kind msg, srv or action, in HL types."""
+        key = (kind, name)
+        if key not in self._interfaces:
+            self._interfaces[key] = self._find_interface(kind, name)
+        return self._interfaces[key]
+
+    def _find_interface(self, kind: str, name: str) -> InterfaceType | NotFound:
+        assert kind in ("msg", "srv", "action")
+        definition = self.registry.resolve(kind, name)  # type: ignore[arg-type]
+        if isinstance(definition, NotFound):
+            return definition
+        parts = tuple(self._closure(definition))
+        return self.memo.get(
+            "interface",
+            (kind, name),
+            parts,
+            lambda: interface_type(definition, lambda n: self.registry.resolve("msg", n)),
+        )
+
+    def _closure(self, definition: Definition) -> list[Definition]:
+        """The definition and all messages in it."""
+        found = [definition]
+        names = {definition.full_name}
+        for each in found:
+            for section in each.sections:
+                for field in section.fields:
+                    if not field.type.is_primitive and field.type.name not in names:
+                        names.add(field.type.name)
+                        nested = self.registry.resolve("msg", field.type.name)
+                        if not isinstance(nested, NotFound):
+                            found.append(nested)
+        return found
+
+    # --------------------------------------------------------------- systems
+
+    def listed(self, path: str) -> tuple[ListedFile, ...]:
+        """The files that a system file names."""
+        if path not in self._listed:
+            file = self.system_file(path)
+            self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
+        return self._listed[path]
+
+    def _listed_file(self, base: str, entry: Input) -> ListedFile:
+        wanted = wanted_kind(entry)
+        if entry.src is None:
+            return ListedFile(entry, "", "", wanted, FileKind.UNKNOWN)
+        path = resolve(base, entry.src.value)
+        source = self.files.read(path)
+        if isinstance(source, Problem):
+            return ListedFile(entry, path, source.value, wanted, FileKind.UNKNOWN)
+        if len(source.text) > MAX_CHARACTERS:
+            return ListedFile(entry, path, "it is too large to be checked", wanted, self.kind(path))
+        found = self.kind(path)
+        if found is FileKind.MACHINE and self.machine(path) is None:
+            found = FileKind.UNKNOWN
+        if wanted is FileKind.JSON_STRUCTS and found is FileKind.UNKNOWN and path.endswith(".json"):
+            found = FileKind.JSON_STRUCTS
+        return ListedFile(entry, path, "", wanted, found)
+
+    def tree_paths(self, path: str) -> tuple[str, ...]:
+        """The tree files of a system: the listed one, then what it includes, each once."""
+        first = next((f.path for f in self.listed(path) if f.wanted is FileKind.TREE and f.usable), None)
+        return self.trees_from(first) if first else ()
+
+    def trees_from(self, path: str) -> tuple[str, ...]:
+        """A tree file and what it includes, directly or not, each once."""
+        found = [path] if self.tree(path) is not None else []
+        for each in found:
+            included = dict.fromkeys(self.includes(each))
+            found += [p for p in included if p not in found and self.tree(p) is not None]
+        return tuple(found)
+
+    def includes(self, path: str) -> tuple[str, ...]:
+        """The paths that a tree file includes."""
+        tree = self.tree(path)
+        return tuple(self.include_path(path, i.path.value) for i in tree.includes if i.path) if tree else ()
+
+    def include_path(self, base: str, written: str) -> str:
+        return resolve(base, written)
+
+    def files_of(self, system: str) -> tuple[str, ...]:
+        """The system file and all files that belong to it, each once.
+
+        A file that neither its name nor its content makes one of ours is not among them: what it holds is nobody's
+        business, wherever `src` points to.
+        """
+        listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
+        return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
+
+    @cached_property
+    def memberships(self) -> Mapping[str, tuple[str, ...]]:
+        """File -> the systems that it belongs to."""
+        found: dict[str, list[str]] = {}
+        for system in self.system_paths:
+            for path in self.files_of(system):
+                found.setdefault(path, []).append(system)
+        return {path: tuple(systems) for path, systems in found.items()}
+
+    def structs(self, system: str | None) -> Structs:
+        """The structs that a system declares. A struct file in no system declares for itself only."""
+        if system is None:
+            return NO_STRUCTS
+        files = (f.path for f in self.listed(system) if f.usable and f.input.section == "data_declarations")
+        declared = (declaration.outline for path in files for declaration in self.struct_declarations(path))
+        outlines = tuple(found for found in declared if found is not None)
+        return self.memo.get("struct types", system, outlines, lambda: Structs(outlines, resolve_structs(outlines)))
+
+    def system(self, path: str) -> System | None:
+        """The linked system of a system file, None if the file cannot be read or is none."""
+        if path not in self._systems:
+            self._systems[path] = self._link(path)
+        return self._systems[path]
+
+    def _link(self, path: str) -> System | None:
+        file = self.system_file(path)
+        if file is None:
+            return None
+        listed = self.listed(path)
+        structs = self.structs(path)
+        trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
+        machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
+        complete = self._is_complete(path, listed)
+        observed = self._observed(listed)
+        events: Mapping[str, Struct] = {}
+        for _ in range(_ROUNDS):
+            outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
+            nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
+            plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
+            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, complete, observed)
+            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, complete, observed)
+            system = self.memo.get("system", path, key, make)
+            if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
+                break
+            events = system.event_data
+        return system
+
+    def _make(
+        self,
+        path: str,
+        file: SystemFile,
+        nodes: tuple[tuple[str, MachineOutline], ...],
+        plugins: tuple[tuple[str, MachineOutline], ...],
+        trees: tuple[TreeFileOutline, ...],
+        structs: Structs,
+        complete: bool,
+        observed: frozenset[str],
+    ) -> System:
+        paths = tuple(tree.path for tree in trees)
+        instances = expand(trees)
+        return System(
+            path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, complete, observed
+        )
+
+    def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
+        """The names that the properties of a system mention."""
+        paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
+        properties = [each for path in paths for each in self.properties(path)[0]]
+        return frozenset(name for each in properties for name, _ in identifiers(each.expression))
+
+    def _is_complete(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
+        """Whether everything that the system names is there, well-formed and of known elements."""
+        if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
+            return False
+        paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))
+        for each in (path, *paths):
+            document = self.document(each)
+            if document is None or any(f.code == "xml-syntax" for f in document.findings):
+                return False
+        machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
+        if any(
+            isinstance(v, (UnknownElement, MisplacedElement)) for m in machines for v in self.violations(m, HL_SCXML)
+        ):
+            return False
+        return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
+
+    def tree_outline(self, path: str) -> TreeFileOutline:
+        file = self.tree(path)
+        assert file is not None
+        return self.memo.get("tree outline", path, file, lambda: tree_file_outline(path, file))
+
+    # ----------------------------------------------- machines in their system
+
+    def outline(self, path: str, system: str, structs: Structs, events: Mapping[str, Struct]) -> MachineOutline:
+        """What the rest of its system sees of a machine."""
+        machine = self.machine(path)
+        assert machine is not None
+        typed = self.typed(path, system, structs, events)
+        return self.memo.get("outline", (path, system), typed, lambda: outline(machine, typed))
+
+    def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
+        """A machine with its types. `events` are the data of plain events, as far as they are known."""
+        machine, source = self.machine(path), self.source(path)
+        assert machine is not None
+        assert source is not None
+        known = {name: events[name] for name in _received(machine) if name in events}
+        key = (source.digest, structs.outlines, self.interfaces_of(machine), known)
+        environment = _MachineEnvironment(self, structs, known)
+        # What is known without the events is needed to link the system, and must outlive what is known with them.
+        computation = "typed with events" if known else "typed"
+        return self.memo.get(computation, (path, system), key, lambda: type_machine(machine, environment))
+
+    def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
+        """The ROS types that a machine declares, in order."""
+        return tuple(
+            self.interface(_KINDS[d.kind], d.type.value) for d in machine.declarations if d.type and d.kind in _KINDS
+        )
+
+    def typed_in(self, path: str, system: str | None) -> TypedMachine:
+        """A machine with its types as they are in a system, or alone."""
+        linked = self.system(system) if system else None
+        return self.typed(path, system, self.structs(system), linked.event_data if linked else {})
+
+    def environment(self, system: str) -> Environment:
+        """What the machines of a system can name."""
+        linked = self.system(system)
+        return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {})
+
+    def globals(self, system: str) -> Mapping[str, GlobalVariable]:
+        """The global variables of the translated system, by name."""
+        linked = self.system(system)
+        if linked is None:
+            return {}
+        environment = _MachineEnvironment(self, NO_STRUCTS, {})
+        return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
+
+
+_ROUNDS = 4
+"""How often event data are passed on from event to event before their types are taken as they are."""
+
+_KINDS: Mapping[str, Kind] = {
+    "publisher": "msg",
+    "subscriber": "msg",
+    "service-client": "srv",
+    "service-server": "srv",
+    "action-client": "action",
+    "action-server": "action",
+}
+
+
+def _received(machine: Machine) -> set[str]:
+    """The plain events that a machine has transitions for."""
+    handlers = (h for chart in machine.charts for state in chart.states for h in state.handlers)
+    return {handler.event.value for handler in handlers if handler.event}
+
+
+def _waits_for_events(outlines: Iterable[MachineOutline]) -> bool:
+    """Whether the type of something that is sent is not known yet."""
+    return any(param.type == UNKNOWN for o in outlines for sent in o.sent for param in sent.params)

@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Running the rules: from models and systems to diagnostics.
+
+- A file that belongs to several systems is checked in each, and equal findings are merged; a file that belongs to none
+  is checked alone.
+- Findings are memoised by what they depend on: the file's content, its types, its system.
+- A rule that crashes is reported as `internal-error`, once for each file, and does not stop the others. No setting and
+  no comment keeps that quiet: what the tool did not look at must not seem clean.
+"""
+
+from __future__ import annotations
+
+import functools
+import logging
+from collections.abc import Callable, Iterable, Iterator
+
+from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
+from roaml.interfaces.parse import parse as parse_interface
+from roaml.interfaces.types import Kind
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
+from roaml.model.dialect import dialect_of
+from roaml.model.expand import TreeFileOutline
+from roaml.model.json_schema import structs_in_json
+from roaml.model.kinds import FileKind
+from roaml.model.machine import Dialect
+from roaml.model.system import System
+from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.files import MAX_CHARACTERS, Problem
+from roaml.project.locate import locate
+from roaml.project.settings import Settings
+from roaml.project.suppress import suppressions
+from roaml.rules import BY_CODE, RULES, file_too_large
+from roaml.rules import internal_error as internal_error_rule
+from roaml.rules.rule import (
+    FileContext,
+    MachineContext,
+    PropertiesContext,
+    Rule,
+    StructsContext,
+    SystemContext,
+    TreeContext,
+)
+from roaml.text import Location, SourceFile, Span
+
+log = logging.getLogger(__name__)
+
+_FORM = ("xml-syntax", "nesting-too-deep")
+_CRASH = internal_error_rule.RULE.code
+
+_GRAMMARS: dict[FileKind, Grammar] = {
+    FileKind.SYSTEM: SYSTEM,
+    FileKind.TREE: BEHAVIOR_TREE,
+    FileKind.STRUCTS: STRUCTS,
+}
+_XML_KINDS = (*_GRAMMARS, FileKind.MACHINE, FileKind.SPECIFICATION, FileKind.UNKNOWN)
+
+
+class Checker:
+    """Says what is wrong with the files of one moment."""
+
+    def __init__(self, analysis: Analysis, settings: Settings) -> None:
+        self.analysis = analysis
+        self.settings = settings
+
+    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
+        """All that is to be said about a file, sorted by place. Nothing about a file that cannot be read."""
+        source = self.analysis.source(path)
+        if source is None:
+            return ()
+        systems = self.analysis.memberships.get(path, ())
+        found = dict.fromkeys(
+            finding
+            for system in (systems or (None,))
+            for finding in self.findings(path, system)
+            if self._wanted(finding)
+        )
+        hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
+        diagnostics = [
+            self._publish(path, finding)
+            for finding in _without_repetition(found)
+            if finding.code == _CRASH or not any(rule.hides(finding) for rule in hidden)
+        ]
+        return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
+
+    def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
+        """What the rules find in a file, seen as a part of one system or alone."""
+        source = self.analysis.source(path)
+        if source is None:
+            return ()
+        if len(source.text) > MAX_CHARACTERS:
+            return (_too_large(source),)
+        try:
+            run = _Run(self.analysis, path, source, self._kind(path, system), system)
+            return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
+        except Exception as error:  # a crash of ours in one file must not keep the others from being checked
+            log.exception("%s cannot be analysed", path)
+            return (internal_error("model", error),)
+
+    def _kind(self, path: str, system: str | None) -> FileKind:
+        """What a file is: by itself, or else as what a system lists it."""
+        kind = self.analysis.kind(path)
+        listed = [f for f in self.analysis.listed(system) if f.path == path] if system else []
+        if kind is FileKind.UNKNOWN and any(f.found is FileKind.JSON_STRUCTS for f in listed):
+            return FileKind.JSON_STRUCTS
+        return kind
+
+    def _wanted(self, finding: Finding) -> bool:
+        code, settings = finding.code, self.settings
+        return code == _CRASH or (code not in settings.ignore and (not settings.select or code in settings.select))
+
+    def _publish(self, path: str, finding: Finding) -> Diagnostic:
+        severity = self.settings.severities.get(finding.code)
+        if severity is None:
+            severity = finding.severity
+        if severity is None:
+            severity = BY_CODE[finding.code].severity if finding.code in BY_CODE else Severity.ERROR
+        related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
+        return Diagnostic(
+            path, finding.code, severity, finding.span, finding.message, finding.fixes, related, finding.tags
+        )
+
+    def _related(self, path: str, related: Related) -> RelatedPlace | None:
+        if isinstance(related.place, Symbol):
+            location = locate(self.analysis, related.place)
+            return None if location is None else RelatedPlace(location, related.message)
+        return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _is_xml(kind: FileKind) -> bool:
+    return kind in _XML_KINDS
+
+
+def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Findings that differ only in fixes or related places, as several systems give them, are one."""
+    seen = set()
+    for finding in findings:
+        key = (finding.code, finding.span, finding.message)
+        if key not in seen:
+            seen.add(key)
+            yield finding
+
+
+def _too_large(source: SourceFile) -> Finding:
+    size = len(source.text) / 1e6
+    message = f"the file is too large to be checked ({size:.0f} MB; up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
+    return file_too_large.RULE.at(Span(0, source.lines.line_end(0)), message)
+
+
+class _Run:
+    """The check of one file in one system."""
+
+    def __init__(self, analysis: Analysis, path: str, source: SourceFile, kind: FileKind, system: str | None) -> None:
+        self.analysis = analysis
+        self.path = path
+        self.source = source
+        self.kind = kind
+        self.system_path = system
+        self.system: System | None = analysis.system(system) if system else None
+
+    def key(self) -> object:
+        """All that the findings depend on."""
+        parts: tuple[object, ...] = (self.source.digest, self.kind, self.system)
+        match self.kind:
+            case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
+                machine = self.analysis.machine(self.path)
+                assert machine is not None
+                typed = self.analysis.typed_in(self.path, self.system_path)
+                lookups = tuple(self.analysis.interfaces_of(machine))
+                return (*parts, typed, lookups)
+            case FileKind.SYSTEM:
+                listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
+                return (*parts, listed, self.analysis.system(self.path))
+            case FileKind.TREE:
+                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
+            case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
+                return (*parts, self.analysis.structs(self.system_path).outlines)
+        return parts
+
+    def findings(self) -> tuple[Finding, ...]:
+        found = tuple(self._all())
+        if any(finding.code in _FORM for finding in found):
+            # What seems superfluous may be used in the part that could not be read.
+            return tuple(finding for finding in found if Tag.UNNECESSARY not in finding.tags)
+        return found
+
+    def _all(self) -> Iterator[Finding]:
+        file = self._file_context()
+        checks: list[tuple[Rule, Callable[[], Iterable[Finding]]]] = []
+        for rule in RULES:
+            if rule.file is not None:
+                checks.append((rule, functools.partial(rule.file, file)))
+        checks += self._own_checks()
+        for rule, check in checks:
+            try:
+                yield from list(check())
+            except Exception as error:  # a crash of ours must not stop the other rules
+                log.exception("rule %s failed on %s", rule.code, self.path)
+                yield internal_error(rule.code, error)
+
+    def _own_checks(self) -> list[tuple[Rule, Callable[[], Iterable[Finding]]]]:
+        try:
+            match self.kind:
+                case FileKind.MACHINE:
+                    return self._machine_checks()
+                case FileKind.TREE:
+                    tree = self._tree_context()
+                    return [(r, functools.partial(r.tree, tree)) for r in RULES if r.tree and tree]
+                case FileKind.SYSTEM:
+                    system = self._system_context()
+                    return [(r, functools.partial(r.system, system)) for r in RULES if r.system and system]
+                case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
+                    structs = self._structs_context()
+                    return [(r, functools.partial(r.structs, structs)) for r in RULES if r.structs]
+                case FileKind.PROPERTIES:
+                    properties = self._properties_context()
+                    return [
+                        (r, functools.partial(r.properties, properties)) for r in RULES if r.properties and properties
+                    ]
+        except Exception as error:  # as above: the parsers' findings are still worth showing
+            log.exception("the model of %s cannot be built", self.path)
+            failure = internal_error("model", error)
+            return [(internal_error_rule.RULE, lambda: [failure])]
+        return []
+
+    # -------------------------------------------------------------- contexts
+
+    def _file_context(self) -> FileContext:
+        match self.kind:
+            case FileKind.PROPERTIES:
+                _, findings = self.analysis.json(self.path) or (None, ())
+                return FileContext(self.source, findings or self.analysis.properties(self.path)[1])
+            case FileKind.JSON_STRUCTS:
+                value, findings = self.analysis.json(self.path) or (None, ())
+                more = structs_in_json(value)[1] if value is not None and not findings else ()
+                return FileContext(self.source, (*findings, *more))
+            case FileKind.JANI_MODEL:
+                _, findings = self.analysis.json(self.path) or (None, ())
+                return FileContext(self.source, findings)
+            case FileKind.INTERFACE:
+                return FileContext(self.source, self._interface_findings())
+        document = self.analysis.document(self.path)
+        assert document is not None
+        grammar = self._grammar()
+        violations = () if grammar is None else self.analysis.violations(self.path, grammar)
+        return FileContext(self.source, document.findings, document, grammar, violations, self._older())
+
+    def _interface_findings(self) -> tuple[Finding, ...]:
+        name, _, extension = self.path.replace("\\", "/").rpartition("/")[2].rpartition(".")
+        kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
+        package = self.path.replace("\\", "/").split("/")[-3:-2]
+        return parse_interface(self.source.text, package[0] if package else "package", name, kind)[1]
+
+    def _grammar(self) -> Grammar | None:
+        if self.kind is FileKind.MACHINE:
+            if self.analysis.machine(self.path) is None:
+                return None
+            return PLAIN_SCXML if self._dialect() in (Dialect.PLAIN, Dialect.FOREIGN) else HL_SCXML
+        return _GRAMMARS.get(self.kind)
+
+    def _older(self) -> bool:
+        if self.kind is FileKind.MACHINE and self.analysis.machine(self.path) is not None:
+            return self._dialect() is Dialect.OLDER
+        if self.kind is FileKind.SYSTEM:
+            file = self.analysis.system_file(self.path)
+            return file is not None and file.older
+        return self.system is not None and self.system.older
+
+    def _dialect(self) -> Dialect:
+        machine, document = self.analysis.machine(self.path), self.analysis.document(self.path)
+        assert machine is not None
+        assert document is not None
+        return dialect_of(machine, document, self.system.older if self.system else None)
+
+    def _machine_checks(self) -> list[tuple[Rule, Callable[[], Iterable[Finding]]]]:
+        machine, document = self.analysis.machine(self.path), self.analysis.document(self.path)
+        if machine is None or document is None:
+            return []
+        dialect = self._dialect()
+        structs = self.analysis.structs(self.system_path)
+        listed = self.analysis.listed(self.system_path) if self.system_path else ()
+        events = self.system.event_data if self.system else {}
+        context = MachineContext(
+            self.source,
+            document,
+            machine,
+            self.analysis.typed_in(self.path, self.system_path),
+            dialect,
+            self.system,
+            self.system.automata_of(self.path) if self.system else (),
+            frozenset(f.input.section for f in listed if f.path == self.path),
+            structs.types.get,
+            tuple(structs.types),
+            self.analysis.interface,
+            events.get,
+        )
+        plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
+        return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
+
+    def _tree_context(self) -> TreeContext | None:
+        file, document = self.analysis.tree(self.path), self.analysis.document(self.path)
+        if file is None or document is None:
+            return None
+        older = self.system is not None and self.system.older
+        outlines = self._tree_outlines()
+        return TreeContext(self.source, document, file, self.system, outlines, self._missing_includes(), older)
+
+    def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
+        """The trees that this file is seen with: those of its system, or what it includes."""
+        paths = self.analysis.tree_paths(self.system_path) if self.system_path else self.analysis.trees_from(self.path)
+        return tuple(self.analysis.tree_outline(path) for path in paths)
+
+    def _missing_includes(self) -> dict[str, str]:
+        """What cannot be included, and why."""
+        file = self.analysis.tree(self.path)
+        found: dict[str, str] = {}
+        for include in file.includes if file else ():
+            if include.path is None:
+                continue
+            target = self.analysis.include_path(self.path, include.path.value)
+            source = self.analysis.files.read(target)
+            if isinstance(source, Problem):
+                found[include.path.value] = source.value
+            elif self.analysis.tree(target) is None:
+                found[include.path.value] = "it is no file of behavior trees"
+            elif self.path in self.analysis.trees_from(target):
+                found[include.path.value] = (
+                    "it includes this file in turn" if target != self.path else "it is this file"
+                )
+        return found
+
+    def _system_context(self) -> SystemContext | None:
+        file, document = self.analysis.system_file(self.path), self.analysis.document(self.path)
+        system = self.analysis.system(self.path)
+        if file is None or document is None or system is None:
+            return None
+        return SystemContext(self.source, document, file, self.analysis.listed(self.path), system)
+
+    def _structs_context(self) -> StructsContext:
+        declarations = self.analysis.struct_declarations(self.path)
+        structs = self.analysis.structs(self.system_path)
+        if structs is NO_STRUCTS:
+            own = tuple(outline for d in declarations if (outline := d.outline) is not None)
+            return StructsContext(self.source, declarations, own)
+        return StructsContext(self.source, declarations, structs.outlines)
+
+    def _properties_context(self) -> PropertiesContext | None:
+        found = self.analysis.json(self.path)
+        if found is None:
+            return None
+        properties, _ = self.analysis.properties(self.path)
+        variables = self.analysis.globals(self.system_path) if self.system_path else None
+        return PropertiesContext(self.source, found[0], properties, self.system, variables)
+
+
+def internal_error(where: str, error: Exception) -> Finding:
+    message = (
+        f"the rule `{where}` failed ({type(error).__name__}: {error}); this is a mistake of the tool, please report it"
+    )
+    return internal_error_rule.RULE.at(Span(0, 0), message)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which files of a folder may be ours, and which of them are system files.
+
+Folders that hold no sources are passed over; links are followed once. Unreadable folders are as good as empty.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import glob
+import os
+import stat
+from collections.abc import Iterable, Iterator
+
+from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
+from roaml.project.files import Files
+from roaml.text import decode
+
+SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
+MAX_FILES = 50_000
+_HEAD = 65_536
+"""Bytes: more than `root_name` looks at, in any encoding but UTF-32."""
+
+
+def candidates(roots: Iterable[str], exclude: tuple[str, ...] = ()) -> Iterator[str]:
+    """All files below the roots that by their extension may be ours, sorted within each folder, each once."""
+    seen: set[str] = set()
+    count = 0
+    for root in roots:
+        for folder, names, files in os.walk(root, followlinks=True):
+            real = os.path.realpath(folder)
+            if real in seen:
+                names.clear()
+                continue
+            seen.add(real)
+            names[:] = sorted(name for name in names if not _is_skipped(name))
+            for name in sorted(files):
+                path = os.path.join(folder, name)
+                if name.lower().endswith(EXTENSIONS) and not _is_excluded(path, root, exclude):
+                    yield path
+                    count += 1
+                    if count >= MAX_FILES:
+                        return
+
+
+def is_candidate(path: str, roots: Iterable[str], exclude: tuple[str, ...] = ()) -> bool:
+    """Whether `candidates` gives a path if there is such a file."""
+    for root in roots:
+        if is_inside(path, root):
+            *folders, name = os.path.relpath(path, root).split(os.sep)
+            if not any(map(_is_skipped, folders)) and name.lower().endswith(EXTENSIONS):
+                return not _is_excluded(path, root, exclude)
+    return False
+
+
+def is_inside(path: str, folder: str) -> bool:
+    """Whether a path lies somewhere below a folder."""
+    return path.startswith(os.path.join(folder, ""))
+
+
+def _is_skipped(folder_name: str) -> bool:
+    return folder_name in SKIPPED_FOLDERS or folder_name.startswith(".")
+
+
+def _is_excluded(path: str, root: str, exclude: tuple[str, ...]) -> bool:
+    return any(_matches(path, os.path.join(glob.escape(root), pattern)) for pattern in exclude)
+
+
+def _matches(path: str, pattern: str) -> bool:
+    """Whether a pattern means a path or a folder around it. `*` stands for several folders too, `**/` also for none."""
+    pattern = pattern.rstrip("/" + os.sep)
+    forms = {pattern, pattern.replace("**/", "")}
+    return any(fnmatch.fnmatch(path, form) or fnmatch.fnmatch(path, f"{form}/*") for form in forms)
+
+
+class SystemIndex:
+    """Which files are system files, remembered by size and time of change."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[tuple[int, int], bool]] = {}
+
+    def systems(self, paths: Iterable[str], files: Files) -> tuple[str, ...]:
+        return tuple(path for path in paths if self._is_system(path, files))
+
+    def _is_system(self, path: str, files: Files) -> bool:
+        if not path.lower().endswith(".xml"):
+            return False
+        if path in files.open_files:
+            return kind_of(path, files.open_files[path].text) is FileKind.SYSTEM
+        try:
+            status = os.stat(path)
+            if not stat.S_ISREG(status.st_mode):  # to open a pipe would wait for ever
+                return False
+            stamp = (status.st_mtime_ns, status.st_size)
+            known = self._known.get(path)
+            if known is not None and known[0] == stamp:
+                return known[1]
+            with open(path, "rb") as file:
+                head = decode(path, file.read(_HEAD)).text
+        except (OSError, ValueError):
+            return False
+        found = kind_of(path, head) is FileKind.SYSTEM
+        self._known[path] = (stamp, found)
+        return found

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading the user's files: what is open in an editor before what is on the disk.
+
+- Never raises for what stands on the disk: a file that cannot be used is a `Problem`.
+- Opens regular files only; devices, sockets and pipes are never opened.
+- A file is read again only when its size or time of change differs.
+"""
+
+from __future__ import annotations
+
+import enum
+import os
+import stat
+from collections.abc import Mapping
+
+from roaml.text import SourceFile, decode
+
+MAX_BYTES = 32 * 1024 * 1024
+"""Larger files are not read at all."""
+
+MAX_CHARACTERS = 2_000_000
+"""Longer texts are not analysed: nobody writes them by hand, and no editor waits for them."""
+
+
+class Problem(enum.Enum):
+    """Why a path gives no text."""
+
+    MISSING = "there is no such file"
+    FOLDER = "it is a folder"
+    SPECIAL = "it is no regular file"
+    UNREADABLE = "it cannot be read"
+    TOO_LARGE = "it is larger than 32 MB"
+
+
+class DiskFiles:
+    """The disk, remembered by size and time of change."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[tuple[int, int, int], SourceFile]] = {}
+
+    def read(self, path: str) -> SourceFile | Problem:
+        try:
+            status = os.stat(path)
+            if stat.S_ISDIR(status.st_mode):
+                return Problem.FOLDER
+            if not stat.S_ISREG(status.st_mode):
+                return Problem.SPECIAL
+            if status.st_size > MAX_BYTES:
+                return Problem.TOO_LARGE
+            stamp = (status.st_mtime_ns, status.st_size, status.st_ino)
+            known = self._known.get(path)
+            if known is not None and known[0] == stamp:
+                return known[1]
+            with open(path, "rb") as file:
+                source = decode(path, file.read(MAX_BYTES))
+        except (FileNotFoundError, NotADirectoryError):
+            self._known.pop(path, None)
+            return Problem.MISSING
+        except (OSError, ValueError):
+            return Problem.UNREADABLE
+        self._known[path] = (stamp, source)
+        return source
+
+
+class Files:
+    """One moment's view: `open_files` lie above the disk. Each path is looked up once."""
+
+    def __init__(self, disk: DiskFiles, open_files: Mapping[str, SourceFile]) -> None:
+        self._disk = disk
+        self.open_files = open_files
+        self._seen: dict[str, SourceFile | Problem] = {}
+
+    def read(self, path: str) -> SourceFile | Problem:
+        if path in self.open_files:
+            return self.open_files[path]
+        if path not in self._seen:
+            self._seen[path] = self._disk.read(path)
+        return self._seen[path]
+
+    def text(self, path: str) -> SourceFile | None:
+        source = self.read(path)
+        return source if isinstance(source, SourceFile) else None
+
+
+def resolve(base: str, src: str) -> str:
+    """The path that `src`, as written in the file `base`, means. `file://` URLs and `~` are taken as plain names."""
+    return os.path.normpath(os.path.join(os.path.dirname(base), src.replace("\0", "\ufffd")))

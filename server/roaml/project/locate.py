@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a symbol to the place where it stands now."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Symbol
+from roaml.model.machine import Send, all_statements
+from roaml.model.syntax import Name
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+
+def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """Where a symbol is defined; None if it is no longer there."""
+    name = _find(analysis, symbol)
+    return None if name is None else Location(symbol.path, name.span)
+
+
+def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
+    if symbol.kind == "tree":
+        tree = analysis.tree(symbol.path)
+        return next((t.id for t in tree.trees if t.id and t.id.value == symbol.name), None) if tree else None
+    machine = analysis.machine(symbol.path)
+    if machine is None:
+        return None
+    match symbol.kind:
+        case "machine":
+            return machine.name
+        case "port":
+            return next((p.key for p in machine.ports if p.key and p.key.value == symbol.name), None)
+        case "event":
+            sends = [s for c in machine.charts for s in all_statements(c) if isinstance(s, Send)]
+            return next((s.event for s in sends if s.event and s.event.value == symbol.name), None)
+    for declaration in machine.declarations:
+        if declaration.kind == symbol.kind and declaration.handle and declaration.handle.value == symbol.name:
+            return declaration.handle
+    return None

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Moving a system from an older dialect to the current one (spec/08).
+
+- Made of the fixes that the rules offer, applied until none is left, so a migration changes what the rules name and
+  nothing else: comments and layout stay.
+- Machine files get the extension and root of the current dialect, and the system files name them so.
+- A file keeps its encoding.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.workspace import Snapshot
+from roaml.text import SourceFile, Span, TextEdit, apply_edits
+
+CODES = frozenset(
+    (
+        "deprecated-spelling",
+        "foreign-namespace",
+        "ignored-attribute",
+        "ignored-element",
+        "missing-field",
+        "removed-bt-event",
+    )
+)
+"""The rules whose fixes make up a migration."""
+
+_MAX_PASSES = 20
+_LINE_END = re.compile(r"\r\n|\n|\r")
+_OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
+
+
+@dataclass(frozen=True, slots=True)
+class Migration:
+    """What becomes of a file. `new_path` differs from `path` if it is renamed; `data` is `after` in its encoding."""
+
+    path: str
+    new_path: str
+    before: str
+    after: str
+    data: bytes
+
+
+def migrate(systems: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], Snapshot]) -> tuple[Migration, ...]:
+    """What becomes of the files of some systems; files that stay as they are are left out.
+
+    `snapshot_of` gives the systems with some texts in place of what the files hold.
+    """
+    systems = tuple(systems)
+    first = snapshot_of({}).analysis
+    files = dict.fromkeys(path for system in systems for path in first.files_of(system) if first.source(path))
+    before = {path: _source(first, path) for path in files}
+    texts: dict[str, str] = {path: _with_current_root(first, path) for path in files}
+    for _ in range(_MAX_PASSES):
+        snapshot = snapshot_of(texts)
+        changed = {path: _fixed(snapshot, path) for path in files}
+        if changed == texts:
+            break
+        texts = changed
+    names = {path: _current_name(first, path) for path in files}
+    final = snapshot_of(texts).analysis
+    for system in systems:
+        if system in texts:
+            texts[system] = _renamed(final, system, names)
+    return tuple(
+        Migration(path, names[path], before[path].text, texts[path], before[path].encode(texts[path]))
+        for path in files
+        if texts[path] != before[path].text or names[path] != path
+    )
+
+
+def _source(analysis: Analysis, path: str) -> SourceFile:
+    source = analysis.source(path)
+    assert source is not None
+    return source
+
+
+def _text(analysis: Analysis, path: str) -> str:
+    return _source(analysis, path).text
+
+
+def _with_current_root(analysis: Analysis, path: str) -> str:
+    machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
+    text = _text(analysis, path)
+    if machine is None or machine.root == "ascxml":
+        return text
+    root = machine.element
+    spans = [root.name_span, *([root.close_name_span] if root.close_name_span else [])]
+    return apply_edits(text, tuple(TextEdit(span, "ascxml") for span in spans))
+
+
+def _fixed(snapshot: Snapshot, path: str) -> str:
+    """The text with the first fix of each finding that belongs to a migration; overlapping ones wait."""
+    edits: list[TextEdit] = []
+    taken: list[Span] = []
+    for diagnostic in snapshot.checker.diagnostics(path):
+        if diagnostic.code in CODES and diagnostic.fixes:
+            fix = diagnostic.fixes[0].edits
+            if not any(edit.span.start <= span.end and span.start <= edit.span.end for edit in fix for span in taken):
+                edits += fix
+                taken += [edit.span for edit in fix]
+    return apply_edits(_text(snapshot.analysis, path), tuple(_in_layout(_source(snapshot.analysis, path), edits)))
+
+
+def _in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdit]:
+    """Removals of all that stands on a line take the line with them; new lines end as the file's lines do."""
+    first_end = _LINE_END.search(source.text)
+    line_end = first_end[0] if first_end else "\n"
+    for edit in edits:
+        line = source.lines.position(edit.span.start).line
+        start, end = source.lines.line_start(line), source.lines.line_end(source.lines.position(edit.span.end).line)
+        around = source.text[start : edit.span.start] + source.text[edit.span.end : end]
+        if not edit.new_text and edit.span.start < edit.span.end and not around.strip():
+            yield TextEdit(Span(start, end), "")
+        else:
+            yield TextEdit(edit.span, edit.new_text.replace("\n", line_end))
+
+
+def _current_name(analysis: Analysis, path: str) -> str:
+    stem, extension = os.path.splitext(path)
+    is_machine = analysis.kind(path) is FileKind.MACHINE and analysis.machine(path) is not None
+    return stem + _EXTENSION if is_machine and extension == _OLD_EXTENSION else path
+
+
+def _renamed(analysis: Analysis, system: str, names: Mapping[str, str]) -> str:
+    """The text of a system file with the new names of the files that it lists."""
+    edits = []
+    for listed in analysis.listed(system):
+        src = listed.input.src
+        if src is not None and names.get(listed.path, listed.path) != listed.path:
+            edits.append(TextEdit(Span(src.span.end - len(_OLD_EXTENSION), src.span.end), _EXTENSION))
+    return apply_edits(_text(analysis, system), tuple(edits))

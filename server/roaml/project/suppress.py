@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Comments that keep findings quiet: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` for all codes.
+
+A comment holds for the line that it stands on. Alone on its line, it holds for the element that follows it, with all
+that is in it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from roaml.diagnostics import Finding
+from roaml.text import Span
+from roaml.xml import Comment, Document, Element, Node, Text
+
+_COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
+
+
+@dataclass(frozen=True, slots=True)
+class Suppression:
+    """`codes` is None for all. `comment` is the comment itself."""
+
+    span: Span
+    codes: frozenset[str] | None
+    comment: Span
+
+    def hides(self, finding: Finding) -> bool:
+        if self.codes is not None and finding.code not in self.codes:
+            return False
+        return self.span.start <= finding.span.start < self.span.end
+
+
+def suppressions(document: Document | None) -> tuple[Suppression, ...]:
+    """All such comments of a document."""
+    if document is None or "as2fm:" not in document.text:
+        return ()
+    found: list[Suppression] = []
+    _collect(document, document.nodes, found)
+    for root in document.nodes:
+        if isinstance(root, Element):
+            for element in root.walk():
+                _collect(document, element.nodes, found)
+    return tuple(found)
+
+
+def _collect(document: Document, nodes: Iterable[Node], found: list[Suppression]) -> None:
+    waiting: list[tuple[Span, frozenset[str] | None]] = []
+    for node in nodes:
+        match node:
+            case Comment() if match := _COMMENT.match(node.value):
+                codes = None if match[1] is None else frozenset(c.strip() for c in match[1].split(",") if c.strip())
+                line = _line(document.text, node.span)
+                if document.text[line.start : line.end].strip() == document.text[node.span.start : node.span.end]:
+                    waiting.append((node.span, codes))
+                else:
+                    found.append(Suppression(line, codes, node.span))
+            case Element():
+                found += [Suppression(node.span, codes, comment) for comment, codes in waiting]
+                waiting.clear()
+            case Text() if node.value.strip():
+                waiting.clear()
+
+
+def _line(text: str, span: Span) -> Span:
+    """The line or lines that a span stands on."""
+    start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
+    ends = [i for i in (text.find("\n", span.end), text.find("\r", span.end)) if i >= 0]
+    return Span(start, min(ends, default=len(text)))

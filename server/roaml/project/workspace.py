@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The files of a session over time: folders, open buffers, settings. `snapshot` freezes one moment.
+
+- What an editor has open lies above the disk until it is closed, wherever it lies.
+- Folders are listed once and again after `refresh`; the content of files is looked at anew in every snapshot.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+
+from roaml.interfaces.registry import Registry
+from roaml.interfaces.search import SearchPath
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.checking import Checker
+from roaml.project.discover import SystemIndex, candidates, is_candidate
+from roaml.project.files import DiskFiles, Files
+from roaml.project.memo import Memo
+from roaml.project.settings import Settings
+from roaml.text import SourceFile, decode
+
+_NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MODEL)
+"""Kinds of files that are checked only where a system or a person names them."""
+
+
+class Snapshot:
+    """One moment: what is known (`analysis`) and what is wrong (`checker`)."""
+
+    def __init__(self, analysis: Analysis, checker: Checker, listed: tuple[str, ...]) -> None:
+        self.analysis = analysis
+        self.checker = checker
+        self._listed = listed
+
+    def files(self) -> tuple[str, ...]:
+        """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
+        analysis = self.analysis
+        found = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
+        for path in self._listed:
+            if path not in found and analysis.kind(path) not in _NOT_BY_THEMSELVES:
+                found[path] = None
+        return tuple(path for path in found if analysis.source(path) is not None)
+
+
+class Workspace:
+    """Args:
+    roots: the folders that are open: here systems and other files are looked for.
+    settings: what is configured.
+    systems: further system files that count.
+    packages: the folders in which ROS packages are looked for; the roots if not given.
+    """
+
+    def __init__(
+        self,
+        roots: Iterable[str],
+        settings: Settings,
+        systems: Iterable[str] = (),
+        packages: Iterable[str] | None = None,
+    ) -> None:
+        self.roots = tuple(os.path.abspath(root) for root in roots)
+        self.settings = settings
+        self._named = tuple(os.path.abspath(path) for path in systems)
+        self._packages = None if packages is None else tuple(os.path.abspath(folder) for folder in packages)
+        self._open: dict[str, SourceFile] = {}
+        self._disk = DiskFiles()
+        self._memo = Memo()
+        self._index = SystemIndex()
+        self._listed: tuple[str, ...] | None = None
+        self._registry = self._new_registry()
+
+    def open(self, path: str, text: str | bytes) -> None:
+        """Text of an editor's buffer, or the bytes of a file, from now on in place of what the disk has."""
+        source = decode(path, text) if isinstance(text, bytes) else SourceFile(path, text)
+        self._open = {**self._open, path: source}
+
+    def close(self, path: str) -> None:
+        self._open = {known: source for known, source in self._open.items() if known != path}
+
+    def refresh(self) -> None:
+        """Files have come or gone."""
+        self._listed = None
+        self._registry.search_path.refresh()
+
+    def configure(self, settings: Settings, roots: Iterable[str] | None = None) -> None:
+        """New settings or folders. Everything is looked at anew."""
+        self.settings = settings
+        if roots is not None:
+            self.roots = tuple(os.path.abspath(root) for root in roots)
+        self._listed = None
+        self._memo.clear()
+        self._registry = self._new_registry()
+
+    def look_for_packages_in(self, folders: Iterable[str]) -> None:
+        """Other folders in which ROS packages are looked for."""
+        self._packages = tuple(os.path.abspath(folder) for folder in folders)
+        self._registry = self._new_registry()
+
+    def snapshot(self) -> Snapshot:
+        files = Files(self._disk, self._open)
+        if self._listed is None:
+            self._listed = tuple(candidates(self.roots, self.settings.exclude))
+        new = [path for path in self._open if is_candidate(path, self.roots, self.settings.exclude)]
+        systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
+        analysis = Analysis(files, self._registry.reading(files.text), self._memo, systems)
+        return Snapshot(analysis, Checker(analysis, self.settings), self._listed)
+
+    def _new_registry(self) -> Registry:
+        settings = self.settings
+        search = SearchPath(self._packages or self.roots, settings.ros_paths, settings.ament_prefixes)
+        return Registry(search, Files(self._disk, {}).text)

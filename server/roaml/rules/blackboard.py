@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What rules about the blackboard share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Fix
+from roaml.model.expand import node_at
+from roaml.model.system import BoundPort
+from roaml.rules.rule import TreeContext
+from roaml.text import Span, TextEdit
+
+
+def places(context: TreeContext, ports: Iterable[BoundPort]) -> Iterator[tuple[BoundPort, Span, str]]:
+    """Those of `ports` that nodes of this file have: where the port is bound, and the name of the variable there.
+
+    That is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node of several
+    instances counts once.
+    """
+    seen: set[tuple[str, int, str]] = set()
+    for bound in ports:
+        source = bound.source
+        key = (source.tree, source.position, bound.port.key)
+        if source.path != context.source.path or key in seen:
+            continue
+        seen.add(key)
+        node = node_at(context.file, source)
+        if node is None:
+            continue
+        setting = next((s for s in node.ports if s.key.value == bound.port.key), None)
+        if setting is not None:
+            yield bound, setting.value.span, setting.variable or ""
+        else:
+            yield bound, node.plugin.span if node.plugin else node.element.name_span, ""
+
+
+def described(variable: str, written: str) -> str:
+    """A variable in words; `written` is its name inside a subtree, where it may be another."""
+    if written in ("", variable, f"@{variable}"):
+        return f"the blackboard variable `{variable}`"
+    if variable.endswith(f"__{written}"):
+        return f"`{written}`, which is a variable of this subtree alone"
+    return f"`{written}`, which is the blackboard variable `{variable}` here"
+
+
+def renamings(span: Span, written: str, variable: str, close: Iterable[str]) -> Iterator[Fix]:
+    """A fix for each variable that may be meant by `{written}` at `span`, in the main tree."""
+    if written == variable:
+        for number, name in enumerate(close):
+            yield Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),), preferred=number == 0)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blackboard-never-read: see blackboard_never_read.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.blackboard import described, places, renamings
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """What nobody writes either is no business of this rule."""
+    if context.system is None or not context.system.complete:
+        return
+    board = context.system.blackboard
+    read = [name for name, ports in board.items() if any(bound.port.read for bound in ports)]
+    unwritten = [name for name in read if not any(bound.port.written for bound in board[name])]
+    for variable, ports in board.items():
+        if variable in read or not any(bound.port.written for bound in ports):
+            continue
+        close = close_names(variable, unwritten)
+        for bound, span, written in places(context, ports):
+            if bound.port.direction == "in":
+                message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
+                yield RULE.at(span, message)
+            else:
+                message = f"nobody reads {described(variable, written)}{did_you_mean(close)}"
+                yield RULE.at(span, message, *renamings(span, written, variable, close))
+
+
+RULE = Rule(
+    "blackboard-never-read", Severity.WARNING, "A blackboard variable is written that nobody reads.", tree=check
+)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blocking-event-name: see blocking_event_name.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, all_statements
+from roaml.model.syntax import Name
+from roaml.model.system import sanitise
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+
+# The names of events that wait for their receiver instead of being discarded (spec/05 §6).
+WAITING = re.compile(
+    r"bt_[0-9]+_(tick|halt|response|halt_response)$|action_.+_goal_.+$|action_.+_result.*$"
+    r"|action_.+_thread_(start|free)$|srv_.+_(response|request|req_client).*$|global_timer_tick_event"
+)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for statement in all_statements(chart):
+            if isinstance(statement, Send) and statement.event and WAITING.match(statement.event.value):
+                message = "an event of such a name is never discarded: it waits until every receiver handles it"
+                yield RULE.at(statement.event.span, message)
+    for declaration in _with_feedback(context.machine):
+        name = declaration.interface
+        if isinstance(name, Name) and WAITING.match(f"action_{sanitise(name.value)}_feedback"):
+            message = f"the feedback of an action called `{name.value}` is never discarded: it waits to be handled"
+            yield RULE.at(name.span, message)
+
+
+def _with_feedback(machine: Machine) -> Iterator[Declaration]:
+    """The actions whose feedback the machine sends or handles."""
+    users: list[Communicate | Handler] = []
+    for chart in machine.charts:
+        users += [s for s in all_statements(chart) if isinstance(s, Communicate) and s.type.sends == "feedback"]
+        users += [h for state in chart.states for h in state.handlers if h.trigger == "feedback"]
+    used = [find_handle(machine, user) for user in users]
+    return (declaration for declaration in machine.declarations if declaration in used)
+
+
+RULE = Rule(
+    "blocking-event-name",
+    Severity.HINT,
+    "An event waits for its receivers because of its name.",
+    machine=check,
+)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""child-count: see child_count.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language.grammar import UNBOUNDED
+from roaml.model.outline import MachineOutline
+from roaml.model.system import builtin_plugins
+from roaml.model.tree import TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node.plugin is None or node.is_subtree:
+                continue
+            if node.plugin.value in builtin_plugins():
+                yield from _builtin(node)
+            elif context.system is not None:
+                _, plugin = context.system.plugin(node.plugin.value)
+                if plugin is not None:
+                    yield from _own(node, plugin)
+
+
+def _builtin(node: TreeNode) -> Iterator[Finding]:
+    """The schema knows how many children the nodes of BehaviorTree.CPP have."""
+    if node.type is None or node.plugin is None:
+        return
+    allowed, count, name = node.type.any_child, len(node.children), node.plugin.value
+    if allowed is None:
+        if count:
+            yield RULE.at(node.children[0].element.name_span, f"`{name}` has no children")
+    elif count > allowed.most:
+        message = f"`{name}` has {_children(allowed.most)}: this is one more"
+        yield RULE.at(node.children[allowed.most].element.name_span, message)
+    elif count < allowed.least:
+        yield _too_few(node, allowed.least, allowed.most)
+
+
+def _own(node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
+    """A plugin's machine ticks its children by their index, or by a variable that may be any."""
+    count, calls = len(node.children), plugin.plugin
+    least = max(calls.children, 1 if calls.any_child else 0)
+    if count < least:
+        yield _too_few(node, least, UNBOUNDED if calls.any_child else least)
+    elif count > calls.children and not calls.any_child:
+        extra = node.children[calls.children].element.name_span
+        if calls.children == 0:
+            yield RULE.at(extra, f"`{plugin.name}` is a leaf: it never ticks a child")
+        else:
+            yield RULE.at(extra, f"`{plugin.name}` ticks {_children(calls.children)}: this one is never ticked")
+
+
+def _too_few(node: TreeNode, least: int, most: int) -> Finding:
+    assert node.plugin is not None
+    if most >= UNBOUNDED:
+        wanted = f"at least {_children(least)}"
+    else:
+        wanted = _children(least) if least == most else f"{least} to {_children(most)}"
+    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {wanted}, and has {len(node.children) or 'none'}")
+
+
+def _children(count: int) -> str:
+    return "one child" if count == 1 else f"{count} children"
+
+
+RULE = Rule("child-count", Severity.ERROR, "A node has too few or too many children.", tree=check)

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""division-by-zero: see division_by_zero.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import DivisionByZero
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, DivisionByZero):
+                yield RULE.at(problem.span, "division by zero: the result is undefined")
+
+
+RULE = Rule("division-by-zero", Severity.WARNING, "Something is divided by a constant zero.", machine=check)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""duplicate-data: see duplicate_data.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.types import leaves
+from roaml.model.syntax import Name
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        first: dict[str, Name] = {}
+        for data in chart.data:
+            if data.id is not None and first.setdefault(data.id.value, data.id) is not data.id:
+                related = (Related(first[data.id.value].span, "the first one"),)
+                yield RULE.at(data.id.span, f"there are two variables `{data.id.value}`", related=related)
+        yield from _flattened(context, chart.scope, first)
+
+
+def _flattened(context: MachineContext, scope: str, names: dict[str, Name]) -> Iterator[Finding]:
+    """A variable `p__x` beside a struct `p` with a member `x`: both get the same name in the translation."""
+    for name, type_ in context.typed.variables.get(scope, {}).items():
+        for path, _ in leaves(type_):
+            flat = "__".join((name, *path))
+            if path and flat in names:
+                related = (Related(names[name].span, "the struct"),)
+                message = f"`{flat}` is also what the translation calls `{'.'.join((name, *path))}`"
+                yield RULE.at(names[flat].span, message, related=related)
+
+
+RULE = Rule("duplicate-data", Severity.ERROR, "Two variables have the same name.", machine=check, plain=True)

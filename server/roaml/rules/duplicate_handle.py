@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""duplicate-handle: see duplicate_handle.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.machine import Declaration
+from roaml.model.syntax import Name, PortRead
+from roaml.rules.elements import removal
+from roaml.rules.rule import MachineContext, Rule
+
+CLIENTS = {"service-client": "service", "action-client": "action"}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    handles: dict[str, Declaration] = {}
+    clients: dict[tuple[str, str], Declaration] = {}
+    for declaration in context.machine.declarations:
+        if declaration.handle is None:
+            continue
+        before = handles.setdefault(declaration.handle.value, declaration)
+        if before is not declaration:
+            yield _same_handle(context, declaration, declaration.handle, before)
+        elif declaration.kind in CLIENTS and isinstance(declaration.interface, Name):
+            client = clients.setdefault((declaration.kind, declaration.interface.value), declaration)
+            if client is not declaration:
+                yield _same_client(declaration, declaration.interface, client)
+
+
+def _same_handle(context: MachineContext, declaration: Declaration, handle: Name, before: Declaration) -> Finding:
+    assert before.handle is not None
+    related = (Related(before.handle.span, "declared first here"),)
+    if _meaning(declaration) == _meaning(before):
+        message = f"`{handle.value}` is declared twice in the same way"
+        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),))
+        return RULE.at(handle.span, message, remove, severity=Severity.WARNING, related=related)
+    return RULE.at(
+        handle.span,
+        f"`{handle.value}` is declared twice; give one of them another `name`",
+        # With two kinds each use still finds its own here; the reference translator takes the first (spec/01 §8).
+        severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
+        related=related,
+    )
+
+
+def _meaning(declaration: Declaration) -> tuple[str, ...]:
+    values = (declaration.interface, declaration.type, declaration.rate)
+    return (declaration.kind, *(_written(value) for value in values))
+
+
+def _written(value: Name | PortRead | None) -> str:
+    if isinstance(value, PortRead):
+        return f"<{value.key.value if value.key else ''}>"
+    return value.value if value else ""
+
+
+def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
+    """A machine declares each service and action that it uses once (spec/01 §9)."""
+    assert before.handle is not None
+    message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
+    return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
+
+
+RULE = Rule("duplicate-handle", Severity.ERROR, "Two declarations have the same name.", machine=check)

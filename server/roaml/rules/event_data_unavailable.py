@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event-data-unavailable: see event_data_unavailable.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import UnknownName
+from roaml.language import HL_SCXML
+from roaml.model.syntax import Expression
+from roaml.model.typing import Place, TypedValue, Use
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
+from roaml.text import Span, TextEdit
+
+EVENT_VARIABLES = {
+    binding.name: element.name for element in HL_SCXML.elements.values() for binding in reversed(element.binds)
+}
+SCXML_VARIABLES = ("_name", "_sessionid", "_ioprocessors", "_x")
+DATA = {"_event": "_event.data", "_wrapped_result": "_wrapped_result.result"}
+"""Event variables whose fields stand one level deeper."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, UnknownName) and problem.name.startswith("_") and not _is_target(value, problem):
+                yield _finding(context, value, problem)
+
+
+def _is_target(value: TypedValue, problem: UnknownName) -> bool:
+    """Whether received data are assigned to; invalid-location says more."""
+    return (
+        value.use is Use.LOCATION
+        and problem.name in EVENT_VARIABLES
+        and isinstance(value.value, Expression)
+        and problem.span.start == value.value.tree.span.start
+    )
+
+
+def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -> Finding:
+    known = known_here(value.place)
+    name, place = problem.name, value.place
+    tag = place_tag(place)
+    if place.part == "data":
+        return RULE.at(problem.span, f"an initial value is constant: it cannot use `{name}`")
+    if name in SCXML_VARIABLES:
+        return RULE.at(problem.span, f"`{name}` is a variable of SCXML that does not exist here")
+    if name not in EVENT_VARIABLES:
+        variables = context.typed.variables.get(place.chart.scope, {})
+        close = close_names(name, [*known, *variables])
+        here = f"; `<{tag}>` knows {listing(known)}" if known and not close else ""
+        message = f"there is no variable `{name}`{did_you_mean(close)}{here}"
+        return RULE.at(problem.span, message, *replacements(problem.span, close))
+    if place.part in ("onentry", "onexit"):
+        if name == "_event" and context.machine.plain:
+            # Machines without any ROS or tree element are taken over as they are (spec/01 §12.3, spec/07 1.34).
+            message = f"`_event` in `<{place.part}>` means the event of whichever transition is taken"
+            return RULE.at(problem.span, message, severity=Severity.WARNING)
+        message = f"`{name}` is not known in `<{place.part}>`; store it in a variable in the body of the transition"
+        return RULE.at(problem.span, message)
+    if known:
+        message = f"`{name}` is not known here; `<{tag}>` knows {listing(known)}"
+        return RULE.at(problem.span, message, *_fixes(context, problem, known))
+    return RULE.at(problem.span, f"`{name}` is not known here: `<{tag}>` carries no data")
+
+
+def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> Iterator[Fix]:
+    """Change `_event.data.x` to `_msg.x`, or the other way round."""
+    old = DATA.get(problem.name, problem.name)
+    names = [name for name in known if name != "_action"]
+    start = problem.span.start
+    if len(names) == 1 and problem.name != "_action" and context.source.text.startswith(f"{old}.", start):
+        new = DATA.get(names[0], names[0])
+        yield Fix(f"Change to `{new}`", (TextEdit(Span(start, start + len(old)), new),))
+
+
+def known_here(place: Place) -> list[str]:
+    """The event variables that are known at a place."""
+    if place.handler is None:
+        return []
+    return [binding.name for binding in place.handler.type.binds if binding.only in ("", place.part)]
+
+
+def place_tag(place: Place) -> str:
+    return place.handler.element.name if place.handler else place.part
+
+
+RULE = Rule(
+    "event-data-unavailable",
+    Severity.ERROR,
+    "An event variable is used where there is no such event.",
+    machine=check,
+)

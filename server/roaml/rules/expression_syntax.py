@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""expression-syntax: see expression_syntax.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.parse import SYNTAX
+from roaml.model.syntax import Expression
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        # Of what is empty, invalid-value says so.
+        if isinstance(value.value, Expression) and value.value.text.strip():
+            yield from (finding for finding in value.value.findings if finding.code == SYNTAX)
+
+
+RULE = Rule("expression-syntax", Severity.ERROR, "An expression is not complete or not well-formed.", machine=check)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""foreign-format: see foreign_format.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.machine import Dialect
+from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.text import Span
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    document = context.document
+    if document is not None and document.root is not None and document.root.name == "specification":
+        yield RULE.at(document.root.name_span, "this is a specification for another tool; it is not checked here")
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    if context.dialect is Dialect.FOREIGN:
+        span: Span = context.machine.element.name_span
+        yield RULE.at(span, "this state machine is written for another tool; only its form is checked here")
+
+
+RULE = Rule(
+    "foreign-format",
+    Severity.INFORMATION,
+    "The file is written for another tool.",
+    file=check,
+    machine=check_machine,
+    plain=True,
+)

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ignored-element: see ignored_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.model.machine import NoEffect, all_statements
+from roaml.rules.elements import removal
+from roaml.rules.rule import MachineContext, Rule
+from roaml.xml import Element
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        found: list[Element] = [s.element for s in all_statements(chart) if isinstance(s, NoEffect)]
+        found += [h.element for state in chart.states for h in state.handlers if not h.effective]
+        for element in found:
+            remove = Fix(f"Remove `<{element.name}>`", (removal(context.source.text, element.span),))
+            yield RULE.at(
+                element.name_span,
+                f"`<{element.name}>` has no effect on the model",
+                remove,
+                severity=Severity.HINT if context.older else Severity.ERROR,
+                tags=(Tag.UNNECESSARY,),
+            )
+
+
+RULE = Rule("ignored-element", Severity.ERROR, "An element has no effect on the model.", machine=check)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""index-out-of-bounds: see index_out_of_bounds.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import IndexOutOfBounds, constant, infer
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Binary, Expr, Index, Member, Unary, walk
+from roaml.expr.types import Array, Type
+from roaml.model.machine import Handler
+from roaml.model.syntax import Expression
+from roaml.model.typing import Place, TypedValue, Use
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, IndexOutOfBounds):
+                if problem.index < 0:
+                    yield RULE.at(problem.span, "an index begins at 0")
+                else:
+                    last = (problem.array.bound or 1) - 1
+                    yield RULE.at(problem.span, f"`{problem.array}` has no element {problem.index}: the last is {last}")
+        if isinstance(value.value, Expression) and not value.value.broken:
+            yield from _unbounded(context, value.place, value.value.tree)
+            if value.use is Use.LOCATION:
+                yield from _append(context, value, value.value.tree)
+                yield from _length(context, value, value.value.tree)
+
+
+def _unbounded(context: MachineContext, place: Place, tree: Expr) -> Iterator[Finding]:
+    """Indexes that lie behind what arrays without a bound hold in this system."""
+    if context.system is None:
+        return
+    size = context.system.parameters.max_array_size
+    for node in walk(tree):
+        number = constant(node.index) if isinstance(node, Index) else None
+        if isinstance(node, Index) and isinstance(number, int) and number >= size:
+            array = _type_of(context, place, node.object)
+            if isinstance(array, Array) and array.bound is None:
+                message = f"`{array}` has no element {number}: without a bound it holds {size} (`max_array_size`)"
+                yield RULE.at(node.index.span, message)
+
+
+def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
+    """`v[v.length]` writes behind the end of a bounded array that is full, unless a condition keeps it from that."""
+    if not isinstance(tree, Index) or not _is_length_of(context, tree.index, tree.object):
+        return
+    array = _type_of(context, value.place, tree.object)
+    if not isinstance(array, Array) or array.bound is None:
+        return
+    if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
+        yield RULE.at(
+            tree.index.span,
+            f"`{_text(context, tree.object)}` holds at most {array.bound} elements; nothing here keeps this from "
+            "writing behind the last one",
+            severity=Severity.WARNING,
+        )
+
+
+def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
+    """`v.length` is set to more than the array holds."""
+    if not isinstance(tree, Member) or tree.name != "length":
+        return
+    array = _type_of(context, value.place, tree.object)
+    assigned = next((v for v in context.typed.values if v.use is Use.ASSIGNED and v.element is value.element), None)
+    if not isinstance(array, Array) or assigned is None or not isinstance(assigned.value, Expression):
+        return
+    number = constant(assigned.value.tree)
+    most = array.bound or (context.system.parameters.max_array_size if context.system else None)
+    if number is not None and number < 0:
+        yield RULE.at(assigned.value.span, "a length is at least 0")
+    elif number is not None and most is not None and number > most:
+        yield RULE.at(assigned.value.span, f"`{_text(context, tree.object)}` holds at most {most} elements")
+
+
+def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:
+    """Whether the same body gives the array a length, or other elements, before."""
+    names = (_text(context, array), f"{_text(context, array)}.length")
+    return any(
+        isinstance(other.value, Expression)
+        and other.use is Use.LOCATION
+        and (other.place.state, other.place.handler, other.place.part)
+        == (value.place.state, value.place.handler, value.place.part)
+        and other.value.span.start < value.value.span.start
+        and _text(context, other.value.tree) in names
+        for other in context.typed.values
+    )
+
+
+def _is_length_of(context: MachineContext, expr: Expr, array: Expr) -> bool:
+    return isinstance(expr, Member) and expr.name == "length" and _text(context, expr.object) == _text(context, array)
+
+
+def _text(context: MachineContext, expr: Expr) -> str:
+    """An expression as it is written, without white space."""
+    return "".join(context.source.text[expr.span.start : expr.span.end].split())
+
+
+def _type_of(context: MachineContext, place: Place, expr: Expr) -> Type:
+    variables = context.typed.variables.get(place.chart.scope, {})
+    return infer(expr, variables.get)[0]
+
+
+def _has_room(context: MachineContext, place: Place, array: Expr, bound: int) -> bool:
+    """Whether a condition that holds here keeps the length of the array below `bound`."""
+    conditions = list(place.branch_conditions)
+    if place.handler is not None and place.handler.cond is not None:
+        conditions.append((place.handler.cond, True))
+    if place.state is not None and place.handler is not None:
+        group = _trigger(place.handler)
+        earlier = place.state.handlers[: place.state.handlers.index(place.handler)]
+        conditions += [(h.cond, False) for h in earlier if h.cond and _trigger(h) == group]
+    return any(_limits(context, condition.tree, array, bound, holds) for condition, holds in conditions)
+
+
+def _trigger(handler: Handler) -> tuple[str, ...]:
+    """What handlers that are tried one after the other have in common."""
+    names = (handler.event, handler.handle, handler.child)
+    return (handler.trigger, *(name.value if name else "" for name in names))
+
+
+def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds: bool) -> bool:
+    """Whether `expr`, being true (or false, if not `holds`), keeps the length of the array below `bound`."""
+    match expr:
+        case Unary(operator=UnaryOperator.NOT):
+            return _limits(context, expr.operand, array, bound, not holds)
+        case Binary(operator=Operator.AND | Operator.OR):
+            sides = (_limits(context, side, array, bound, holds) for side in (expr.left, expr.right))
+            return any(sides) if (expr.operator is Operator.AND) is holds else all(sides)
+        case Binary(operator=operator) if operator in _OPPOSITE:
+            if _is_length_of(context, expr.left, array):
+                number = constant(expr.right)
+            elif _is_length_of(context, expr.right, array):
+                number, operator = constant(expr.left), _MIRRORED.get(operator, operator)
+            else:
+                return False
+            return _below(operator if holds else _OPPOSITE[operator], number, bound)
+    return False
+
+
+_OPPOSITE = {
+    Operator.LESS: Operator.GREATER_EQUAL,
+    Operator.GREATER_EQUAL: Operator.LESS,
+    Operator.GREATER: Operator.LESS_EQUAL,
+    Operator.LESS_EQUAL: Operator.GREATER,
+    Operator.EQUAL: Operator.NOT_EQUAL,
+    Operator.NOT_EQUAL: Operator.EQUAL,
+}
+_MIRRORED = {
+    Operator.LESS: Operator.GREATER,
+    Operator.GREATER: Operator.LESS,
+    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
+    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
+}
+
+
+def _below(operator: Operator, number: float | None, bound: int) -> bool:
+    """Whether `length OPERATOR number` keeps the length below `bound`; of no constant that is taken on trust."""
+    match operator:
+        case Operator.LESS:
+            return number is None or number <= bound
+        case Operator.LESS_EQUAL | Operator.EQUAL:
+            return number is None or number < bound
+        case Operator.NOT_EQUAL:
+            # An array that grows by one keeps below a length that it never has.
+            return number is None or 0 < number <= bound
+    return False
+
+
+RULE = Rule("index-out-of-bounds", Severity.ERROR, "An index lies outside its array.", machine=check)

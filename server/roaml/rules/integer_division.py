@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""integer-division: see integer_division.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import IntegerDivision
+from roaml.expr.tree import Binary, Call, Expr, Member, walk
+from roaml.expr.types import is_kind
+from roaml.model.syntax import Expression
+from roaml.rules.rule import MachineContext, Rule
+from roaml.text import Span, TextEdit
+
+WHOLE = ("floor", "ceil")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        if not isinstance(value.value, Expression) or (value.wanted is not None and is_kind(value.wanted, "int")):
+            continue  # type-mismatch says more
+        meant = {span for call in _whole(value.value.tree) for span in _divisions(call)}
+        for problem in value.problems:
+            if isinstance(problem, IntegerDivision) and problem.span not in meant:
+                message = "`/` of integers gives a real number (`7 / 2` is 3.5)"
+                yield RULE.at(
+                    problem.span, f"{message}; for a whole one write `Math.floor(a / b)`", *_fixes(value.value, problem)
+                )
+
+
+def _whole(tree: Expr) -> Iterator[Call]:
+    """The calls in which a quotient is made whole."""
+    for node in walk(tree):
+        if isinstance(node, Call) and isinstance(node.function, Member) and node.function.name in WHOLE:
+            yield node
+
+
+def _divisions(tree: Expr) -> Iterator[Span]:
+    return (node.operator_span for node in walk(tree) if isinstance(node, Binary))
+
+
+def _fixes(expression: Expression, problem: IntegerDivision) -> Iterator[Fix]:
+    for node in walk(expression.tree):
+        if isinstance(node, Binary) and node.operator_span == problem.span:
+            before, behind = (Span(at, at) for at in (node.span.start, node.span.end))
+            edits = (TextEdit(before, "Math.floor("), TextEdit(behind, ")"))
+            yield Fix("Round down with `Math.floor`", edits, preferred=False)
+
+
+RULE = Rule(
+    "integer-division", Severity.INFORMATION, "Two integers are divided, which gives a real number.", machine=check
+)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What rules about topics, services and actions share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.model.machine import Declaration
+from roaml.model.outline import InterfaceUse
+from roaml.model.syntax import Name
+from roaml.model.system import Automaton, Channel
+from roaml.rules.rule import MachineContext
+from roaml.text import Span
+
+_OTHER = {
+    "publisher": "subscriber",
+    "subscriber": "publisher",
+    "service-client": "service-server",
+    "service-server": "service-client",
+    "action-client": "action-server",
+    "action-server": "action-client",
+}
+
+
+def other_kind(kind: str) -> str:
+    """The other side of a declaration kind."""
+    return _OTHER[kind]
+
+
+def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, Automaton, Channel]]:
+    """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
+    if context.system is None:
+        return
+    for automaton in context.automata:
+        for declaration in context.machine.declarations:
+            if declaration.kind != kind or declaration.handle is None:
+                continue
+            use = find_use(automaton, declaration)
+            channel = context.system.channel(automaton, use) if use else None
+            if channel is not None:
+                yield declaration, automaton, channel
+
+
+def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
+    """The outline of a declaration."""
+    handle = declaration.handle.value if declaration.handle else ""
+    for use in automaton.outline.interfaces:
+        if use.kind == declaration.kind and use.handle == handle:
+            return use
+    return None
+
+
+def name_span(declaration: Declaration) -> Span:
+    """Where the topic, service or action is named; the handle if it comes from a port."""
+    if isinstance(declaration.interface, Name):
+        return declaration.interface.span
+    return declaration.handle.span if declaration.handle else declaration.element.name_span

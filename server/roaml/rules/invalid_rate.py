@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""invalid-rate: see invalid_rate.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.expand import Constant
+from roaml.model.machine import Declaration
+from roaml.model.syntax import Name, PortRead
+from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.text import Span, TextEdit
+
+FASTEST = 1e9
+ALMOST = re.compile(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII)
+"""A number with a decimal comma or a unit."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for declaration in context.machine.declarations:
+        if declaration.kind != "timer":
+            continue
+        match declaration.rate:
+            case None:
+                yield _missing(declaration)
+            case Name(value=text, span=span) if reason := rate_problem(text):
+                yield RULE.at(span, reason, *replacements(span, _corrected(text)))
+            case PortRead():
+                yield from _port(context, declaration.rate)
+
+
+def _missing(declaration: Declaration) -> Finding:
+    element = declaration.element
+    attribute = element.get("rate_hz")
+    end = element.attributes[-1].span.end if element.attributes else element.name_span.end
+    edit = TextEdit(Span(end, end) if attribute is None else attribute.span, f'{" " * (attribute is None)}rate_hz="1"')
+    fix = Fix("Tick once a second", (edit,), preferred=False)
+    return RULE.at(element.name_span, "the timer has no rate: `rate_hz` is missing", fix)
+
+
+def _port(context: MachineContext, read: PortRead) -> Iterator[Finding]:
+    """What the nodes of the tree give as a rate."""
+    key = read.key.value if read.key else ""
+    for automaton in context.automata:
+        value = automaton.port(key)
+        if isinstance(value, Constant) and (reason := rate_problem(value.text)):
+            yield RULE.at(read.span, f'{reason}; so `{key}="{value.text}"` in the tree cannot be')
+
+
+def rate_problem(text: str) -> str:
+    """Why `text` is no rate in Hz, or ""."""
+    try:
+        rate = float(text)
+    except ValueError:
+        return f"a rate is a number in Hz, not `{text[:40]}`"
+    if not 0 < rate < float("inf"):
+        return f"a rate is above 0 Hz, not {text}"
+    if rate > FASTEST:
+        return "a rate is at most 1 GHz: the clock counts nanoseconds"
+    return ""
+
+
+def _corrected(text: str) -> tuple[str, ...]:
+    match = ALMOST.match(text.strip())
+    if match is None or not rate_problem(text):
+        return ()
+    number = f"{match[1]}.{match[2]}" if match[2] else match[1]
+    return () if rate_problem(number) else (number,)
+
+
+RULE = Rule("invalid-rate", Severity.ERROR, "The rate of a timer is no positive number.", machine=check)

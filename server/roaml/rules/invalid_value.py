@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""invalid-value: see invalid_value.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language.validate import InvalidValue
+from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if not isinstance(violation, InvalidValue):
+            continue
+        attribute, type_ = violation.attribute, violation.type
+        if not attribute.value.strip():
+            wanted = "" if violation.wanted == "something" else f"; it should be {violation.wanted}"
+            yield RULE.at(attribute.span, f"`{attribute.name}` is empty{wanted}")
+        elif type_.value != "ros-type":  # of these, unknown-ros-type says more
+            choices = [choice.value for choice in type_.simple.choices if not choice.use]
+            close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)
+            hint = did_you_mean(close) if len(choices) > 1 else ""
+            message = f"`{attribute.name}` should be {violation.wanted}, not `{attribute.value[:40]}`{hint}"
+            yield RULE.at(attribute.value_span, message, *replacements(attribute.value_span, close))
+
+
+RULE = Rule("invalid-value", Severity.ERROR, "The value of an attribute is not one that it may have.", file=check)

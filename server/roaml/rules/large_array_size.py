@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""large-array-size: see large_array_size.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import Rule, SystemContext
+
+LARGE = 10_000
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    size = context.file.parameters.max_array_size
+    section = context.file.element.find("parameters") or context.file.element.find("mc_parameters")
+    given = [e.get("value") for e in section.elements if e.name == "max_array_size"] if section else []
+    last = given[-1] if given else None
+    if last is not None and size > LARGE:
+        message = f"every array without a bound gets {size} elements; translation and verification grow with it"
+        yield RULE.at(last.value_span, message)
+
+
+RULE = Rule("large-array-size", Severity.WARNING, "Arrays are made very large.", system=check)

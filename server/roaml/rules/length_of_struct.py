@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""length-of-struct: see length_of_struct.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import LengthOfStruct
+from roaml.expr.types import Array, leaves
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, LengthOfStruct):
+                path, type_ = next(leaves(problem.struct), ((), None))
+                first = ".".join(path)
+                if isinstance(type_, Array):
+                    yield RULE.at(problem.span, f"`{problem.struct}` is no array; this is the length of its `{first}`")
+                else:
+                    message = f"`{problem.struct}` is no array and has no length"
+                    yield RULE.at(problem.span, message, severity=Severity.ERROR)
+
+
+RULE = Rule("length-of-struct", Severity.INFORMATION, "The length of a struct is asked for.", machine=check)

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""machine-name: see machine_name.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.system import builtin_plugins, safe_name
+from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    name = context.machine.name
+    if name is None:
+        attribute = context.machine.element.get("name")
+        if attribute is not None:
+            yield RULE.at(attribute.span, "the machine has no name: `name` is empty")
+        return
+    if "behavior_tree" in context.listed_as and name.value in builtin_plugins():
+        message = f"`{name.value}` is a node of BehaviorTree.CPP; give the plugin another name"
+        yield RULE.at(name.span, message)
+    elif "behavior_tree" in context.listed_as and name.value in (*EXPLICIT, *SUBTREES):
+        message = f"`<{name.value}>` has a meaning of its own in trees; give the plugin another name"
+        yield RULE.at(name.span, message)
+    elif (safe := safe_name(name.value)) != name.value:
+        message = f"`{name.value}` is no identifier; generated names use `{safe}`"
+        yield RULE.at(name.span, message, severity=Severity.WARNING)
+
+
+RULE = Rule("machine-name", Severity.ERROR, "The name of a machine is taken or no identifier.", machine=check)

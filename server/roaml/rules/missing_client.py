@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-client: see missing_client.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.interfaces import declared, name_span
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None or not system.complete:
+        return
+    for kind, what, channels in (
+        ("service-server", "service", system.services),
+        ("action-server", "action", system.actions),
+    ):
+        for declaration, _, channel in declared(context, kind):
+            if not channel.users:
+                close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
+                message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
+                yield RULE.at(name_span(declaration), message)
+
+
+RULE = Rule("missing-client", Severity.WARNING, "A service or action is served that nobody uses.", machine=check)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-field: see missing_field.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.types import Scalar, Struct, Type, leaves
+from roaml.model.machine import Communicate, all_statements
+from roaml.model.ros import InterfaceType
+from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.rule import MachineContext, Rule, close_names, listing
+from roaml.rules.unknown_field import sent_part
+from roaml.text import LineIndex, Span, TextEdit
+from roaml.xml import Element
+
+SHOWN = 6
+ZERO = {"int": "0", "real": "0.0", "bool": "false", "string": "''"}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for statement in all_statements(chart):
+            if isinstance(statement, Communicate):
+                missing = missing_fields(context, statement)
+                if missing:
+                    yield _finding(context, statement, missing)
+
+
+def missing_fields(context: MachineContext, statement: Communicate) -> list[tuple[str, Type]]:
+    """The fields that must be set and are not, with their types."""
+    part = sent_part(context, statement)
+    declaration = find_handle(context.machine, statement)
+    if part is None or declaration is None or declaration.type is None or not part.members:
+        return []
+    if declaration.kind not in statement.type.attributes["name"].refers:
+        return []  # undeclared-handle says more
+    interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    assert isinstance(interface, InterfaceType)
+    required = interface.required(SECTIONS.get(statement.type.sends, statement.type.sends))
+    given = {field.name.value for field in statement.fields if field.name}
+    types = {".".join(path): type_ for path, type_ in leaves(part)}
+    # What is only misspelled, or set as a whole, is reported as an unknown field.
+    meant = {path for name in given - types.keys() for path in _meant(name, required)}
+    return [(path, types[path]) for path in required if path not in given and path not in meant]
+
+
+def _meant(name: str, required: Iterable[str]) -> tuple[str, ...]:
+    """The fields that something that is no field was probably meant to set."""
+    inside = tuple(path for path in required if path.startswith(f"{name}."))
+    return inside or close_names(name, required, 1)
+
+
+def _finding(context: MachineContext, statement: Communicate, missing: list[tuple[str, Type]]) -> Finding:
+    element = statement.element
+    part = sent_part(context, statement)
+    assert isinstance(part, Struct)
+    names = _shortened([name for name, _ in missing])
+    one = len(missing) == 1
+    fields = "field" if one else "fields"
+    fix = Fix(f"Add the missing {fields}", _edits(element, missing, context.source.lines, context.source.text))
+    if context.older:
+        defaults = "is not set and has its ROS default" if one else "are not set and have their ROS defaults"
+        message = f"the {fields} {names} of `{part}` {defaults}"
+        return RULE.at(element.name_span, message, fix, severity=Severity.INFORMATION)
+    return RULE.at(element.name_span, f"the {fields} {names} of `{part}` must be set", fix)
+
+
+def _shortened(names: list[str]) -> str:
+    if len(names) <= SHOWN:
+        return listing(names)
+    return f"{', '.join(f'`{name}`' for name in names[: SHOWN - 1])} and {len(names) - SHOWN + 1} more"
+
+
+def _edits(element: Element, missing: list[tuple[str, Type]], lines: LineIndex, text: str) -> tuple[TextEdit, ...]:
+    start = lines.line_start(lines.position(element.span.start).line)
+    line = text[start : element.span.start]
+    indent = line[: len(line) - len(line.lstrip())]
+    new = "".join(f'\n{indent}    <field name="{name}" expr="{zero(type_)}" />' for name, type_ in missing)
+    if element.self_closing:
+        slash = element.open_span.end - 2
+        while text[slash - 1].isspace():
+            slash -= 1
+        close = f"{new}\n{indent}</{element.name}>"
+        return (TextEdit(Span(slash, element.open_span.end), f">{close}"),)
+    if element.elements:
+        at = element.elements[-1].span.end
+        return (TextEdit(Span(at, at), new),)
+    at = element.open_span.end
+    empty = not text[at : element.content_span.end].strip()
+    return (
+        TextEdit(Span(at, element.content_span.end) if empty else Span(at, at), f"{new}\n{indent}" if empty else new),
+    )
+
+
+def zero(type_: Type) -> str:
+    return ZERO[type_.kind] if isinstance(type_, Scalar) else "[]"
+
+
+RULE = Rule("missing-field", Severity.ERROR, "A field of a ROS type is not set.", machine=check)

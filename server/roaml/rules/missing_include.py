@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-include: see missing_include.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import Rule, TreeContext
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    for include in context.file.includes:
+        if include.path is not None and include.path.value in context.missing_includes:
+            reason = context.missing_includes[include.path.value]
+            yield RULE.at(include.path.span, f"`{include.path.value}` cannot be included: {reason}")
+
+
+RULE = Rule("missing-include", Severity.ERROR, "A tree file includes a file that it cannot have.", tree=check)

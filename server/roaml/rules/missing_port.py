@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-port: see missing_port.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.language import BEHAVIOR_TREE
+from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.system import CHILDREN_COUNT, builtin_plugins
+from roaml.model.tree import TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext, close_names, listing
+from roaml.text import Span, TextEdit
+
+EXAMPLES = {"bool": "true", "string": ""}
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    defaults = {(plugin, port) for file in context.files for plugin, port, _ in file.defaults}
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node.is_subtree or node.plugin is None:
+                continue
+            path, plugin = context.system.plugin(node.plugin.value)
+            if plugin is None:
+                continue
+            missing = [port for port in missing_ports(node, plugin) if (plugin.name, port.key) not in defaults]
+            if missing:
+                yield _finding(node, plugin, path, missing)
+
+
+def missing_ports(node: TreeNode, plugin: MachineOutline) -> list[PortOutline]:
+    """The ports of a plugin that a node does not set and that have no default of their own."""
+    builtin = BEHAVIOR_TREE.elements[plugin.name] if plugin.name in builtin_plugins() else None
+    known = {a.name for a in builtin.ports if a.port and not a.port.required} if builtin else set()
+    known.add(CHILDREN_COUNT)
+    missing = [port for port in plugin.ports if port.key not in known and node.element.get(port.key) is None]
+    # What is only misspelled is reported as an unknown port.
+    strange = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]
+    misspelled = {close for name in strange for close in close_names(name, [port.key for port in missing], 1)}
+    return [port for port in missing if port.key not in misspelled]
+
+
+def _finding(node: TreeNode, plugin: MachineOutline, path: str, missing: list[PortOutline]) -> Finding:
+    assert node.plugin is not None
+    keys = [port.key for port in missing]
+    ports = "port" if len(keys) == 1 else "ports"
+    message = f"the {ports} {listing(keys)} of `{plugin.name}` must be set"
+    related = [Related(Symbol(path, "port", keys[0]), "declared here")] if path else []
+    end = node.element.attributes[-1].span.end if node.element.attributes else node.element.name_span.end
+    new = "".join(f' {port.key}="{_example(port)}"' for port in missing)
+    fix = Fix(f"Add the missing {ports}", (TextEdit(Span(end, end), new),))
+    return RULE.at(node.plugin.span, message, fix, related=related)
+
+
+def _example(port: PortOutline) -> str:
+    if port.direction == "out":
+        return f"{{{port.key}}}"
+    if port.type.startswith("float"):
+        return "0.0"
+    return EXAMPLES.get(port.type, "0")
+
+
+RULE = Rule("missing-port", Severity.ERROR, "A node does not set a port of its plugin.", tree=check)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""node-configuration: see node_configuration.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.expand import Constant, Reference
+from roaml.model.tree import TreeNode, nodes
+from roaml.rules.instances import instances
+from roaml.rules.rule import Rule, TreeContext
+
+WHOLE = re.compile(r"\s*([+-]?\d{1,12})(\.0*)?\s*\Z", re.ASCII)
+ANSWER = ("BlackboardCheckInt", "return_on_mismatch")
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """Settings with which a node of BehaviorTree.CPP stops answering (spec/02 §5, spec/07 1.22)."""
+    in_system = context.system is not None
+    for node, key, text in _settings(context):
+        number = _number(text)
+        reason = _reason(node, key, number, in_system=in_system) if number is not None else ""
+        if reason:
+            yield _finding(node, key, reason)
+    for node, automaton in instances(context):
+        if isinstance(automaton.port(ANSWER[1]), Reference) and _is(node, ANSWER[0]):
+            yield _finding(node, ANSWER[1], f"`{ANSWER[1]}` is a constant: 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING)")
+
+
+def _finding(node: TreeNode, key: str, reason: str) -> Finding:
+    setting = node.element.get(key)
+    assert node.plugin is not None
+    return RULE.at(setting.value_span if setting else node.plugin.span, reason)
+
+
+def _is(node: TreeNode, name: str) -> bool:
+    """Whether a node is the one of BehaviorTree.CPP that is called so."""
+    return node.type is not None and node.plugin is not None and node.plugin.value == name
+
+
+def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
+    """Every constant setting of a node: its own ones, and what subtrees and defaults of the tree model give it."""
+    executed: set[TreeNode] = set()
+    for node, automaton in instances(context):
+        executed.add(node)
+        for port in automaton.outline.ports:
+            value = automaton.port(port.key)
+            if isinstance(value, Constant):
+                yield node, port.key, value.text
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node not in executed:
+                for setting in node.ports:
+                    yield node, setting.key.value, setting.value.value
+
+
+def _reason(node: TreeNode, key: str, number: int, *, in_system: bool) -> str:
+    count = len(node.children)
+    match node.plugin.value if node.plugin and node.type is not None else "", key:
+        case ("Parallel", "success_threshold" | "failure_threshold") if count and not 1 <= number <= count:
+            # BehaviorTree.CPP itself counts negative thresholds from the end and takes 0 for met at once.
+            if in_system or number > count:
+                return f"a threshold lies between 1 and the number of children, here {count}; this is {number}"
+        case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
+            return f"`{key}` is -1 (for ever), 0 or more; this is {number}"
+        case name if name == ANSWER and number not in (1, 2, 3):
+            return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}"
+        case ("ParallelAll", "max_failures") if number < -1:
+            return f"`max_failures` is -1 (all), 0 or more; this is {number}"
+    return ""
+
+
+def _number(text: str) -> int | None:
+    match = WHOLE.match(text)
+    return int(match[1]) if match else None
+
+
+RULE = Rule("node-configuration", Severity.ERROR, "A node is set up so that it can never answer.", tree=check)

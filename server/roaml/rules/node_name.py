@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""node-name: see node_name.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.system import safe_name
+from roaml.model.tree import nodes
+from roaml.rules.rule import Rule, TreeContext
+from roaml.text import TextEdit
+
+IDENTIFIER = re.compile(r"[A-Za-z0-9_.-]+\Z")
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node.name is not None and not node.is_subtree and not IDENTIFIER.match(node.name.value):
+                safe = safe_name(node.name.value)
+                message = f"`{node.name.value}` is no identifier; names that are made of it use `{safe}`"
+                yield RULE.at(node.name.span, message, Fix(f"Rename to `{safe}`", (TextEdit(node.name.span, safe),)))
+
+
+RULE = Rule("node-name", Severity.WARNING, "The name of a node is no identifier.", tree=check)

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""port-value: see port_value.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.expr.infer import IntegerDivision, constant, infer
+from roaml.expr.parse import parse
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, fits, is_kind, is_number
+from roaml.model.expand import Constant
+from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.tree import PortModel, PortSetting, TreeNode, is_variable_name, looks_like_reference, nodes
+from roaml.rules.instances import instances
+from roaml.rules.rule import Rule, TreeContext, did_you_mean
+from roaml.text import Decoded, Span, TextEdit
+
+RESERVED = re.compile(
+    r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
+    r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"
+)
+"""What ECMAScript does not take for a name."""
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """In a system only: for BehaviorTree.CPP itself a port may be any text."""
+    if context.system is None:
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            for setting in node.ports:
+                yield from _name(node, setting)
+            if not node.is_subtree and node.plugin is not None:
+                path, plugin = context.system.plugin(node.plugin.value)
+                if plugin is not None:
+                    yield from _values(node, plugin, path)
+    for model in context.file.models:
+        path, plugin = context.system.plugin(model.id.value) if model.id else ("", None)
+        for port in model.ports:
+            if plugin is not None and model.kind != "SubTree":
+                yield from _default(port, plugin, path)
+    yield from _given_by_subtrees(context)
+
+
+def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
+    """A reference `{name}` needs a name that is one."""
+    variable, value = setting.variable, setting.value
+    if variable is None:
+        if looks_like_reference(value.value):
+            message = f"`{value.value}` is neither a variable nor a constant: a variable stands alone, as `{{name}}`"
+            yield RULE.at(value.span, message)
+    elif not variable:
+        yield RULE.at(value.span, "the variable in the braces has no name")
+    elif RESERVED.match(variable):
+        yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
+    elif not is_variable_name(variable) and not (node.is_subtree and variable == "="):
+        message = f"`{variable}` cannot name a blackboard variable: letters, digits and `_`, not beginning with a digit"
+        yield RULE.at(value.span, message)
+
+
+def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
+    for setting in node.ports:
+        port = plugin.port(setting.key.value)
+        if port is not None and setting.variable is None and not looks_like_reference(setting.value.value):
+            yield from _constant(setting.value.value, setting.value.span, port, path)
+
+
+def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
+    """A default of `<TreeNodesModel>` is the value of every node that does not set the port."""
+    port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
+    if port is not None and default is not None and not looks_like_reference(default.value):
+        yield from _constant(default.value, default.value_span, port, path)
+
+
+def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
+    related = [Related(Symbol(path, "port", port.key), "declared here")] if path else []
+    if port.direction == "out":
+        name = text.strip()
+        fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []
+        message = f"`{port.key}` is an output port: it is bound to a blackboard variable, `{{name}}`"
+        yield RULE.at(span, message, *fixes, related=related)
+        return
+    problem = problem_of(text.strip(), port)
+    if problem is not None:
+        new = problem.replacement
+        fixes = [Fix(f"Change to `{new}`", (TextEdit(span, new),))] if new else []
+        yield RULE.at(span, problem.message, *fixes, severity=problem.severity, related=related)
+
+
+def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
+    """A constant that a `<SubTree>` gives for a variable ends in the ports bound to that variable."""
+    for node, automaton in instances(context):
+        for setting in node.ports:
+            port, value = automaton.outline.port(setting.key.value), automaton.port(setting.key.value)
+            if setting.variable is None or port is None or port.direction == "out" or not isinstance(value, Constant):
+                continue
+            problem = problem_of(value.text.strip(), port)
+            if problem is not None:
+                message = f"the subtree is given `{value.text}` for `{setting.variable}`, but {problem.message}"
+                yield RULE.at(setting.value.span, message, severity=problem.severity)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Why a port cannot hold a constant; `replacement` is what was probably meant."""
+
+    message: str
+    severity: Severity = Severity.ERROR
+    replacement: str = ""
+
+
+def problem_of(text: str, port: PortOutline) -> Problem | None:
+    """What keeps an input port from holding a constant: a text, or an expression of the port's type."""
+    wanted = BASE_TYPES.get(port.type)
+    if wanted is None or is_kind(wanted, "string"):
+        return None
+    if not text:
+        return Problem(f"the port `{port.key}` has no value; it is `{port.type}`")
+    tree, findings = parse(Decoded(text, 0))
+    given, problems = infer(tree, lambda _: None)
+    sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
+    if wanted == BOOL:
+        if sound and given == BOOL:
+            return None
+        close = {"1": "true", "0": "false"}.get(text, text.lower())
+        known = (close,) if close in ("true", "false") else ()
+        message = f"the port `{port.key}` is `true` or `false`, not `{text}`{did_you_mean(known)}"
+        return Problem(message, replacement="".join(known))
+    if not sound or not is_number(given):
+        return Problem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+    value = constant(tree)
+    if not fits(given, wanted):
+        if value is None or not float(value).is_integer():
+            return Problem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+        new = str(int(value))
+        return Problem(f"the port `{port.key}` is `{port.type}`: write `{new}` for `{text}`", Severity.WARNING, new)
+    low, high = INTEGER_RANGES.get(port.type, (None, None))
+    if value is not None and low is not None and high is not None and not low <= value <= high:
+        message = f"{text} does not fit into the port `{port.key}`: `{port.type}` holds {low} to {high}"
+        return Problem(message, Severity.WARNING)
+    return None
+
+
+RULE = Rule("port-value", Severity.ERROR, "A port is set to a value that it cannot have.", tree=check)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a rule is, and what it gets to see.
+
+- A rule is a code, a default severity, one sentence, and a check per kind of file it looks at. Its document stands
+  beside its module (`name.md`): the manual page, the text of `--explain` and the first test are made of it.
+- A check is a pure function from a context to findings. Everything that a context holds is immutable.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
+from roaml.expr.types import Struct, Type
+from roaml.interfaces.registry import NotFound
+from roaml.jani.properties import Property
+from roaml.json import JsonValue
+from roaml.language import Grammar
+from roaml.language.validate import Violation
+from roaml.model.expand import TreeFileOutline
+from roaml.model.globals import GlobalVariable
+from roaml.model.machine import Dialect, Machine
+from roaml.model.ros import InterfaceType
+from roaml.model.structs import StructDeclaration, StructOutline
+from roaml.model.system import Automaton, System
+from roaml.model.system_file import ListedFile, SystemFile
+from roaml.model.tree import TreeFile
+from roaml.model.typing import TypedMachine
+from roaml.text import SourceFile, Span, TextEdit
+from roaml.xml import Document
+
+
+@dataclass(frozen=True, slots=True)
+class FileContext:
+    """Any file: its text, its tree if it is XML, and what the parsers found. `grammar` is None for other files."""
+
+    source: SourceFile
+    findings: tuple[Finding, ...]
+    document: Document | None = None
+    grammar: Grammar | None = None
+    violations: tuple[Violation, ...] = ()
+    older: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MachineContext:
+    """A machine. `automata` is what it is in `system`; both are empty for a machine that belongs to no system.
+
+    `interface` looks up ROS types by kind and name as written; `older` tells that the older dialect is checked.
+    """
+
+    source: SourceFile
+    document: Document
+    machine: Machine
+    typed: TypedMachine
+    dialect: Dialect
+    system: System | None
+    automata: tuple[Automaton, ...]
+    listed_as: frozenset[str]
+    struct: Callable[[str], Type | None]
+    struct_names: tuple[str, ...]
+    interface: Callable[[str, str], InterfaceType | NotFound]
+    event_data: Callable[[str], Struct | None]
+
+    @property
+    def older(self) -> bool:
+        return self.dialect is Dialect.OLDER
+
+
+@dataclass(frozen=True, slots=True)
+class TreeContext:
+    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first."""
+
+    source: SourceFile
+    document: Document
+    file: TreeFile
+    system: System | None
+    files: tuple[TreeFileOutline, ...]
+    missing_includes: Mapping[str, str]
+    older: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SystemContext:
+    source: SourceFile
+    document: Document
+    file: SystemFile
+    files: tuple[ListedFile, ...]
+    system: System
+
+
+@dataclass(frozen=True, slots=True)
+class StructsContext:
+    """A file of struct declarations, XML or JSON. `outlines` are all structs of the system."""
+
+    source: SourceFile
+    declarations: tuple[StructDeclaration, ...]
+    outlines: tuple[StructOutline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PropertiesContext:
+    """A property file. `variables` is None if it belongs to no system."""
+
+    source: SourceFile
+    value: JsonValue
+    properties: tuple[Property, ...]
+    system: System | None
+    variables: Mapping[str, GlobalVariable] | None
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Attributes:
+    code: kebab-case, reads well after "ignore".
+    summary: one sentence on what is wrong.
+    file, machine, tree, system, structs, properties: the checks for files of these kinds.
+    plain: the machine check also holds for plain SCXML.
+    """
+
+    code: str
+    severity: Severity
+    summary: str
+    file: Callable[[FileContext], Iterable[Finding]] | None = None
+    machine: Callable[[MachineContext], Iterable[Finding]] | None = None
+    tree: Callable[[TreeContext], Iterable[Finding]] | None = None
+    system: Callable[[SystemContext], Iterable[Finding]] | None = None
+    structs: Callable[[StructsContext], Iterable[Finding]] | None = None
+    properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
+    plain: bool = False
+
+    def at(
+        self,
+        span: Span,
+        message: str,
+        *fixes: Fix,
+        severity: Severity | None = None,
+        related: Iterable[Related] = (),
+        tags: tuple[Tag, ...] = (),
+    ) -> Finding:
+        return Finding(self.code, span, message, severity, fixes, tuple(related), tags)
+
+
+# --------------------------------------------------------------- did you mean?
+
+
+def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
+    """Those of `candidates` that look like `name`, the nearest first."""
+    by_lower = {candidate.lower(): candidate for candidate in candidates}
+    matches = difflib.get_close_matches(name.lower()[:80], list(by_lower), most, 0.6)
+    return tuple(by_lower[match] for match in matches)
+
+
+def did_you_mean(close: tuple[str, ...]) -> str:
+    """`; did you mean …?` or nothing."""
+    return f"; did you mean `{close[0]}`?" if close else ""
+
+
+def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:
+    """A fix for each name that may be meant; the first is preferred."""
+    for number, name in enumerate(close):
+        yield Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=number == 0)
+
+
+def listing(names: Iterable[str]) -> str:
+    """`a`, `b` and `c`."""
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""schema-violation: see schema_violation.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language import HL_SCXML
+from roaml.language.validate import SchemaViolation
+from roaml.rules.rule import FileContext, Rule
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    """What the schema forbids and no other rule explains."""
+    for violation in context.violations:
+        if isinstance(violation, SchemaViolation) and not _told_elsewhere(context, violation):
+            yield RULE.at(violation.element.name_span, f"this does not follow the schema: {violation.reason}")
+
+
+def _told_elsewhere(context: FileContext, violation: SchemaViolation) -> bool:
+    """The order in an `<if>` is the business of branch-order, what stands beside `<target>` of transition-target."""
+    name = violation.element.name
+    return context.grammar is HL_SCXML and (name == "if" or name in HL_SCXML.groups["Transition"])
+
+
+RULE = Rule("schema-violation", Severity.ERROR, "The schema of the language forbids what is written.", file=check)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""shadowed-transition: see shadowed_transition.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.machine import Handler, Machine, State
+from roaml.model.syntax import Name
+from roaml.model.system import sanitise
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+
+TOPIC = "message"
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for state in chart.states:
+            yield from _check(context.machine, state)
+
+
+def _check(machine: Machine, state: State) -> Iterator[Finding]:
+    certain: dict[tuple[str, str, int], Handler] = {}
+    for handler in state.handlers:
+        key = trigger(machine, handler)
+        if key is None or not handler.effective:
+            continue
+        before = certain.get(key)
+        if before is not None:
+            what = "without an event" if handler.trigger == "" else "on the same event"
+            yield RULE.at(
+                handler.element.name_span,
+                f"this is never taken: an earlier transition {what} has no condition",
+                related=(Related(before.element.name_span, "always taken first"),),
+            )
+        elif handler.cond is None and not chooses(handler):
+            certain[key] = handler
+
+
+def trigger(machine: Machine, handler: Handler) -> tuple[str, str, int] | None:
+    """What a handler waits for, comparable within its state; None if that is not written out.
+
+    Two handles of one topic wait for the same message, results of different codes are different triggers.
+    """
+    attributes, code = handler.type.attributes, handler.type.code
+    if "name" in attributes:
+        declaration = find_handle(machine, handler)
+        if handler.trigger == TOPIC and declaration is not None and isinstance(declaration.interface, Name):
+            return (handler.trigger, sanitise(declaration.interface.value), code)
+        return (handler.trigger, handler.handle.value, code) if handler.handle else None
+    if handler.trigger == "event":
+        return (handler.trigger, handler.event.value, code) if handler.event else None
+    if "id" in attributes:
+        return (handler.trigger, handler.child.value, code) if handler.child else None
+    return (handler.trigger, "", code)
+
+
+def chooses(handler: Handler) -> bool:
+    """Whether the trigger itself selects: a child index in a variable stands for one condition per child."""
+    return handler.child is not None and not handler.child.value.isdigit()
+
+
+RULE = Rule(
+    "shadowed-transition",
+    Severity.ERROR,
+    "A transition can never be taken because an earlier one always is.",
+    machine=check,
+)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""silent-client: see silent_client.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language import HL_SCXML
+from roaml.model.machine import Communicate, Declaration, all_statements
+from roaml.model.typing import find_handle
+from roaml.rules import misspelled
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.undeclared_handle import KINDS
+
+ANSWERS = {
+    "response": ("service-client", "ros_service_send_request"),
+    "goal-response": ("action-client", "ros_action_send_goal"),
+    "feedback": ("action-client", "ros_action_send_goal"),
+    "result": ("action-client", "ros_action_send_goal"),
+    "thread-free": ("action-server", "ros_action_thread_free"),
+    "thread-start": ("action-server", "ros_action_start_thread"),
+}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A handler waits for an answer to something that this machine never sends; told once for each handle."""
+    sent = set(_sent(context))
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger not in ANSWERS or not handler.effective:
+                    continue
+                kind, element = ANSWERS[handler.trigger]
+                declaration = find_handle(context.machine, handler)
+                if declaration is None or declaration.kind != kind or declaration.handle is None:
+                    continue
+                if not {(declaration, element), (None, element)} & sent:
+                    sent.add((declaration, element))
+                    message = f"this never happens: no `<{element}>` for the `<{KINDS[kind]}>` "
+                    yield RULE.at(handler.element.name_span, f"{message}`{declaration.handle.value}`")
+
+
+def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
+    """The elements that send something, with their declaration; None if it may be any, because one is misspelled."""
+    for chart in context.machine.charts:
+        for statement in all_statements(chart):
+            if isinstance(statement, Communicate):
+                yield find_handle(context.machine, statement), statement.element.name
+    for element in dict.fromkeys(element for _, element in ANSWERS.values()):
+        if misspelled.among(context.machine.element.walk(), element, HL_SCXML):
+            yield None, element
+
+
+RULE = Rule("silent-client", Severity.ERROR, "An answer is waited for to something that is never sent.", machine=check)

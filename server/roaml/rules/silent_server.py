@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""silent-server: see silent_server.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.machine import Declaration
+from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.rules.interfaces import declared, find_use, name_span
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    if context.system is None or not context.system.complete:
+        return
+    for declaration, automaton, channel in declared(context, "service-server"):
+        clients = [c for c in channel.users if "request" in c.use.sends]
+        if clients:
+            yield from _service(declaration, automaton, channel, clients)
+    for declaration, automaton, channel in declared(context, "action-server"):
+        clients = [c for c in channel.users if "goal" in c.use.sends]
+        if clients:
+            yield from _action(declaration, automaton, channel, clients)
+
+
+def _service(
+    declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+) -> Iterator[Finding]:
+    related = [Related(clients[0].symbol, "a client")]
+    what = f"the service `{channel.name}` is called but"
+    if not sends(automaton, declaration, "response"):
+        message = f"{what} never answers: `<ros_service_send_response>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+    elif not receives(automaton, declaration, "request"):
+        message = f"{what} takes no requests: `<ros_service_handle_request>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+
+
+def _action(
+    declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+) -> Iterator[Finding]:
+    related = [Related(clients[0].symbol, "a client")]
+    if not sends(automaton, declaration, "goal-accepted"):
+        rejects = sends(automaton, declaration, "goal-rejected")
+        what = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
+        message = f"the action `{channel.name}` {what}: `<ros_action_accept_goal>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+    elif not receives(automaton, declaration, "goal"):
+        message = f"the action `{channel.name}` takes no goals: `<ros_action_handle_goal>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+    waiting = [c for c in clients if "result" in c.use.receives]
+    if waiting and not sends(automaton, declaration, "result"):
+        message = (
+            f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
+        )
+        yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
+
+
+def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+    use = find_use(automaton, declaration)
+    return use is not None and part in use.sends
+
+
+def receives(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+    use = find_use(automaton, declaration)
+    return use is not None and part in use.receives
+
+
+RULE = Rule("silent-server", Severity.ERROR, "A server never answers.", machine=check)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""skipped-node: see skipped_node.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.tree import nodes
+from roaml.rules.rule import Rule, TreeContext
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node.plugin is not None and node.plugin.value == "RunOnce":
+                skip = node.element.get("then_skip")
+                if skip is None or skip.value.strip() == "true":
+                    message = "after its first run the node counts as SUCCESS here; BehaviorTree.CPP skips it"
+                    yield RULE.at(node.plugin.span, message)
+
+
+RULE = Rule("skipped-node", Severity.INFORMATION, "A skipped node counts as SUCCESS.", tree=check)

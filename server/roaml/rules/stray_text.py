@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""stray-text: see stray_text.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language.validate import StrayText
+from roaml.rules.rule import FileContext, Rule
+from roaml.text import TextEdit
+
+DASHES = re.compile("-(?=-)")
+"""What a comment may not hold."""
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if isinstance(violation, StrayText):
+            text = context.source.text[violation.span.start : violation.span.end]
+            comment = Fix("Make it a comment", (TextEdit(violation.span, f"<!-- {DASHES.sub('- ', text)} -->"),))
+            yield RULE.at(violation.span, f"text in `<{violation.parent.name}>` has no effect", comment)
+
+
+RULE = Rule("stray-text", Severity.WARNING, "Text stands where only elements have a meaning.", file=check)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""subtree-constant-written: see subtree_constant_written.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.expand import Constant
+from roaml.rules.instances import instances
+from roaml.rules.rule import Rule, TreeContext
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """A subtree writes a variable for which its `<SubTree>` gives a constant (spec/02 §7.1)."""
+    for node, automaton in instances(context):
+        for setting in node.ports:
+            port = automaton.outline.port(setting.key.value)
+            if port is None or port.direction == "in" or setting.variable is None:
+                continue
+            value = automaton.port(port.key)
+            if isinstance(value, Constant):
+                message = f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written"
+                yield RULE.at(setting.value.span, message)
+
+
+RULE = Rule("subtree-constant-written", Severity.ERROR, "A subtree writes what it was given as a constant.", tree=check)

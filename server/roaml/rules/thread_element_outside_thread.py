@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""thread-element-outside-thread: see thread_element_outside_thread.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.machine import Communicate, all_statements
+from roaml.rules.rule import MachineContext, Rule
+
+INSIDE = ("ros_action_handle_thread_start", "ros_action_thread_free")
+OUTSIDE = ("ros_action_start_thread", "ros_action_handle_thread_free")
+UNUSUAL = ("ros_action_handle_goal",)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        elements = [h.element for state in chart.states for h in state.handlers]
+        elements += [s.element for s in all_statements(chart) if isinstance(s, Communicate)]
+        for element in elements:
+            if not chart.scope and element.name in INSIDE:
+                yield RULE.at(element.name_span, f"`<{element.name}>` belongs into a `<ros_action_thread>`")
+            elif chart.scope and element.name in OUTSIDE:
+                yield RULE.at(element.name_span, f"`<{element.name}>` belongs into the server, not into its threads")
+            elif chart.scope and element.name in UNUSUAL:
+                message = f"`<{element.name}>` in a thread: every goal waits until the server and all threads take it"
+                yield RULE.at(element.name_span, message, severity=Severity.WARNING)
+
+
+RULE = Rule(
+    "thread-element-outside-thread",
+    Severity.ERROR,
+    "An element of action threads stands outside of one, or the other way round.",
+    machine=check,
+)

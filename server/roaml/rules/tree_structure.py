@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tree-structure: see tree_structure.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.model.expand import NodeOutline, TreeOutline, main_tree
+from roaml.model.syntax import Name
+from roaml.model.tree import Tree, nodes
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    known = {tree.id: tree for file in context.files for tree in file.trees if tree.id}
+    for tree in context.file.trees:
+        yield from _id(context, tree, known)
+        for node in nodes(tree):
+            if node.is_subtree and node.plugin is not None:
+                yield from _subtree(context, tree, node.plugin, known)
+    if context.files and context.files[0].path == context.source.path:
+        yield from _main(context)
+
+
+def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iterator[Finding]:
+    count = sum(len(file.trees) for file in context.files)
+    if tree.id is None:
+        if count > 1:
+            yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`")
+        return
+    same = [t for file in context.files for t in file.trees if t.id == tree.id.value]
+    if len(same) > 1:
+        here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
+        elsewhere = [Symbol(t.path, "tree", t.id) for t in same if t.path != context.source.path]
+        related = [Related(span, "another one") for span in here]
+        related += [Related(symbol, "another one") for symbol in elsewhere]
+        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", related=related)
+
+
+def _subtree(context: TreeContext, tree: Tree, name: Name, known: dict[str, TreeOutline]) -> Iterator[Finding]:
+    if name.value not in known:
+        own = tree.id.value if tree.id else ""
+        yield from _no_tree(context, name, [other for other in known if not _cycle(own, other, known)])
+    elif tree.id is not None:
+        cycle = _cycle(tree.id.value, name.value, known)
+        if cycle:
+            yield RULE.at(name.span, f"a tree cannot contain itself: {' → '.join(cycle)}")
+
+
+def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
+    """Without a system, or if an include cannot be read, the tree may stand in a file that is not known here."""
+    if context.missing_includes:
+        return
+    close = close_names(name.value, known)
+    message = f"there is no tree `{name.value}`{did_you_mean(close)}"
+    if context.system is not None:
+        yield RULE.at(name.span, message, *replacements(name.span, close))
+    elif close:
+        yield RULE.at(name.span, message, *replacements(name.span, close), severity=Severity.WARNING)
+
+
+def _cycle(start: str, first: str, known: dict[str, TreeOutline]) -> list[str]:
+    """The names from `start` over `first` back to `start`, or none."""
+    stack = [[start, first]]
+    seen = {first}
+    while stack:
+        path = stack.pop()
+        if path[-1] == start:
+            return path
+        tree = known.get(path[-1])
+        for name in _subtrees(tree.root) if tree else ():
+            if name == start:
+                return [*path, name]
+            if name not in seen:
+                seen.add(name)
+                stack.append([*path, name])
+    return []
+
+
+def _subtrees(node: NodeOutline | None) -> Iterator[str]:
+    if node is not None:
+        if node.is_subtree:
+            yield node.plugin
+        for child in node.children:
+            yield from _subtrees(child)
+
+
+def _main(context: TreeContext) -> Iterator[Finding]:
+    found, main = main_tree(context.files), context.file.main
+    if not isinstance(found, tuple):
+        return
+    root = context.file.element.name_span
+    if main is not None and found:
+        yield from _no_tree(context, main, found)
+    elif context.system is not None and not context.missing_includes:
+        message = f"which tree is executed? Name one of {listing(found)} in `main_tree_to_execute`"
+        yield RULE.at(root, message if found else "there is no `<BehaviorTree>` that could be executed")
+
+
+RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""undeclared-variable: see undeclared_variable.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import UnknownName
+from roaml.expr.types import REAL, Scalar, Type
+from roaml.model.machine import Chart
+from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.text import Span, TextEdit
+
+LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
+NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, UnknownName) and not problem.name.startswith("_"):
+                yield _finding(context, value, problem)
+
+
+def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -> Finding:
+    name = problem.name
+    if name in LITERALS:
+        literal = LITERALS[name]
+        return RULE.at(problem.span, f"write `{literal}` for `{name}`", *replacements(problem.span, (literal,)))
+    if name in NO_VALUES:
+        return RULE.at(problem.span, f"there is no `{name}`: every variable always holds a value of its type")
+    variables = context.typed.variables.get(value.place.chart.scope, {})
+    if value.use in (Use.INITIAL, Use.BOUND):
+        what = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
+        return RULE.at(problem.span, f"an initial value is constant: it cannot use {what}")
+    if name in STATUSES:
+        number = str(STATUSES[name])
+        message = f"`{name}` is known only in the condition of `<bt_child_status>`; write `{number}`"
+        return RULE.at(problem.span, message, *replacements(problem.span, (number,)))
+    close = close_names(name, [*variables, *_answers(value)])
+    message = f"there is no variable `{name}`{did_you_mean(close)}"
+    if not close and any(name in known for known in context.typed.variables.values()):
+        message = f"`{name}` is not known here: the machine and each of its threads have variables of their own"
+    return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(value, name))
+
+
+def _answers(value: TypedValue) -> Iterable[str]:
+    """The words for answers of a child, where they are known."""
+    handler = value.place.handler
+    is_known = value.use is Use.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
+    return STATUSES if is_known else ()
+
+
+def _declare(value: TypedValue, name: str) -> Iterator[Fix]:
+    """Declare the variable, if its type can be told from where it is used."""
+    type_ = wanted_type(value, name)
+    if type_ is None:
+        return
+    zero = {"int": "0", "real": "0.0", "bool": "false", "string": "''"}[type_.kind]
+    yield declaration(value.place.chart, name, str(type_), zero)
+
+
+def wanted_type(value: TypedValue, name: str) -> Scalar | None:
+    """The type that a name should have where it is the whole value."""
+    text = getattr(value.value, "text", "")
+    if text.strip() != name or value.use is Use.LOCATION:
+        return None
+    wanted: Type | None = value.wanted
+    if not isinstance(wanted, Scalar):
+        return None
+    if wanted.name:
+        return wanted
+    return Scalar("real", "float64") if wanted == REAL else Scalar(wanted.kind, "int32")
+
+
+def declaration(chart: Chart, name: str, type_: str, value: str) -> Fix:
+    """A fix that adds a `<data>` to the datamodel of a chart, which is made if there is none."""
+    data = f'<data id="{name}" type="{type_}" expr="{value}" />'
+    model = chart.element.find("datamodel")
+    title = f"Declare `{name}` as {type_}"
+    if model is None:
+        at = chart.element.open_span.end
+        text = f"\n\n    <datamodel>\n        {data}\n    </datamodel>"
+        return Fix(title, (TextEdit(Span(at, at), text),), preferred=False)
+    if model.elements:
+        at = model.elements[-1].span.end
+    elif model.self_closing:
+        return Fix(title, (TextEdit(model.span, f"<datamodel>\n        {data}\n    </datamodel>"),), preferred=False)
+    else:
+        at = model.open_span.end
+    return Fix(title, (TextEdit(Span(at, at), f"\n        {data}"),), preferred=False)
+
+
+RULE = Rule("undeclared-variable", Severity.ERROR, "A variable is used that is not declared.", machine=check)

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+"""undecodable-text: see undecodable_text.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import FileContext, Rule
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    if context.source.undecodable is not None:
+        yield RULE.at(context.source.undecodable, "the file is not UTF-8 from here on; save it as UTF-8")
+
+
+RULE = Rule("undecodable-text", Severity.ERROR, "The bytes of the file are no text in its encoding.", file=check)

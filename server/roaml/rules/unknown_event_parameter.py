@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-event-parameter: see unknown_event_parameter.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.expr.infer import UnknownMember
+from roaml.expr.types import Struct
+from roaml.model.system import Event
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+
+EVENT_DATA = "data of event "
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Only if all files are there: a sender that cannot be read may send the parameter."""
+    if context.system is None or not context.system.readable:
+        return
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, UnknownMember) and isinstance(problem.owner, Struct):
+                event = context.system.events.get(problem.owner.what.removeprefix(EVENT_DATA))
+                if problem.owner.what.startswith(EVENT_DATA) and event is not None and event.senders:
+                    yield from _check(problem, event, [name for name, _ in problem.owner.members])
+
+
+def _check(problem: UnknownMember, event: Event, params: list[str]) -> Iterator[Finding]:
+    if any(name.startswith(f"{problem.name}.") for name in params):
+        return  # the beginning of a dotted name
+    close = close_names(problem.name, params)
+    senders = dict.fromkeys(Symbol(automaton.path, "event", event.name) for automaton, _ in event.senders)
+    related = [Related(symbol, "sent here") for symbol in [*senders][:3]]
+    message = f"nobody sends a parameter `{problem.name}` with `{event.name}`{did_you_mean(close)}"
+    yield RULE.at(problem.span, message, *replacements(problem.span, close), related=related)
+
+
+RULE = Rule(
+    "unknown-event-parameter", Severity.ERROR, "A parameter is read that no sender of the event sends.", machine=check
+)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-member: see unknown_member.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import UnknownMember
+from roaml.expr.types import Array, Struct, unwrap
+from roaml.model.initial import ExtraMember, MissingMembers
+from roaml.model.typing import TypedValue
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
+from roaml.text import Span
+
+QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
+ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            match problem:
+                case UnknownMember():
+                    finding = _unknown(problem)
+                    if finding is not None:
+                        yield finding
+                case ExtraMember(twice=True):
+                    yield RULE.at(problem.span, f"the member `{problem.name}` is given twice")
+                case ExtraMember():
+                    close = close_names(problem.name, [name for name, _ in problem.struct.members])
+                    message = f"`{problem.struct}` has no member `{problem.name}`{did_you_mean(close)}"
+                    inside = _without_quotes(problem.span, context.source.text)
+                    yield RULE.at(problem.span, message, *replacements(inside, close))
+                case MissingMembers():
+                    names = _really_missing(problem, value)
+                    if names:
+                        yield RULE.at(problem.span, f"the value leaves out {listing(names)} of `{problem.struct}`")
+
+
+def _really_missing(problem: MissingMembers, value: TypedValue) -> list[str]:
+    """The missing members that are not merely misspelled."""
+    extra = [
+        other.name
+        for other in value.problems
+        if isinstance(other, ExtraMember) and other.struct == problem.struct and problem.span.contains(other.span.start)
+    ]
+    misspelled = {close for name in extra for close in close_names(name, problem.names, 1)}
+    return [name for name in problem.names if name not in misspelled]
+
+
+def _without_quotes(span: Span, text: str) -> Span:
+    """The name in a member's key, however it is quoted."""
+    quote = QUOTE.match(text, span.start, span.end)
+    width = quote.end() - span.start if quote else 0
+    return Span(span.start + width, span.end - width)
+
+
+def _unknown(problem: UnknownMember) -> Finding | None:
+    inner, _ = unwrap(problem.owner)
+    if not isinstance(inner, Struct):
+        what = "an array" if isinstance(problem.owner, Array) else f"of type `{problem.owner}`"
+        only = "; it has only `.length`" if isinstance(problem.owner, Array) else ""
+        return RULE.at(problem.span, f"this is {what} and has no member `{problem.name}`{only}")
+    if is_ros(inner) or inner.what.startswith("data of event"):
+        return None  # unknown-field and unknown-event-parameter say more
+    close = close_names(problem.name, [name for name, _ in inner.members])
+    owner = f"`{inner}`" if inner.name else f"the {inner.what}"
+    message = f"{owner} has no member `{problem.name}`{did_you_mean(close)}"
+    return RULE.at(problem.span, message, *replacements(problem.span, close))
+
+
+def is_ros(struct: Struct) -> bool:
+    """Whether a struct is a ROS message or a part of a service or action."""
+    return struct.what.partition(" ")[0] in ROS_PARTS
+
+
+RULE = Rule("unknown-member", Severity.ERROR, "A member is named that its struct does not have.", machine=check)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-property-variable: see unknown_property_variable.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Finding, Severity
+from roaml.jani.properties import identifiers
+from roaml.model.globals import GlobalVariable
+from roaml.rules.rule import PropertiesContext, Rule, close_names, did_you_mean, replacements
+
+
+def check(context: PropertiesContext) -> Iterator[Finding]:
+    if context.system is None or not context.system.complete or context.variables is None:
+        return
+    for property_ in context.properties:
+        for name, span in identifiers(property_.expression):
+            if name not in context.variables:
+                close = close_names(name, context.variables) or _same_event(name, context.variables)
+                hint = did_you_mean(close) or _explanation(name, context.variables)
+                yield RULE.at(span, f"the system has no variable `{name}`{hint}", *replacements(span, close))
+
+
+def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:
+    """Variables of the event that the name begins with."""
+    event = name.partition("__")[0].partition(".")[0]
+    return tuple(v.name for v in variables.values() if v.event == event)[:3]
+
+
+def _explanation(name: str, variables: Mapping[str, GlobalVariable]) -> str:
+    return "; a property sees what is sent: `EVENT.valid` and `EVENT__PARAMETER`" if variables else ""
+
+
+RULE = Rule(
+    "unknown-property-variable",
+    Severity.ERROR,
+    "A property names a variable that the translated system will not have.",
+    properties=check,
+)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-ros-type: see unknown_ros_type.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.interfaces.registry import NotFound, Reason
+from roaml.model.typing import INTERFACE_KINDS
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.text import Span, TextEdit
+
+KIND_SUFFIX = re.compile("_(?:msg|srv|interface|action)s?$")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for declaration in context.machine.declarations:
+        if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+            continue
+        found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+        if not isinstance(found, NotFound):
+            continue
+        span = declaration.type.span
+        if found.reason is Reason.UNKNOWN_PACKAGE:
+            yield _unknown_package(found, span)
+        else:
+            yield RULE.at(span, found.message, *replacements(span, found.close))
+
+
+def _unknown_package(found: NotFound, span: Span) -> Finding:
+    """A package may be misspelled; more often it stands where we do not look."""
+    package = found.wanted.partition("/")[0]
+    meant = tuple(name for name in found.close if close_names(_stem(package), [_stem(name.partition("/")[0])]))
+    where = f"; looked in {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
+    message = f"there is no package `{package}`{did_you_mean(meant) or where}"
+    others = (name for name in found.close if name not in meant)
+    elsewhere = (Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=False) for name in others)
+    return RULE.at(span, message, *replacements(span, meant), *elsewhere)
+
+
+def _stem(package: str) -> str:
+    """The part of a package's name that tells it from others."""
+    return KIND_SUFFIX.sub("", package)
+
+
+RULE = Rule("unknown-ros-type", Severity.ERROR, "A ROS type is named that cannot be found.", machine=check)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-type: see unknown_type.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.types import BASE_TYPES, parse_type
+from roaml.model.syntax import TypeRef
+from roaml.rules.rule import MachineContext, Rule, StructsContext, close_names, did_you_mean, replacements
+
+SPELLINGS = {
+    "int": "int32", "integer": "int32", "uint": "uint32", "long": "int64", "short": "int16", "byte": "uint8",
+    "char": "uint8", "float": "float32", "double": "float64", "real": "float64", "number": "float64",
+    "boolean": "bool", "str": "string", "String": "string", "integer8": "int8", "integer16": "int16",
+    "integer32": "int32", "integer64": "int64",
+}  # fmt: skip
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for data in chart.data:
+            if data.type is not None:
+                yield from unknown(data.type, context.struct_names, alone=context.system is None)
+
+
+def check_structs(context: StructsContext) -> Iterator[Finding]:
+    names = [outline.name for outline in context.outlines]
+    for declaration in context.declarations:
+        for member in declaration.members:
+            if member.type is not None:
+                yield from unknown(member.type, names)
+
+
+def unknown(type_: TypeRef, structs: Iterable[str], *, alone: bool = False) -> Iterator[Finding]:
+    """What is wrong with a type. A machine that is checked `alone` cannot know the structs of its system."""
+    if type_.name is None:
+        yield _no_type(type_)
+        return
+    known = [*BASE_TYPES, *structs]
+    base = type_.name.base
+    if base not in known:
+        close = (SPELLINGS[base],) if base in SPELLINGS else close_names(base, known)
+        brackets = type_.text[len(base) :]
+        fixes = replacements(type_.span, [name + brackets for name in close])
+        if alone and not close:
+            message = f"there is no type `{base}`, unless it is a struct of the system: no system lists this file"
+            yield RULE.at(type_.span, message, severity=Severity.INFORMATION)
+        else:
+            yield RULE.at(type_.span, f"there is no type `{base}`{did_you_mean(close)}", *fixes)
+    elif 0 in type_.name.dimensions:
+        yield RULE.at(type_.span, "an array holds at least one element: write a bound above 0, or `[]` for no bound")
+
+
+def _no_type(type_: TypeRef) -> Finding:
+    close = "".join(type_.text.split())
+    if parse_type(close) is not None:
+        fixes = replacements(type_.span, (close,))
+        return RULE.at(type_.span, f"`{type_.text}` is not a type{did_you_mean((close,))}", *fixes)
+    if "/" in type_.text:
+        message = f"`{type_.text}` is a ROS type; variables have base types or structs of `<data_declarations>`"
+        return RULE.at(type_.span, message)
+    return RULE.at(
+        type_.span, f"`{type_.text}` is not a type; types look like `int32`, `Point`, `float64[3]`, `int8[][]`"
+    )
+
+
+RULE = Rule(
+    "unknown-type", Severity.ERROR, "A type is named that does not exist.", machine=check, structs=check_structs
+)

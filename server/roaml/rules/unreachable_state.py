@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unreachable-state: see unreachable_state.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity, Tag
+from roaml.model.machine import Chart
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        reached = _reached(chart)
+        if reached is None:
+            continue
+        for state in chart.states:
+            if state.id is not None and state.id.value not in reached:
+                message = f"no transition leads to the state `{state.id.value}`"
+                yield RULE.at(state.id.span, message, tags=(Tag.UNNECESSARY,))
+
+
+def _reached(chart: Chart) -> set[str] | None:
+    """The states that can be entered; None if the initial state is not known, because then nothing is."""
+    targets: dict[str, set[str]] = {}
+    for state in chart.states:
+        if state.id is not None:
+            known = targets.setdefault(state.id.value, set())
+            known.update(t.state.value for handler in state.handlers for t in handler.targets if t.state)
+    if chart.initial is None or chart.initial.value not in targets:
+        return None
+    reached = {chart.initial.value}
+    waiting = [chart.initial.value]
+    while waiting:
+        new = targets.get(waiting.pop(), set()) - reached
+        reached |= new
+        waiting += new
+    return reached
+
+
+RULE = Rule("unreachable-state", Severity.INFORMATION, "A state is never entered.", machine=check)

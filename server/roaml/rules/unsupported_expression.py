@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unsupported-expression: see unsupported_expression.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import ObjectUsed
+from roaml.expr.parse import UNSUPPORTED
+from roaml.model.syntax import Expression
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        if isinstance(value.value, Expression):
+            yield from (finding for finding in value.value.findings if finding.code == UNSUPPORTED)
+        for problem in value.problems:
+            if isinstance(problem, ObjectUsed):
+                yield RULE.at(
+                    problem.span,
+                    "an object in braces can only be the initial value of a struct; assign the members one by one, "
+                    "or another struct",
+                )
+
+
+RULE = Rule(
+    "unsupported-expression",
+    Severity.ERROR,
+    "An expression is ECMAScript, but not of the part that models can use.",
+    machine=check,
+)

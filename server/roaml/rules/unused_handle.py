@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-handle: see unused_handle.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity, Tag
+from roaml.model.machine import Communicate, Handler, all_statements
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.undeclared_handle import KINDS
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    machine = context.machine
+    users: list[Handler | Communicate] = []
+    for chart in machine.charts:
+        users += [h for state in chart.states for h in state.handlers]
+        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+    used = [find_handle(machine, user) for user in users if "name" in user.type.attributes]
+    with_threads = [thread.server.value for thread in machine.threads if thread.server]
+    for declaration in machine.declarations:
+        if declaration.handle is not None and not any(u is declaration for u in used):
+            if declaration.kind == "action-server" and declaration.handle.value in with_threads:
+                continue
+            what = "timer" if declaration.kind == "timer" else f"`<{KINDS[declaration.kind]}>`"
+            message = f"the {what} `{declaration.handle.value}` is never used"
+            yield RULE.at(declaration.handle.span, message, tags=(Tag.UNNECESSARY,))
+
+
+RULE = Rule("unused-handle", Severity.HINT, "A ROS interface or timer is declared and never used.", machine=check)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-plugin: see unused_plugin.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity, Tag
+from roaml.rules.rule import Rule, SystemContext
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    system = context.system
+    if not system.complete or not system.instances:
+        return
+    used = {instance.plugin for instance in system.instances}
+    names = {path: outline.name for path, outline in system.plugins}
+    for listed in context.files:
+        src, name = listed.input.src, names.get(listed.path)
+        if listed.input.section == "behavior_tree" and src is not None and name is not None and name not in used:
+            yield RULE.at(src.span, f"the tree never uses the plugin `{name}`", tags=(Tag.UNNECESSARY,))
+
+
+RULE = Rule("unused-plugin", Severity.HINT, "A plugin is listed that the tree never uses.", system=check)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-port: see unused_port.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity, Tag
+from roaml.model.system import CHILDREN_COUNT
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.undeclared_port import reads, writes
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    if context.listed_as == {"node_models"}:
+        return  # tree-element-in-node says that a node has no ports
+    used = {key.value for key in (*reads(context.machine, context.typed), *writes(context.machine))}
+    for port in context.machine.ports:
+        if port.key is not None and port.key.value not in used and port.key.value != CHILDREN_COUNT:
+            yield RULE.at(port.key.span, f"the port `{port.key.value}` is never used", tags=(Tag.UNNECESSARY,))
+
+
+RULE = Rule("unused-port", Severity.HINT, "A port is declared and never used.", machine=check)

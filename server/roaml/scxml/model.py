@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plain SCXML: what HL-SCXML is lowered to, and what becomes JANI (spec/04).
+
+- Flat state machines that share nothing and exchange events by name. No ROS, no trees, no structs: variables are
+  scalars, strings and arrays of those.
+- Frozen. Everything has an `origin`: the place in the models that it exists for, synthesised parts included.
+- Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans lie
+  in the file of the origin around them.
+- Whole numbers are ints outside of initial values, however they were written (spec/03 §5.2).
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr.tree import Expr
+from roaml.expr.types import Type
+from roaml.text import Location
+
+
+class Role(enum.Enum):
+    """What an automaton is in the system; the translation to JANI treats some differently (spec/05 §6, §8)."""
+
+    MACHINE = "machine"
+    TREE_ROOT = "root of the behavior tree"
+    BLACKBOARD = "blackboard"
+    HANDLER = "service or action handler"
+    CLOCK = "clock"
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A variable; `value` is a constant expression."""
+
+    id: str
+    type: Type
+    value: Expr
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """`location` is a variable, an element of one, or the `.length` of either."""
+
+    location: Expr
+    value: Expr
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Param:
+    name: str
+    value: Expr
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    event: str
+    params: tuple[Param, ...]
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    cond: Expr
+    body: Body
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """The first branch whose condition holds is executed, else `otherwise`."""
+
+    branches: tuple[Branch, ...]
+    otherwise: Body
+    origin: Location
+
+
+Statement: TypeAlias = Assign | Send | If
+Body: TypeAlias = tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where a transition leads and what it does on the way; the probabilities of one transition add up to 1."""
+
+    state: str
+    probability: float
+    body: Body
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """On `event` ("" for none), if `cond` holds and that of no earlier transition on the same event does."""
+
+    event: str
+    cond: Expr | None
+    targets: tuple[Target, ...]
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    id: str
+    entry: Body
+    exit: Body
+    transitions: tuple[Transition, ...]
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton:
+    """One state machine. Entering a state runs its `entry`; the initial state's runs once at the start."""
+
+    name: str
+    role: Role
+    initial: str
+    data: tuple[Data, ...]
+    states: tuple[State, ...]
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """All automata of a system, in processing order (spec/02 §2.2).
+
+    Attributes:
+        max_array_size: the most elements of an array without a bound, and of every array that is sent.
+    """
+
+    automata: tuple[Automaton, ...]
+    max_array_size: int
+
+
+def statements(body: Body) -> Iterator[Statement]:
+    """All statements of a body in document order, those inside of an `If` included."""
+    for statement in body:
+        yield statement
+        if isinstance(statement, If):
+            for branch in statement.branches:
+                yield from statements(branch.body)
+            yield from statements(statement.otherwise)
+
+
+def bodies(automaton: Automaton) -> Iterator[Body]:
+    """Every body of the automaton, in document order."""
+    for state in automaton.states:
+        yield state.entry
+        yield state.exit
+        for transition in state.transitions:
+            for target in transition.targets:
+                yield target.body

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plain SCXML as documents that other tools read (spec/04 §9): one for each automaton.
+
+- Every `<data>` has its type in a comment before it, as SCXML itself knows none.
+- A `<send>` is written once for each automaton that receives the event, with that as its target; `NONE` if there is
+  none.
+- A transition with several targets becomes a state that draws a number and goes on by it, so every taking of the
+  transition draws anew (spec/07 1.27).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from xml.sax.saxutils import escape
+
+from roaml.expr.format import format_expr
+from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Send, State, Target, Transition
+
+NAMESPACE = "http://www.w3.org/2005/07/scxml"
+NOBODY = "NONE"
+DRAWN = "__RAND__"
+_INDENT = "    "
+
+Lines = Iterator[str]
+
+
+def write(network: Network) -> Iterator[tuple[str, str]]:
+    """(automaton name, text of its document) for each automaton, in order."""
+    receivers = _receivers(network)
+    for automaton in network.automata:
+        yield automaton.name, "".join(f"{line}\n" for line in _Writer(automaton, receivers).document())
+
+
+def _receivers(network: Network) -> dict[str, list[str]]:
+    """Event -> names of the automata that wait for it somewhere, in order."""
+    found: dict[str, dict[str, None]] = {}
+    for automaton in network.automata:
+        for state in automaton.states:
+            for transition in state.transitions:
+                if transition.event:
+                    found.setdefault(transition.event, {})[automaton.name] = None
+    return {event: list(names) for event, names in found.items()}
+
+
+class _Writer:
+    def __init__(self, automaton: Automaton, receivers: Mapping[str, list[str]]) -> None:
+        self.automaton = automaton
+        self.receivers = receivers
+        self.ids = {state.id for state in automaton.states}
+        self.draws = any(len(t.targets) > 1 for state in automaton.states for t in state.transitions)
+        self.drawn = _fresh(DRAWN, {data.id for data in automaton.data})
+
+    def document(self) -> Lines:
+        automaton = self.automaton
+        root = _attributes(
+            xmlns=NAMESPACE,
+            version="1.0",
+            name=automaton.name,
+            datamodel="ecmascript",
+            initial=automaton.initial,
+        )
+        yield f"<scxml{root}>"
+        yield from _indented(_element("datamodel", {}, self.datamodel()))
+        for state in automaton.states:
+            yield from _indented(self.state(state))
+        yield "</scxml>"
+
+    def datamodel(self) -> Lines:
+        for data in self.automaton.data:
+            yield from _data(data)
+        if self.draws:
+            yield f"<!-- TYPE {self.drawn}:float64 -->"
+            yield f"<data{_attributes(id=self.drawn, expr='0.0')}/>"
+
+    # ------------------------------------------------------------------- states
+
+    def state(self, state: State) -> Lines:
+        drawing: list[tuple[str, Transition]] = []
+        lines = [*_element("onentry", {}, self.body(state.entry)), *_element("onexit", {}, self.body(state.exit))]
+        for transition in state.transitions:
+            if len(transition.targets) == 1:
+                lines += self.transition(transition.event, _cond(transition), transition.targets[0])
+            else:
+                drawing.append((_fresh(f"{state.id}_draw_{len(drawing) + 1}", self.ids), transition))
+                self.ids.add(drawing[-1][0])
+                lines += _element(
+                    "transition", {"event": transition.event, "cond": _cond(transition), "target": drawing[-1][0]}, ()
+                )
+        yield from _element("state", {"id": state.id}, lines, always=True)
+        for identifier, transition in drawing:
+            yield from self.draw(identifier, transition)
+
+    def draw(self, identifier: str, transition: Transition) -> Lines:
+        """The state in which it is decided which of several targets is taken."""
+        lines = [*_element("onentry", {}, (f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>",))]
+        bound = 0.0
+        for target in transition.targets[:-1]:
+            bound += target.probability
+            lines += self.transition("", f"{self.drawn} < {bound:.15g}", target)
+        lines += self.transition("", "", transition.targets[-1])
+        yield from _element("state", {"id": identifier}, lines)
+
+    def transition(self, event: str, cond: str, target: Target) -> Lines:
+        attributes = {"event": event, "cond": cond, "target": target.state}
+        yield from _element("transition", attributes, self.body(target.body), always=True)
+
+    # ------------------------------------------------------------------- bodies
+
+    def body(self, body: Body) -> Lines:
+        for statement in body:
+            match statement:
+                case Assign():
+                    location, value = format_expr(statement.location), format_expr(statement.value)
+                    yield f"<assign{_attributes(location=location, expr=value)}/>"
+                case Send():
+                    yield from self.send(statement)
+                case If():
+                    yield from self.choice(statement)
+
+    def send(self, statement: Send) -> Lines:
+        params = [
+            f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>" for param in statement.params
+        ]
+        for target in self.receivers.get(statement.event, (NOBODY,)):
+            yield from _element("send", {"event": statement.event, "target": target}, params, always=True)
+
+    def choice(self, statement: If) -> Lines:
+        first, *others = statement.branches
+        yield f"<if{_attributes(cond=format_expr(first.cond))}>"
+        yield from _indented(self.body(first.body))
+        for branch in others:
+            yield f"<elseif{_attributes(cond=format_expr(branch.cond))}/>"
+            yield from _indented(self.body(branch.body))
+        if statement.otherwise:
+            yield "<else/>"
+            yield from _indented(self.body(statement.otherwise))
+        yield "</if>"
+
+
+def _data(data: Data) -> Lines:
+    yield f"<!-- TYPE {data.id}:{data.type} -->"
+    yield f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>"
+
+
+def _cond(transition: Transition) -> str:
+    return "" if transition.cond is None else format_expr(transition.cond)
+
+
+def _fresh(wanted: str, taken: Iterable[str]) -> str:
+    known = set(taken)
+    while wanted in known:
+        wanted += "_"
+    return wanted
+
+
+def _element(name: str, attributes: Mapping[str, str], content: Iterable[str], always: bool = False) -> Lines:
+    """An element; one without content or attributes is left out unless `always`."""
+    start, lines = f"<{name}{_attributes(**attributes)}", list(content)
+    if lines:
+        yield f"{start}>"
+        yield from _indented(lines)
+        yield f"</{name}>"
+    elif always or attributes:
+        yield f"{start}/>"
+
+
+def _attributes(**attributes: str) -> str:
+    """Attributes in the order given, those without a value left out."""
+    return "".join(f' {name}="{escape(value, _QUOTES)}"' for name, value in attributes.items() if value)
+
+
+_QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
+
+
+def _indented(lines: Iterable[str]) -> Lines:
+    return (f"{_INDENT}{line}" for line in lines)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Source text and places in it.
+
+Coordinate systems, named once:
+
+- an *offset* counts code points of the decoded text, from 0; a `Span` is a half-open range of offsets;
+- a *position* is a zero-based line and a zero-based column in code points (`LineIndex` converts);
+- UTF-8 and UTF-16 columns exist only where a protocol needs them (`as2fm_lsp.convert`).
+
+Every span is created by the scanner that read the text and never rebuilt afterwards. A byte order mark is not part of
+the text. Line ends are kept as they are; `\\n`, `\\r\\n` and a lone `\\r` each end a line.
+"""
+
+from __future__ import annotations
+
+import bisect
+import codecs
+import hashlib
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+
+class Span(NamedTuple):
+    """A half-open range of offsets."""
+
+    start: int
+    end: int
+
+    def contains(self, offset: int) -> bool:
+        """Whether a caret at `offset` touches the span; both ends count."""
+        return self.start <= offset <= self.end
+
+    def cover(self, other: Span) -> Span:
+        """The smallest span that holds both."""
+        return Span(min(self.start, other.start), max(self.end, other.end))
+
+
+class Location(NamedTuple):
+    """A span in a file. `path` is absolute, in the form of the running system."""
+
+    path: str
+    span: Span
+
+
+class Position(NamedTuple):
+    """Zero-based line and column, the column in code points."""
+
+    line: int
+    column: int
+
+
+class TextEdit(NamedTuple):
+    """Replace the text in `span`; an empty span inserts."""
+
+    span: Span
+    new_text: str
+
+
+def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:
+    """`text` with all `edits` made. Edits refer to the original text; on overlap the earlier one wins."""
+    parts: list[str] = []
+    done = 0
+    for edit in sorted(edits, key=lambda e: e.span):
+        if edit.span.start < done:
+            continue
+        parts += (text[done : edit.span.start], edit.new_text)
+        done = edit.span.end
+    parts.append(text[done:])
+    return "".join(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Decoded:
+    """A piece of source text after its escapes were resolved, and the way back to the source.
+
+    `text` is what the escapes mean. Character `i` of it begins at source offset `sources[i]`; without escapes
+    `sources` is None and the character begins at `base + i`.
+    """
+
+    text: str
+    base: int
+    sources: tuple[int, ...] | None = None
+
+    def offset(self, index: int) -> int:
+        """Source offset at which character `index` begins; `len(text)` gives the end."""
+        return self.base + index if self.sources is None else self.sources[index]
+
+    def span(self, start: int, end: int) -> Span:
+        """Source span of `text[start:end]`."""
+        if self.sources is None:
+            return Span(self.base + start, self.base + end)
+        return Span(self.sources[start], self.sources[end])
+
+
+_LINE_END = re.compile(r"\r\n|\n|\r")
+
+
+class LineIndex:
+    """Where the lines of a text begin; converts between offsets and positions."""
+
+    def __init__(self, text: str) -> None:
+        self._starts = [0, *(match.end() for match in _LINE_END.finditer(text))]
+        self._text = text
+
+    @property
+    def line_count(self) -> int:
+        return len(self._starts)
+
+    def position(self, offset: int) -> Position:
+        """The position of `offset`; offsets outside the text are moved to its nearer end."""
+        offset = max(0, min(offset, len(self._text)))
+        line = bisect.bisect_right(self._starts, offset) - 1
+        return Position(line, offset - self._starts[line])
+
+    def offset(self, position: Position) -> int:
+        """The offset of `position`; a line or column beyond the end is moved back to it, before the line's end mark."""
+        if position.line < 0:
+            return 0
+        if position.line >= len(self._starts):
+            return len(self._text)
+        start = self._starts[position.line]
+        line = self._text[start : self.line_end(position.line)]
+        return start + min(max(0, position.column), len(line.rstrip("\r\n")))
+
+    def line_start(self, line: int) -> int:
+        return self._starts[line]
+
+    def line_end(self, line: int) -> int:
+        """Offset of the end of `line`, its line terminator included."""
+        return self._starts[line + 1] if line + 1 < len(self._starts) else len(self._text)
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """One file's text at one moment. Two files with the same `digest` have the same text.
+
+    `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; such bytes
+    appear in `text` as U+FFFD. `encoding` and the byte order `mark` are what the file was read with.
+    """
+
+    path: str
+    text: str
+    undecodable: Span | None = None
+    encoding: str = field(default="utf-8", compare=False)
+    mark: bytes = field(default=b"", compare=False)
+    digest: bytes = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        data = self.text.encode("utf-8", "surrogatepass")
+        object.__setattr__(self, "digest", hashlib.blake2b(data, digest_size=16).digest())
+
+    @cached_property
+    def lines(self) -> LineIndex:
+        return LineIndex(self.text)
+
+    def encode(self, text: str) -> bytes:
+        """Another text as the bytes that this file would have with it."""
+        return self.mark + text.encode(self.encoding)
+
+
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark it begins with
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_DECLARED = re.compile(rb"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""")
+
+
+def decode(path: str, data: bytes) -> SourceFile:
+    """Read bytes as text: a byte order mark decides, then an XML declaration, else UTF-8. Never fails.
+
+    Only text encodings that Python knows are honoured; bytes that do not fit become U+FFFD.
+    """
+    encoding, mark = "utf-8", b""
+    for each, name in _BOMS:
+        if data.startswith(each):
+            data, encoding, mark = data[len(each) :], name, each
+            break
+    else:
+        if declared := _DECLARED.match(data[:400]):
+            encoding = _known_encoding(declared[1].decode("ascii"))
+    try:
+        return SourceFile(path, data.decode(encoding), None, encoding, mark)
+    except UnicodeDecodeError as error:
+        text = data.decode(encoding, "replace")
+        start = min(len(data[: error.start].decode(encoding, "replace")), len(text))
+        return SourceFile(path, text, Span(start, min(start + 1, len(text))), encoding, mark)
+
+
+_PLAIN = b"<?xml +AD0- ~ \\u0041 !"
+"""Text that UTF-7, HZ and the escape codecs, though they keep most of ASCII, read differently."""
+
+
+def _known_encoding(name: str) -> str:
+    """`name` if it is a text encoding that holds ASCII as it is and can skip what is wrong, else UTF-8."""
+    try:
+        info = codecs.lookup(name)
+        if info._is_text_encoding and _PLAIN.decode(info.name) == _PLAIN.decode():
+            b"\xff".decode(info.name, "replace")
+            return info.name
+    except (LookupError, UnicodeError):
+        pass
+    return "utf-8"

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Assignments of plain SCXML -> JANI (spec/05 §5.3): of an array its elements and all its lengths, at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.expr.tree import Expr, Member
+from roaml.jani import expressions as jani
+from roaml.jani.expressions import Expression, Integer, LValue
+from roaml.jani.operators import BinaryOperator
+from roaml.to_jani.shapes import Shape, length_name
+from roaml.to_jani.values import Listed, Scope, Stored, at, elements_as, lengths_as
+
+Write = tuple[LValue, Expression]
+
+
+def assigned(location: Expr, value: Expr, scope: Scope) -> list[Write]:
+    """All that `location := value` stores; the values are those before it."""
+    if isinstance(location, Member) and location.name == "length":
+        array = scope.stored(location.object)
+        if array is not None and array.dimensions > 0:
+            return [(_lvalue(array.lengths(1)), scope.scalar(value))]
+    target = scope.stored(location)
+    if target is None:
+        raise AssertionError("a rule reports an assignment to an unknown variable")
+    return [*_content(target, value, scope), *_grown(target)]
+
+
+def stored_in(variable: str, shape: Shape, value: Expr, scope: Scope) -> list[Write]:
+    """All that storing a value in a whole variable stores."""
+    return list(_content(Stored(variable, shape), value, scope))
+
+
+def _content(target: Stored, value: Expr, scope: Scope) -> Iterator[Write]:
+    part = Shape(target.shape.base, target.shape.capacities[len(target.indexes) :])
+    if target.dimensions == 0:
+        yield _lvalue(target.value), scope.scalar(value)
+        return
+    array = scope.array(value) or Listed(())
+    yield _lvalue(target.value), elements_as(array, part)
+    for dimension in range(1, target.dimensions + 1):
+        yield _lvalue(target.lengths(dimension)), lengths_as(array, part, dimension)
+
+
+def _grown(target: Stored) -> Iterator[Write]:
+    """Writing an element makes the array, and every array around it, at least so long."""
+    for depth in reversed(range(len(target.indexes))):
+        length = at(jani.Name(length_name(target.variable, depth + 1)), *target.indexes[:depth])
+        needed = jani.Binary(BinaryOperator.ADD, target.indexes[depth], Integer(1))
+        yield _lvalue(length), jani.Binary(BinaryOperator.MAXIMUM, needed, length)
+
+
+def _lvalue(expression: Expression) -> LValue:
+    assert isinstance(expression, (jani.Name, jani.ArrayAccess))
+    return expression

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The moves of one automaton -> locations and edges (spec/05 §4-§6, §9).
+
+- Probabilities and bounds on steps depend on how many edges a move takes: assignments join the edge before them; a
+  `send`, each branch of an `if` and each draw of a random number is an edge of its own.
+- Between two states an automaton receives nothing.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from roaml.expr.transform import map_children
+from roaml.expr.tree import Call, Expr, Member, Number, children
+from roaml.jani import expressions as jani
+from roaml.jani.expressions import Expression
+from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
+from roaml.scxml.model import Assign, Body, If, Role, Send, State
+from roaml.text import Location as Origin
+from roaml.to_jani.assignments import Write, assigned, stored_in
+from roaml.to_jani.events import CLOCK_STEP, Event, is_internal, is_synchronising
+from roaml.to_jani.moves import Behavior, Move
+from roaml.to_jani.shapes import Shape, shape_of
+from roaml.to_jani.values import Scope, both, negated
+
+CLOCK_ACTION = "global_timer_tick_action"
+FIRST = "-first-exec"
+DRAWS = 100
+"""`Math.random()` is one of 0.00, 0.01, ..., 0.99 (spec/03 §7)."""
+
+
+def on_send(event: str) -> str:
+    """The action of sending an event. The clock's step to itself is no communication (spec/05 §8)."""
+    return event if event == CLOCK_STEP else f"{event}_on_send"
+
+
+def on_receive(event: str) -> str:
+    return CLOCK_ACTION if event == CLOCK_STEP else f"{event}_on_receive"
+
+
+@dataclass(slots=True)
+class _Way:
+    """A destination while it is being filled."""
+
+    probability: Clause | None
+    origin: Origin
+    location: str = ""
+    assignments: list[Assignment] = field(default_factory=list)
+
+    def store(self, writes: Iterable[Write], origin: Origin) -> None:
+        """Assignments that happen together, after all before them."""
+        index = len(self.assignments)
+        self.assignments += [Assignment(target, value, index, origin=origin) for target, value in writes]
+
+    def send(self, writes: Iterable[Write], origin: Origin) -> None:
+        """Assignments that happen together at first."""
+        self.assignments += [Assignment(target, value, origin=origin) for target, value in writes]
+
+
+@dataclass(slots=True)
+class _Draft:
+    """An edge while it is being filled."""
+
+    source: str
+    action: str
+    guard: Expression | None
+    ways: list[_Way]
+    origin: Origin
+
+    def finished(self) -> Edge:
+        guard = None if self.guard is None else Clause(self.guard)
+        destinations = tuple(
+            Destination(way.location, way.probability, tuple(way.assignments), origin=way.origin) for way in self.ways
+        )
+        return Edge(self.source, destinations, self.action, guard, origin=self.origin)
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """The locations and edges of an automaton."""
+
+    locations: tuple[Location, ...]
+    initial: str
+    edges: tuple[Edge, ...]
+
+
+def flow_of(behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> Flow:
+    """The flow of an automaton. What waits for an event that nobody sends is left out; its further course stays."""
+    return _FlowBuilder(behavior, table, max_array_size).build()
+
+
+_CERTAIN = Clause(jani.Real(1.0))
+
+
+class _FlowBuilder:
+    def __init__(self, behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> None:
+        self.behavior = behavior
+        self.table = table
+        self.max_array_size = max_array_size
+        self.variables = {data.id: shape_of(data.type, max_array_size) for data in behavior.automaton.data}
+        self.locations: dict[str, Origin] = {state.id: state.origin for state in behavior.automaton.states}
+        self.drafts: list[_Draft] = []
+        self.scopes: dict[str, Scope] = {}
+
+    def build(self) -> Flow:
+        events = self.behavior.events()
+        for state, moves in self.behavior.moves:
+            self.discarding(state, self.state(moves), events)
+        initial = self.behavior.automaton.initial
+        if self.behavior.start is not None:
+            initial = self.start(self.behavior.start, initial)
+        dead = {on_receive(event) for event in events if not self.table[event].senders}
+        edges = tuple(draft.finished() for draft in self.drafts if draft.action not in dead)
+        locations = tuple(Location(name, origin=origin) for name, origin in self.locations.items())
+        return Flow(locations, initial, edges)
+
+    def scope(self, event: str) -> Scope:
+        if event not in self.scopes:
+            params: dict[str, Shape] = {}
+            if event:
+                types = self.table[event].params
+                params = {name: shape_of(type_, self.max_array_size, sent=True) for name, type_ in types.items()}
+            self.scopes[event] = Scope(self.variables, event, params)
+        return self.scopes[event]
+
+    def location(self, wanted: str, origin: Origin) -> str:
+        """A new location, called `wanted` unless a state of the user's is."""
+        name = wanted
+        while name in self.locations:
+            name += "'"
+        self.locations[name] = origin
+        return name
+
+    # ------------------------------------------------------------------- states
+
+    def state(self, moves: Sequence[Move]) -> dict[str, list[Expression | None]]:
+        """The edges of all transitions of a state. Returns the conditions of those on each event, None for none."""
+        conditions: dict[str, list[Expression | None]] = {}
+        for move in moves:
+            scope, earlier = self.scope(move.event), conditions.setdefault(move.event, [])
+            cond = None if move.transition.cond is None else scope.scalar(move.transition.cond)
+            self.move(move, scope, _unless(cond, earlier))
+            earlier.append(cond)
+        return conditions
+
+    def move(self, move: Move, scope: Scope, guard: Expression | None) -> None:
+        stem = f"{move.source}-{move.number}"
+        action = on_receive(move.event) if move.event else stem
+        ways = [
+            _Way(_CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin)
+            for outcome in move.outcomes
+        ]
+        self.drafts.append(_Draft(move.source, action, guard, ways, move.transition.origin))
+        for k, (way, outcome) in enumerate(zip(ways, move.outcomes, strict=True)):
+            tag = stem if len(ways) == 1 else f"{stem}.{k}"
+            self.run(outcome.body, way, tag, outcome.state, scope)
+
+    def start(self, body: Body, initial: str) -> str:
+        """The location from which the initial state's `<onentry>` is executed."""
+        origin = self.behavior.automaton.origin
+        first = self.location(f"{initial}{FIRST}", origin)
+        way = _Way(_CERTAIN, origin)
+        self.drafts.append(_Draft(first, first, None, [way], origin))
+        self.run(body, way, first, initial, self.scope(""))
+        return first
+
+    def discarding(
+        self, state: State, handled: Mapping[str, Sequence[Expression | None]], events: Iterable[str]
+    ) -> None:
+        """Self-loops that swallow the events which a state does not handle (spec/05 §6)."""
+        if self.behavior.automaton.role in (Role.TREE_ROOT, Role.HANDLER) or None in handled.get("", ()):
+            return
+        for event in events:
+            conditions = handled.get(event, ())
+            if None not in conditions and (conditions or not is_synchronising(event)):
+                way = _Way(_CERTAIN, state.origin, state.id)
+                guard = _unless(None, conditions)
+                self.drafts.append(_Draft(state.id, on_receive(event), guard, [way], state.origin))
+
+    # ------------------------------------------------------------------- bodies
+
+    def run(self, body: Body, way: _Way, tag: str, final: str, scope: Scope) -> None:
+        """Continues `way` with everything in `body`; it ends in the location `final`."""
+        for i, statement in enumerate(body):
+            stem = f"{tag}-{i}"
+            match statement:
+                case Assign():
+                    way = self.assign(statement, way, stem, scope)
+                case Send():
+                    way = self.send(statement, way, stem, scope)
+                case If():
+                    way = self.choose(statement, way, stem, tag, scope)
+        way.location = final
+
+    def next_way(self, source: str, action: str, origin: Origin, guard: Expression | None = None) -> _Way:
+        """A new edge with one destination, which is returned."""
+        way = _Way(None, origin)
+        self.drafts.append(_Draft(source, action, guard, [way], origin))
+        return way
+
+    def assign(self, statement: Assign, way: _Way, stem: str, scope: Scope) -> _Way:
+        draws = _count_draws(statement.value)
+        if draws == 0:
+            way.store(assigned(statement.location, statement.value, scope), statement.origin)
+            return way
+        origin = statement.origin
+        before, after = self.location(f"{stem}-draw", origin), self.location(f"{stem}-drawn", origin)
+        way.location = before
+        chance = Clause(jani.Real(1 / DRAWS**draws))
+        ways = []
+        for numbers in itertools.product(range(DRAWS), repeat=draws):
+            drawn = _with_numbers(statement.value, iter(numbers))
+            one = _Way(chance, origin, after)
+            one.store(assigned(statement.location, drawn, scope), origin)
+            ways.append(one)
+        self.drafts.append(_Draft(before, before, None, ways, origin))
+        return self.next_way(after, "after-draw", origin)
+
+    def send(self, statement: Send, way: _Way, stem: str, scope: Scope) -> _Way:
+        way.location = self.location(stem, statement.origin)
+        following = self.next_way(way.location, on_send(statement.event), statement.origin)
+        if not is_internal(statement.event):
+            params = self.table[statement.event].params
+            for param in statement.params:
+                shape = shape_of(params[param.name], self.max_array_size, sent=True)
+                variable = f"{statement.event}__{param.name}"
+                following.send(stored_in(variable, shape, param.value, scope), param.origin)
+            following.send([(jani.Name(f"{statement.event}.valid"), jani.Boolean(True))], statement.origin)
+        return following
+
+    def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: Scope) -> _Way:
+        origin = statement.origin
+        before, after = self.location(f"{stem}-if", origin), self.location(f"{stem}-endif", origin)
+        way.location = before
+        earlier: list[Expression | None] = []
+        branches = [(branch.cond, branch.body, branch.origin) for branch in statement.branches]
+        for j, (cond, body, place) in enumerate([*branches, (None, statement.otherwise, origin)]):
+            condition = None if cond is None else scope.scalar(cond)
+            inner = _Way(_CERTAIN, place)
+            branch_tag = f"{stem}.{j}"
+            self.drafts.append(_Draft(before, branch_tag, _unless(condition, earlier), [inner], place))
+            self.run(body, inner, branch_tag, after, scope)
+            earlier.append(condition)
+        return self.next_way(after, f"{tag}-endif", origin)
+
+
+def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
+    """`cond`, and none of the earlier conditions."""
+    for each in earlier:
+        if each is not None:
+            cond = both(cond, negated(each))
+    return cond
+
+
+# --------------------------------------------------------------- random numbers
+
+
+def _is_draw(expr: Expr) -> bool:
+    return isinstance(expr, Call) and isinstance(expr.function, Member) and expr.function.name == "random"
+
+
+def _count_draws(expr: Expr) -> int:
+    return 1 if _is_draw(expr) else sum(map(_count_draws, children(expr)))
+
+
+def _with_numbers(expr: Expr, numbers: Iterator[int]) -> Expr:
+    """`expr` with each `Math.random()` replaced by the next number, in hundredths."""
+    if _is_draw(expr):
+        return Number(expr.span, next(numbers) / DRAWS, True)
+    return map_children(expr, lambda part: _with_numbers(part, numbers))

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All events of a network: who sends them, who receives them, and the types of their parameters (spec/03 §6)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from roaml.expr.infer import infer
+from roaml.expr.types import UNKNOWN, Struct, Type, join
+from roaml.scxml.model import Body, Send, statements
+from roaml.text import Location
+from roaml.to_jani.moves import Behavior
+
+CLOCK_STEP = "global_timer_tick_event"
+TIMER_PREFIX = "ros_time_rate."
+BLACKBOARD_REQUEST = "bt_blackboard_req"
+BLACKBOARD_WRITE = "bt_blackboard_set_"
+
+_SYNCHRONISING = re.compile(
+    r"bt_[0-9]+_(?:tick|halt|response|halt_response)\Z"
+    r"|action_.+_goal_.+\Z"
+    r"|action_.+_result"
+    r"|action_.+_thread_(?:start|free)\Z"
+    r"|srv_.+_(?:response|request|req_client)"
+    r"|global_timer_tick_event\Z"
+)
+
+
+def is_synchronising(event: str) -> bool:
+    """Whether the event waits for its receivers, where others are discarded (spec/05 §6)."""
+    return _SYNCHRONISING.match(event) is not None
+
+
+def is_timer(event: str) -> bool:
+    return event.startswith(TIMER_PREFIX)
+
+
+def is_internal(event: str) -> bool:
+    """Whether the event has neither buffer nor variables: the ticks of timers and the step of the clock."""
+    return is_timer(event) or event == CLOCK_STEP
+
+
+@dataclass(slots=True)
+class Event:
+    """
+    Attributes:
+        params: name -> type, in the order of their first sending.
+        senders, receivers: indexes of automata, in order.
+        origin: of what first sends it, or else first waits for it.
+    """
+
+    name: str
+    origin: Location
+    params: dict[str, Type] = field(default_factory=dict)
+    places: dict[str, Location] = field(default_factory=dict)
+    senders: dict[int, None] = field(default_factory=dict)
+    receivers: dict[int, None] = field(default_factory=dict)
+
+    @property
+    def data(self) -> Struct:
+        return Struct("", (("data", Struct("", tuple(self.params.items()))),))
+
+
+def event_table(behaviors: Sequence[Behavior]) -> dict[str, Event]:
+    """All events by name, in the order of their first occurrence."""
+    table = _occurrences(behaviors)
+    for _ in range(_ROUNDS):
+        if not _infer_params(behaviors, table):
+            break
+    return table
+
+
+_ROUNDS = 4
+"""How often types are passed on from the data of one event to the parameters of another."""
+
+
+def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
+    table: dict[str, Event] = {}
+    for index, behavior in enumerate(behaviors):
+        for _, moves in behavior.moves:
+            for move in moves:
+                if move.event:
+                    origin = move.transition.origin
+                    table.setdefault(move.event, Event(move.event, origin)).receivers[index] = None
+                for outcome in move.outcomes:
+                    _sent(outcome.body, index, table)
+        _sent(behavior.start or (), index, table)
+    return table
+
+
+def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
+    for statement in statements(body):
+        if isinstance(statement, Send):
+            event = table.setdefault(statement.event, Event(statement.event, statement.origin))
+            if not event.senders:
+                event.origin = statement.origin
+            event.senders[index] = None
+            for param in statement.params:
+                event.places.setdefault(param.name, param.origin)
+
+
+def _infer_params(behaviors: Sequence[Behavior], table: Mapping[str, Event]) -> bool:
+    """One round over everything that is sent; whether some type is still unknown that more rounds may tell."""
+    waiting = False
+    for behavior in behaviors:
+        local: dict[str, Type] = {data.id: data.type for data in behavior.automaton.data}
+        for trigger, body in behavior.bodies():
+            scope = dict(local)
+            if trigger:
+                scope["_event"] = table[trigger].data
+            for statement in statements(body):
+                if isinstance(statement, Send):
+                    params = table[statement.event].params
+                    for param in statement.params:
+                        type_, _ = infer(param.value, scope.get)
+                        known = params.get(param.name, UNKNOWN)
+                        params[param.name] = join(known, type_) or known
+                        waiting = waiting or params[param.name] == UNKNOWN
+    return waiting

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an automaton does, transition by transition: everything that runs between two states in one sequence.
+
+The body of a move is `<onexit>` of the source, the transition's own, `<onentry>` of the target (spec/05 §5.1). The
+start is a move, too, if the initial state has an `<onentry>`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.scxml.model import Automaton, Body, State, Transition
+from roaml.text import Location
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One target of a transition with all that is done on the way."""
+
+    state: str
+    probability: float
+    body: Body
+    origin: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """A transition; `number` counts those of its state from 0."""
+
+    source: str
+    number: int
+    transition: Transition
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def event(self) -> str:
+        return self.transition.event
+
+
+@dataclass(frozen=True, slots=True)
+class Behavior:
+    """
+    Attributes:
+        start: what the initial state does first; None if nothing.
+        moves: by state, in document order.
+    """
+
+    automaton: Automaton
+    start: Body | None
+    moves: tuple[tuple[State, tuple[Move, ...]], ...]
+
+    def bodies(self) -> Iterator[tuple[str, Body]]:
+        """Every body with the event in whose data it may look, transitions first, the start last."""
+        for _, moves in self.moves:
+            for move in moves:
+                for outcome in move.outcomes:
+                    yield move.event, outcome.body
+        if self.start is not None:
+            yield "", self.start
+
+    def events(self) -> dict[str, None]:
+        """The events that it waits for, in order."""
+        return dict.fromkeys(move.event for _, moves in self.moves for move in moves if move.event)
+
+
+def behavior_of(automaton: Automaton) -> Behavior:
+    entries = {state.id: state.entry for state in automaton.states}
+
+    def move(state: State, number: int, transition: Transition) -> Move:
+        outcomes = tuple(
+            Outcome(
+                target.state,
+                target.probability,
+                (*state.exit, *target.body, *entries.get(target.state, ())),
+                target.origin,
+            )
+            for target in transition.targets
+        )
+        return Move(state.id, number, transition, outcomes)
+
+    moves = tuple((s, tuple(move(s, n, t) for n, t in enumerate(s.transitions))) for s in automaton.states)
+    return Behavior(automaton, entries.get(automaton.initial) or None, moves)

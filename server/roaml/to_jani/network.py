@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A network of plain automata -> one JANI model (spec/05)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
+from roaml.jani.properties import Property
+from roaml.jani.types import BOOL
+from roaml.scxml.model import Data, Network, Role
+from roaml.text import Location
+from roaml.to_jani.composition import compose, event_automaton, has_automaton
+from roaml.to_jani.edges import flow_of
+from roaml.to_jani.events import BLACKBOARD_REQUEST, Event, event_table
+from roaml.to_jani.moves import Behavior, behavior_of
+from roaml.to_jani.properties import expanded
+from roaml.to_jani.shapes import Shape, constructed_zero, jani_type, shape_of
+from roaml.to_jani.values import Scope, elements_as, lengths_as
+
+FEATURES = ("arrays", "trigonometric-functions")
+DESCRIPTION = "Translated from HL-SCXML by roaml"
+
+
+def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
+    """The JANI model of a network: its automata, one for each event, and the given properties."""
+    behaviors = [behavior_of(automaton) for automaton in network.automata]
+    table = event_table(behaviors)
+    has_clock = any(automaton.role is Role.CLOCK for automaton in network.automata)
+    automata = [_automaton(behavior, table, network.max_array_size) for behavior in behaviors]
+    events = [event for event in table.values() if has_automaton(event)]
+    # The question to the blackboard comes last, as in the reference.
+    events.sort(key=lambda event: event.name == BLACKBOARD_REQUEST)
+    buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
+    automata += [event_automaton(event, has_clock) for event in events]
+    globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}
+    shapes = {name: shape for name, (shape, _) in globals_.items()}
+    actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})
+    return Model(
+        ModelType.MDP,
+        tuple(automata),
+        compose(automata, buffers, table),
+        features=FEATURES,
+        metadata=Metadata(description=DESCRIPTION),
+        variables=tuple(
+            Variable(name, jani_type(shape), constructed_zero(shape), origin=origin)
+            for name, (shape, origin) in globals_.items()
+        ),
+        actions=tuple(Action(action) for action in actions),
+        properties=tuple(expanded(each, shapes) for each in properties),
+    )
+
+
+def _automaton(behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> Automaton:
+    automaton = behavior.automaton
+    flow = flow_of(behavior, table, max_array_size)
+    variables = tuple(v for data in automaton.data for v in _local_variables(data, max_array_size))
+    return Automaton(
+        automaton.name,
+        tuple(sorted(flow.locations, key=lambda location: location.name)),
+        (flow.initial,),
+        flow.edges,
+        variables,
+        origin=automaton.origin,
+    )
+
+
+_CONSTANTS = Scope({}, "", {})
+
+
+def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
+    shape = shape_of(data.type, max_array_size)
+    array = _CONSTANTS.array(data.value)
+    if array is None:
+        yield Variable(data.id, jani_type(shape), _CONSTANTS.scalar(data.value), origin=data.origin)
+        return
+    yield Variable(data.id, jani_type(shape), elements_as(array, shape), origin=data.origin)
+    for k, (name, length) in enumerate(shape.lengths(data.id)):
+        yield Variable(name, jani_type(length), lengths_as(array, shape, k + 1), origin=data.origin)
+
+
+def _global_shapes(event: Event, max_array_size: int) -> Iterator[tuple[str, tuple[Shape, Location]]]:
+    """The variables of an event: its flag, its parameters and their lengths (spec/05 §3.2)."""
+    yield f"{event.name}.valid", (Shape(BOOL), event.origin)
+    for param, type_ in event.params.items():
+        name, origin = f"{event.name}__{param}", event.places[param]
+        shape = shape_of(type_, max_array_size, sent=True)
+        yield name, (shape, origin)
+        for companion, length in shape.lengths(name):
+            yield companion, (length, origin)

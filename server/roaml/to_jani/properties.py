@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Properties as they are checked: comparisons with an array literal are spelled out (spec/05 §10)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.jani.expressions import ArrayAccess, ArrayValue, Binary, Expression, Name
+from roaml.jani.node import Node
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.properties import Property
+from roaml.jani.rewrite import rewrite
+from roaml.to_jani.shapes import Shape
+from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
+
+
+def expanded(property_: Property, variables: Mapping[str, Shape]) -> Property:
+    """`variables` are the global ones."""
+
+    def change(node: Node) -> Node:
+        match node:
+            case Binary(BinaryOperator.EQUAL | BinaryOperator.NOT_EQUAL as operator, left, right):
+                if isinstance(left, ArrayValue):
+                    left, right = right, left
+                stored = _stored(left, variables)
+                if stored is not None and isinstance(right, ArrayValue):
+                    same = equal_arrays(stored, _listed(right))
+                    return same if operator is BinaryOperator.EQUAL else negated(same)
+        return node
+
+    return rewrite(property_, change)
+
+
+def _stored(expression: Expression, variables: Mapping[str, Shape]) -> Stored | None:
+    indexes: list[Expression] = []
+    while isinstance(expression, ArrayAccess):
+        indexes.insert(0, expression.index)
+        expression = expression.array
+    if not isinstance(expression, Name) or expression.identifier not in variables:
+        return None
+    found = Stored(expression.identifier, variables[expression.identifier], tuple(indexes))
+    return found if found.dimensions > 0 else None
+
+
+def _listed(value: ArrayValue) -> Listed:
+    return Listed(tuple(_listed(each) if isinstance(each, ArrayValue) else each for each in value.elements))

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How values are stored: scalars as they are, strings and arrays with fixed capacities and lengths beside them.
+
+An array `a` of n dimensions has the companions `a.d1_len`, an int, ..., `a.dn_len`, an array of n - 1 dimensions: its
+element i is the length of row i (spec/05 §3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.expr.types import Array, EmptyArray, Scalar, Type, is_kind, unwrap
+from roaml.jani.expressions import ArrayConstructor, ArrayValue, Boolean, Expression, Integer, Real
+from roaml.jani.types import BOOL, INT, REAL, ArrayType, BasicType
+from roaml.jani.types import Type as JaniType
+
+_KINDS = {"bool": BOOL, "int": INT, "real": REAL, "string": INT}
+_ZEROS: dict[BasicType, Expression] = {BOOL: Boolean(False), INT: Integer(0), REAL: Real(0.0)}
+_ITERATOR = "__array_iterator_dim_"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """`capacities` are the most elements in each dimension, outermost first; empty for scalars."""
+
+    base: BasicType
+    capacities: tuple[int, ...] = ()
+
+    @property
+    def dimensions(self) -> int:
+        return len(self.capacities)
+
+    @property
+    def element(self) -> Shape:
+        """What the outermost dimension holds."""
+        return Shape(self.base, self.capacities[1:])
+
+    def lengths(self, array: str) -> Iterator[tuple[str, Shape]]:
+        """The companion variables of an array of this shape with their shapes."""
+        for k in range(self.dimensions):
+            yield length_name(array, k + 1), Shape(INT, self.capacities[:k])
+
+
+SCALAR_INT = Shape(INT)
+
+
+def length_name(array: str, dimension: int) -> str:
+    return f"{array}.d{dimension}_len"
+
+
+def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> Shape:
+    """The shape of a variable. What is sent has the capacity `max_array_size` in every dimension (spec/05 §3.2)."""
+    element, bounds = unwrap(type_)
+    if isinstance(element, EmptyArray) or is_kind(element, "string"):
+        bounds = (*bounds, None)
+    capacities = tuple(max_array_size if sent or bound is None else bound for bound in bounds)
+    return Shape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities)
+
+
+def jani_type(shape: Shape) -> JaniType:
+    type_: JaniType = shape.base
+    for _ in shape.capacities:
+        type_ = ArrayType(type_)
+    return type_
+
+
+def zero(shape: Shape) -> Expression:
+    """The value of a variable that nothing was stored in."""
+    value = _ZEROS[shape.base]
+    for capacity in reversed(shape.capacities):
+        value = ArrayValue((value,) * capacity)
+    return value
+
+
+def constructed_zero(shape: Shape) -> Expression:
+    """The same, written with array constructors: its size does not grow with the capacities."""
+    value = _ZEROS[shape.base]
+    for k in range(shape.dimensions, 0, -1):
+        value = ArrayConstructor(f"{_ITERATOR}{k}", Integer(shape.capacities[k - 1]), value)
+    return value
+
+
+def is_array(type_: Type) -> bool:
+    return isinstance(type_, (Array, EmptyArray)) or is_kind(type_, "string")

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Expressions of plain SCXML -> JANI (spec/03 §4, §8, §9).
+
+- Strings are arrays of their UTF-8 bytes. An array (`ArrayForm`) is several JANI values: its elements and its lengths.
+- `-x` is `0 - x`, nothing is folded or simplified otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Boolean,
+    Call,
+    Conditional,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    String,
+    Unary,
+)
+from roaml.jani import expressions as jani
+from roaml.jani.expressions import ArrayAccess, ArrayValue, Expression, Integer, Real
+from roaml.jani.operators import BinaryOperator, NumberConstant
+from roaml.jani.operators import UnaryOperator as JaniUnary
+from roaml.jani.types import REAL
+from roaml.to_jani.shapes import SCALAR_INT, Shape, length_name, zero
+
+_BINARY = {
+    Operator.OR: BinaryOperator.OR,
+    Operator.AND: BinaryOperator.AND,
+    Operator.EQUAL: BinaryOperator.EQUAL,
+    Operator.NOT_EQUAL: BinaryOperator.NOT_EQUAL,
+    Operator.LESS: BinaryOperator.LESS,
+    Operator.LESS_EQUAL: BinaryOperator.LESS_EQUAL,
+    Operator.GREATER: BinaryOperator.GREATER,
+    Operator.GREATER_EQUAL: BinaryOperator.GREATER_EQUAL,
+    Operator.ADD: BinaryOperator.ADD,
+    Operator.SUBTRACT: BinaryOperator.SUBTRACT,
+    Operator.MULTIPLY: BinaryOperator.MULTIPLY,
+    Operator.DIVIDE: BinaryOperator.DIVIDE,
+    Operator.REMAINDER: BinaryOperator.REMAINDER,
+}
+_UNARY_FUNCTIONS = {
+    "abs": JaniUnary.ABS,
+    "ceil": JaniUnary.CEIL,
+    "cos": JaniUnary.COS,
+    "floor": JaniUnary.FLOOR,
+    "sin": JaniUnary.SIN,
+}
+_BINARY_FUNCTIONS = {
+    "log": BinaryOperator.LOGARITHM,
+    "max": BinaryOperator.MAXIMUM,
+    "min": BinaryOperator.MINIMUM,
+    "pow": BinaryOperator.POWER,
+}
+
+ZERO = Integer(0)
+TRUE = jani.Boolean(True)
+
+
+def both(left: Expression | None, right: Expression) -> Expression:
+    return right if left is None else jani.Binary(BinaryOperator.AND, left, right)
+
+
+def negated(expression: Expression) -> Expression:
+    return jani.Unary(JaniUnary.NOT, expression)
+
+
+def equal(left: Expression, right: Expression) -> Expression:
+    return jani.Binary(BinaryOperator.EQUAL, left, right)
+
+
+def at(array: Expression, *indexes: Expression) -> Expression:
+    for index in indexes:
+        array = ArrayAccess(array, index)
+    return array
+
+
+# -------------------------------------------------------------------- arrays
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """A variable, or the part of one that `indexes` lead to."""
+
+    variable: str
+    shape: Shape
+    indexes: tuple[Expression, ...] = ()
+
+    @property
+    def dimensions(self) -> int:
+        return self.shape.dimensions - len(self.indexes)
+
+    @property
+    def value(self) -> Expression:
+        return at(jani.Name(self.variable), *self.indexes)
+
+    def lengths(self, dimension: int) -> Expression:
+        """The length variable of the part's own dimension `dimension` (from 1)."""
+        return at(jani.Name(length_name(self.variable, len(self.indexes) + dimension)), *self.indexes)
+
+    def element(self, index: Expression) -> Stored:
+        return Stored(self.variable, self.shape, (*self.indexes, index))
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A literal: its elements are scalars or, in more dimensions, further literals."""
+
+    elements: tuple[Expression | Listed, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """One of two arrays."""
+
+    test: Expression
+    then: ArrayForm
+    otherwise: ArrayForm
+
+
+ArrayForm: TypeAlias = Stored | Listed | Chosen
+
+
+def length_of(array: ArrayForm) -> Expression:
+    match array:
+        case Stored():
+            return array.lengths(1)
+        case Listed():
+            return Integer(len(array.elements))
+        case Chosen():
+            return jani.Conditional(array.test, length_of(array.then), length_of(array.otherwise))
+
+
+def elements_as(array: ArrayForm, shape: Shape) -> Expression:
+    """The JANI value of an array, literals padded with zeros to the capacities of `shape` (spec/07 1.28)."""
+    match array:
+        case Stored():
+            return array.value
+        case Chosen():
+            return jani.Conditional(array.test, elements_as(array.then, shape), elements_as(array.otherwise, shape))
+        case Listed():
+            inner = shape.element
+            elements = [
+                elements_as(element, inner) if isinstance(element, Listed) else as_base(element, shape)
+                for element in array.elements
+            ]
+            missing = max(0, shape.capacities[0] - len(elements)) if shape.capacities else 0
+            return ArrayValue((*elements, *(zero(inner),) * missing))
+
+
+def lengths_as(array: ArrayForm, shape: Shape, dimension: int) -> Expression:
+    """The value of the companion `dk_len` with k = `dimension` for a variable of `shape` that holds the array."""
+    match array:
+        case Stored():
+            return array.lengths(dimension)
+        case Chosen():
+            then, otherwise = (lengths_as(each, shape, dimension) for each in (array.then, array.otherwise))
+            return jani.Conditional(array.test, then, otherwise)
+        case Listed():
+            if dimension == 1:
+                return Integer(len(array.elements))
+            rows = [
+                lengths_as(element, shape.element, dimension - 1)
+                for element in array.elements
+                if isinstance(element, Listed)
+            ]
+            empty = zero(Shape(SCALAR_INT.base, shape.capacities[1 : dimension - 1]))
+            missing = max(0, shape.capacities[0] - len(rows))
+            return ArrayValue((*rows, *(empty,) * missing))
+
+
+def as_base(value: Expression, shape: Shape) -> Expression:
+    """A literal as it is stored: whole numbers among reals are reals (spec/07 1.25)."""
+    if shape.base is not REAL:
+        return value
+    match value:
+        case Integer(number):
+            return Real(float(number))
+        case jani.Binary(BinaryOperator.SUBTRACT, Integer(0), right):
+            return jani.Binary(BinaryOperator.SUBTRACT, Real(0.0), as_base(right, shape))
+    return value
+
+
+# --------------------------------------------------------------- expressions
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What names mean in one place.
+
+    Attributes:
+        variables: of the automaton.
+        event: whose data `_event.data` is; "" for none.
+        params: of that event.
+    """
+
+    variables: Mapping[str, Shape]
+    event: str
+    params: Mapping[str, Shape]
+
+    def stored(self, expr: Expr) -> Stored | None:
+        """The variable or parameter that `expr` is, or is a part of; None if it is something else.
+
+        What nobody sends has no variable; an event that is never sent is never received either.
+        """
+        indexes: list[Expression] = []
+        while isinstance(expr, Index):
+            indexes.append(self.scalar(expr.index))
+            expr = expr.object
+        indexes.reverse()
+        match expr:
+            case Name(name=name) if name in self.variables:
+                return Stored(name, self.variables[name], tuple(indexes))
+            case Member(object=Member(object=Name(name="_event"), name="data"), name=param) if param in self.params:
+                return Stored(f"{self.event}__{param}", self.params[param], tuple(indexes))
+        return None
+
+    def array(self, expr: Expr) -> ArrayForm | None:
+        """The array that `expr` is, None if it is a scalar."""
+        match expr:
+            case String():
+                return Listed(tuple(Integer(byte) for byte in expr.value.encode("utf-8", "surrogatepass")))
+            case ArrayLiteral():
+                return Listed(tuple(self.element(element) for element in expr.elements))
+            case Conditional():
+                then, otherwise = self.array(expr.then), self.array(expr.otherwise)
+                if then is None or otherwise is None:
+                    return None
+                return Chosen(self.scalar(expr.test), then, otherwise)
+            case Name() | Member() | Index():
+                found = self.stored(expr)
+                if found is not None and found.dimensions > 0:
+                    return found
+                if found is None and isinstance(expr, Index):
+                    return self.part(expr)
+        return None
+
+    def part(self, expr: Index) -> ArrayForm | None:
+        """A row of a literal with a literal index."""
+        array = self.array(expr.object)
+        if isinstance(array, Listed) and isinstance(expr.index, Number):
+            row = array.elements[int(expr.index.value)] if expr.index.value < len(array.elements) else None
+            return row if isinstance(row, Listed) else None
+        return None
+
+    def element(self, expr: Expr) -> Expression | Listed:
+        """An element of an array literal. Negative numbers are literals here (spec/03 §4)."""
+        array = self.array(expr)
+        if isinstance(array, Listed):
+            return array
+        match expr:
+            case Unary(operator=UnaryOperator.NEGATE, operand=Number() as number):
+                return Real(-float(number.value)) if number.is_real else Integer(-int(number.value))
+        return self.scalar(expr)
+
+    def scalar(self, expr: Expr) -> Expression:
+        match expr:
+            case Number():
+                return Real(float(expr.value)) if expr.is_real else Integer(int(expr.value))
+            case Boolean():
+                return jani.Boolean(expr.value)
+            case Name() | Index():
+                return self.read(expr)
+            case Member():
+                return self.length(expr) if expr.name == "length" else self.read(expr)
+            case Binary():
+                return self.binary(expr)
+            case Unary():
+                return self.unary(expr)
+            case Conditional():
+                test, then, otherwise = (self.scalar(each) for each in (expr.test, expr.then, expr.otherwise))
+                return jani.Conditional(test, then, otherwise)
+            case Call():
+                return self.call(expr)
+        raise AssertionError(f"no scalar: {expr!r}")
+
+    def read(self, expr: Expr) -> Expression:
+        found = self.stored(expr)
+        if found is not None:
+            return found.value
+        if isinstance(expr, Index):
+            array = self.array(expr.object)
+            if array is not None:
+                return at(elements_as(array, Shape(SCALAR_INT.base)), self.scalar(expr.index))
+        return ZERO
+
+    def length(self, expr: Member) -> Expression:
+        """`.length` of an array; of a parameter that is called so, its value."""
+        array = self.array(expr.object)
+        return self.read(expr) if array is None else length_of(array)
+
+    def unary(self, expr: Unary) -> Expression:
+        operand = self.scalar(expr.operand)
+        match expr.operator:
+            case UnaryOperator.NOT:
+                return negated(operand)
+            case UnaryOperator.NEGATE:
+                return jani.Binary(BinaryOperator.SUBTRACT, ZERO, operand)
+            case UnaryOperator.PLUS:
+                return operand
+
+    def binary(self, expr: Binary) -> Expression:
+        if expr.operator.kind == "equality":
+            left, right = self.array(expr.left), self.array(expr.right)
+            if left is not None and right is not None:
+                same = equal_arrays(left, right)
+                return same if expr.operator is Operator.EQUAL else negated(same)
+        return jani.Binary(_BINARY[expr.operator], self.scalar(expr.left), self.scalar(expr.right))
+
+    def call(self, expr: Call) -> Expression:
+        assert isinstance(expr.function, Member)
+        function, arguments = expr.function.name, [self.scalar(argument) for argument in expr.arguments]
+        if function in _UNARY_FUNCTIONS:
+            return jani.Unary(_UNARY_FUNCTIONS[function], arguments[0])
+        if function == "log" and len(arguments) == 1:
+            arguments.append(jani.NamedNumber(NumberConstant.E))
+        return jani.Binary(_BINARY_FUNCTIONS[function], arguments[0], arguments[1])
+
+
+# --------------------------------------------------------------- comparisons
+
+
+def equal_arrays(left: ArrayForm, right: ArrayForm) -> Expression:
+    """Equal lengths and equal elements. Storm and others know no equality of arrays (spec/05 §10.1)."""
+    if isinstance(left, Chosen):
+        return jani.Conditional(left.test, equal_arrays(left.then, right), equal_arrays(left.otherwise, right))
+    if isinstance(right, Chosen):
+        return jani.Conditional(right.test, equal_arrays(left, right.then), equal_arrays(left, right.otherwise))
+    if isinstance(left, Listed) and isinstance(right, Listed):
+        return _equal_literals(left, right)
+    if isinstance(left, Listed):
+        return _equals_literal(right, left)
+    if isinstance(right, Listed):
+        return _equals_literal(left, right)
+    return _equal_stored(left, right)
+
+
+def _equals_literal(stored: ArrayForm, literal: Listed) -> Expression:
+    assert isinstance(stored, Stored)
+    same = equal(stored.lengths(1), Integer(len(literal.elements)))
+    for i, element in enumerate(literal.elements):
+        part = stored.element(Integer(i))
+        if isinstance(element, Listed):
+            same = both(same, _equals_literal(part, element))
+        else:
+            same = both(same, equal(element, part.value))
+    return same
+
+
+def _equal_literals(left: Listed, right: Listed) -> Expression:
+    same: Expression = jani.Boolean(len(left.elements) == len(right.elements))
+    for mine, other in zip(left.elements, right.elements, strict=False):
+        if isinstance(mine, Listed) and isinstance(other, Listed):
+            same = both(same, _equal_literals(mine, other))
+        elif not isinstance(mine, Listed) and not isinstance(other, Listed):
+            same = both(same, equal(mine, other))
+    return same
+
+
+def _equal_stored(left: Stored, right: Stored) -> Expression:
+    """Elements beyond the length do not count."""
+    same = equal(left.lengths(1), right.lengths(1))
+    depth = len(left.indexes)
+    capacity = min(left.shape.capacities[depth], right.shape.capacities[len(right.indexes)])
+    for i in range(capacity):
+        mine, other = left.element(Integer(i)), right.element(Integer(i))
+        unused = jani.Binary(BinaryOperator.LESS_EQUAL, left.lengths(1), Integer(i))
+        each = _equal_stored(mine, other) if mine.dimensions > 0 else equal(mine.value, other.value)
+        same = both(same, jani.Binary(BinaryOperator.OR, unused, each))
+    return same

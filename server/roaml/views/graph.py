@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a diagram shows, whatever it is drawn with."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+
+class Kind(enum.Enum):
+    STATES = "states"
+    TREE = "tree"
+    NETWORK = "network"
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """`lines` are its label; `minor` ones stay in the background."""
+
+    id: str
+    lines: tuple[str, ...]
+    minor: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    source: str
+    target: str
+    lines: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """`initial` is the node at which everything begins, "" if there is none."""
+
+    kind: Kind
+    title: str
+    nodes: tuple[Node, ...]
+    links: tuple[Link, ...]
+    initial: str = ""

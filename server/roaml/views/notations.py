@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagrams as text for DOT (Graphviz), Mermaid and PlantUML."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from roaml.views.graph import Graph, Kind, Node
+
+
+@dataclass(frozen=True, slots=True)
+class Notation:
+    """A language of diagrams: its name, the extension of its files, and how to write it."""
+
+    name: str
+    extension: str
+    render: Callable[[Graph], str]
+
+
+def dot(graph: Graph) -> str:
+    return _lines(_dot(graph))
+
+
+def _dot(graph: Graph) -> Iterator[str]:
+    yield f"digraph {_quoted(graph.title)} {{"
+    yield f"    rankdir={'TB' if graph.kind is Kind.TREE else 'LR'};"
+    yield '    node [shape=box, style="rounded", fontname="sans-serif"];'
+    yield '    edge [fontname="sans-serif", fontsize=10];'
+    if graph.initial:
+        yield '    "" [shape=point];'
+        yield f'    "" -> {_quoted(graph.initial)};'
+    for node in graph.nodes:
+        style = ', color="gray50", fontcolor="gray30"' if node.minor else ""
+        yield f"    {_quoted(node.id)} [label={_quoted(*node.lines)}{style}];"
+    for link in graph.links:
+        label = f" [label={_quoted(*link.lines)}]" if link.lines else ""
+        yield f"    {_quoted(link.source)} -> {_quoted(link.target)}{label};"
+    yield "}"
+
+
+def _quoted(*lines: str) -> str:
+    """A string of DOT; lines are separated by the two characters `\\n`."""
+    return '"' + "\\n".join(line.replace("\\", "\\\\").replace('"', '\\"') for line in lines) + '"'
+
+
+def mermaid(graph: Graph) -> str:
+    return _lines(_mermaid_states(graph) if graph.kind is Kind.STATES else _mermaid_flow(graph))
+
+
+def _mermaid_states(graph: Graph) -> Iterator[str]:
+    names = _names(graph)
+    yield from _mermaid_title(graph)
+    yield "stateDiagram-v2"
+    for node in graph.nodes:
+        yield f"    state {_mermaid_text(node.lines)} as {names[node.id]}"
+    if graph.initial in names:
+        yield f"    [*] --> {names[graph.initial]}"
+    for link in graph.links:
+        if link.source in names and link.target in names:
+            label = f" : {_mermaid_text(link.lines)[1:-1]}" if link.lines else ""
+            yield f"    {names[link.source]} --> {names[link.target]}{label}"
+
+
+def _mermaid_flow(graph: Graph) -> Iterator[str]:
+    names = _names(graph)
+    yield from _mermaid_title(graph)
+    yield f"flowchart {'TD' if graph.kind is Kind.TREE else 'LR'}"
+    for node in graph.nodes:
+        yield f"    {names[node.id]}[{_mermaid_text(node.lines)}]"
+    for link in graph.links:
+        label = f"|{_mermaid_text(link.lines)}|" if link.lines else ""
+        yield f"    {names[link.source]} -->{label} {names[link.target]}"
+    minor = [names[node.id] for node in graph.nodes if node.minor]
+    if minor:
+        yield "    classDef minor color:#666,stroke:#999"
+        yield f"    class {','.join(minor)} minor"
+
+
+def _mermaid_title(graph: Graph) -> Iterator[str]:
+    yield from ("---", f"title: {json.dumps(graph.title, ensure_ascii=False)}", "---")
+
+
+_MERMAID_ENTITIES = {ord(c): f"#{ord(c)};" for c in '"#;:<>{}[]|&'}
+
+
+def _mermaid_text(lines: Iterable[str]) -> str:
+    return '"' + "<br/>".join(line.translate(_MERMAID_ENTITIES) for line in lines) + '"'
+
+
+def plantuml(graph: Graph) -> str:
+    return _lines(_plantuml(graph))
+
+
+def _plantuml(graph: Graph) -> Iterator[str]:
+    names = _names(graph)
+    element = "state" if graph.kind is Kind.STATES else "rectangle"
+    yield "@startuml"
+    yield f"title {graph.title}"
+    if graph.kind is not Kind.TREE:
+        yield "left to right direction"
+    for node in graph.nodes:
+        yield f"{element} {_plantuml_text(node)} as {names[node.id]}{' #line:gray' if node.minor else ''}"
+    if graph.initial in names:
+        yield f"[*] --> {names[graph.initial]}"
+    for link in graph.links:
+        if link.source in names and link.target in names:
+            label = " : " + "\\n".join(link.lines) if link.lines else ""
+            yield f"{names[link.source]} --> {names[link.target]}{label}"
+    yield "@enduml"
+
+
+def _plantuml_text(node: Node) -> str:
+    return '"' + "\\n".join(line.replace('"', "<U+0022>") for line in node.lines) + '"'
+
+
+def _names(graph: Graph) -> dict[str, str]:
+    """Identifiers that every notation takes, for nodes of any name."""
+    return {node.id: f"n{i}" for i, node in enumerate(graph.nodes)}
+
+
+def _lines(lines: Iterable[str]) -> str:
+    return "".join(f"{line}\n" for line in lines)
+
+
+NOTATIONS = {
+    notation.name: notation
+    for notation in (
+        Notation("dot", "dot", dot),
+        Notation("mermaid", "mmd", mermaid),
+        Notation("plantuml", "puml", plantuml),
+    )
+}

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executed tree: every node with its number, its plugin and its ports."""
+
+from __future__ import annotations
+
+from roaml.model.expand import Constant, Instance
+from roaml.model.system import System
+from roaml.views.graph import Graph, Kind, Link, Node
+
+_OWN = ("ID", "name")
+
+
+def tree_graph(system: System) -> Graph:
+    nodes = tuple(_node(instance) for instance in system.instances)
+    links = tuple(Link(str(each.number), str(child)) for each in system.instances for child in each.children)
+    title = system.tree_paths[0].replace("\\", "/").rpartition("/")[2] if system.tree_paths else "tree"
+    return Graph(Kind.TREE, title, nodes, links)
+
+
+def _node(instance: Instance) -> Node:
+    title = instance.plugin if instance.name == instance.plugin else f"{instance.name} : {instance.plugin}"
+    ports = tuple(
+        f"{key} = {value.text if isinstance(value, Constant) else f'{{{value.variable}}}'}"
+        for key, value in instance.ports
+        if key not in _OWN
+    )
+    return Node(str(instance.number), (title, *ports, str(instance.number)))

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""References in XML text (`&lt;`, `&#10;`, ...): resolving them, writing them, and mapping places back.
+
+Only the five predefined entities and character references are known (XML 1.0, sections 4.1 and 4.6); every other
+reference stays as it is written. Nothing is ever expanded from a document type declaration.
+"""
+
+from __future__ import annotations
+
+import re
+
+from roaml.text import Decoded, Span
+
+REFERENCE = re.compile(r"&(?:#([0-9]{1,7})|#[xX]([0-9a-fA-F]{1,6})|([A-Za-z_][\w.-]*));")
+PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
+
+
+def resolve(match: re.Match[str]) -> str:
+    """What the matched reference stands for; the reference itself if it is not known."""
+    decimal, hexadecimal, name = match.groups()
+    if name:
+        return PREDEFINED.get(name, match[0])
+    code = int(decimal) if decimal else int(hexadecimal, 16)
+    return chr(code) if is_character(code) else match[0]
+
+
+def is_character(code: int) -> bool:
+    """Whether XML 1.0 allows the character (production 2)."""
+    return code in (9, 10, 13) or 0x20 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or 0x10000 <= code <= 0x10FFFF
+
+
+def unescape(raw: str) -> str:
+    return REFERENCE.sub(resolve, raw) if "&" in raw else raw
+
+
+def escape(value: str, quote: str = '"') -> str:
+    """`value` as attribute text between `quote` characters."""
+    value = value.replace("&", "&amp;").replace("<", "&lt;")
+    return value.replace('"', "&quot;") if quote == '"' else value.replace("'", "&apos;")
+
+
+def decoded(text: str, span: Span) -> Decoded:
+    """The part of `text` in `span` with its references resolved, and the way back."""
+    raw = text[span.start : span.end]
+    if "&" not in raw:
+        return Decoded(raw, span.start)
+    parts: list[str] = []
+    sources: list[int] = []
+    at = 0
+    for match in REFERENCE.finditer(raw):
+        parts += (raw[at : match.start()], resolve(match))
+        sources.extend(range(span.start + at, span.start + match.start()))
+        if parts[-1] == match[0]:
+            sources.extend(range(span.start + match.start(), span.start + match.end()))
+        else:
+            sources.append(span.start + match.start())
+        at = match.end()
+    parts.append(raw[at:])
+    sources.extend(range(span.start + at, span.end + 1))
+    return Decoded("".join(parts), span.start, tuple(sources))

@@ -1,0 +1,636 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text -> tree, whatever the text.
+
+- Never fails and takes time linear in the text: every mistake becomes a finding, the tree goes on behind it.
+- Recovers the way people type: an attribute whose quote is still open ends with its line or tag; a start tag without
+  `>` ends before the next `<`; a forgotten end tag ends with its parent; a misspelled end tag closes what it resembles.
+- Reads nothing but the text: document type declarations are stepped over, entities are never expanded.
+- Does not recurse, so nesting is bounded by memory alone (`MAX_DEPTH` is the depth up to which others may recurse).
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+from difflib import SequenceMatcher
+
+from roaml.diagnostics import Finding, Fix, Related
+from roaml.text import Span, TextEdit
+from roaml.xml.escapes import PREDEFINED, REFERENCE, is_character, unescape
+from roaml.xml.names import LOCAL_NAME, NAME, SPACE, is_name
+from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
+
+MAX_DEPTH = 100
+"""Elements nested deeper than this are reported and left out of the tree."""
+
+MAX_FINDINGS = 100
+"""A text with more mistakes than this is hardly XML; it is not read further."""
+
+_MAX_SKIPPED_DEPTH = 10_000
+
+# A tag without mistakes.
+_SPACE = f"[{SPACE}]"
+_SOUND_TAG = re.compile(f"<({NAME})((?:{_SPACE}+{NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>")
+_SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+
+# Any other tag: what was meant for a name, for white space, for a value.
+_NAME = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
+_TAG_OPEN = re.compile(rf"<((?=[^\W\d]|:){_NAME})")
+_END_TAG = re.compile(rf"</(\s*)({_NAME})?\s*(>)?")
+_END_TAG_JUNK = re.compile(r"[^<>\r\n]*>")
+_ATTRIBUTE = re.compile(rf"\s*({_NAME})(?:(\s*=\s*)(?:\"([^\"<]*)\"|'([^'<]*)')?)?")
+_TAG_END = re.compile(r"\s*(/?>)")
+_JUNK = re.compile(r"\s*([^\s<>/]+|/(?!>))")
+_TAG_SPACE = re.compile(r"\s*")
+_ODD_SPACE = re.compile(rf"[^\S{SPACE}]+")
+_BAD_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+_LESS = re.compile("<")
+_AMPERSAND = re.compile("&")
+_LONGEST_ODD_VALUE = 5000
+_UNQUOTED = re.compile(r"[^\s<>/\"']*")
+_SWALLOWED = re.compile(rf"\s{_NAME}\s*=\s*\Z")
+_NEXT_ATTRIBUTE = re.compile(rf"{_NAME}\s*=")
+_AFTER_VALUE = re.compile(r"[\s/>?]|\Z")
+_DOCTYPE_MARK = re.compile(r"<!--|<\?|[\[\]>\"']")
+_DOCTYPE_CLOSERS = {"<!--": "-->", "<?": "?>", '"': '"', "'": "'"}
+_INSTRUCTION_NAME = re.compile(rf"{LOCAL_NAME}(?={_SPACE}|\Z)")
+_XML_DECLARATION = re.compile(
+    rf"""xml{_SPACE}+version{_SPACE}*={_SPACE}*(["'])1\.[0-9]+\1
+    (?:{_SPACE}+encoding{_SPACE}*={_SPACE}*(["'])(?P<encoding>[A-Za-z][A-Za-z0-9._-]*)\2)?
+    (?:{_SPACE}+standalone{_SPACE}*={_SPACE}*(["'])(?:yes|no)\4)?{_SPACE}*""".replace("\n    ", "")
+)
+_LONGEST_SIMILAR_NAME = 100
+
+
+def parse(text: str) -> Document:
+    """The tree of `text` and all that is wrong with its form."""
+    return _Parser(text).run()
+
+
+class _Parser:
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.findings: list[Finding] = []
+        self.nodes: list[Node] = []
+        self.stack: list[Element] = []
+        self.names: list[str] = []  # of the elements in `stack`, prefixes included
+        self.open_names: dict[str, int] = {}
+        self.declared: list[tuple[int, str]] = []  # prefixes, with the depth of the element that declares them
+        self.prefixes = {"xml": 1, "xmlns": 1}  # how often each is declared by elements in `stack`
+        self.skipped_depth = 0
+        self.instructions_end = True  # until a search for `?>` has failed
+        self.hopeless = False  # too many mistakes, or nested absurdly deep
+
+    def run(self) -> Document:
+        text, length = self.text, len(self.text)
+        self.check_characters()
+        at = 0
+        while at < length and not self.hopeless:
+            less = text.find("<", at)
+            if less != at:
+                end = length if less < 0 else less
+                self.add_text(at, end)
+                at = end
+                continue
+            at = self.markup(at)
+        while self.stack:
+            self.close_unclosed(length)
+        root = self.check_roots()
+        self.findings.sort(key=lambda f: f.span)
+        return Document(text, root, tuple(self.nodes), tuple(self.findings))
+
+    # ---------------------------------------------------------------- markup
+
+    def markup(self, at: int) -> int:
+        """Read the markup that begins with the `<` at `at`; the offset behind it."""
+        text = self.text
+        following = text[at + 1 : at + 2]
+        if following == "/":
+            return self.end_tag(at)
+        if following == "!":
+            if text.startswith("<!--", at):
+                return self.comment(at)
+            if text.startswith("<![CDATA[", at):
+                return self.cdata(at)
+            if text[at + 2 : at + 9].upper() == "DOCTYPE":
+                return self.document_type(at)
+        elif following == "?":
+            return self.instruction(at)
+        if sound := _SOUND_TAG.match(text, at):
+            return self.sound_tag(sound)
+        match = _TAG_OPEN.match(text, at)
+        if match is None:
+            escape = Fix("Write `&lt;`", (TextEdit(Span(at, at + 1), "&lt;"),))
+            self.report(Span(at, at + 1), "`<` begins no tag here; as text it is written `&lt;`", escape)
+            self.add(Text("<", Span(at, at + 1)))
+            return at + 1
+        return self.start_tag(at, match)
+
+    def sound_tag(self, match: re.Match[str]) -> int:
+        """A start tag without mistakes: the common case, read fast."""
+        attributes: list[Attribute] = []
+        start, end = match.span(2)
+        if start != end:
+            seen: dict[str, Attribute] = {}
+            for found in _SOUND_ATTRIBUTE.finditer(self.text, start, end):
+                group = found.lastindex or 2
+                name, value = found[1], found[group]
+                value_span = Span._make(found.span(group))
+                if "&" in value:
+                    self.check_references(value_span)
+                    value = unescape(value)
+                attribute = Attribute(name, value, Span._make(found.span(1)), value_span, Span._make(found.span()))
+                attributes.append(attribute)
+                if seen.setdefault(name, attribute) is not attribute:
+                    self.duplicate(attribute, seen[name])
+        return self.open_element(match, attributes, match.end(), match[3] is not None, complete=True)
+
+    def start_tag(self, at: int, match: re.Match[str]) -> int:
+        """A start tag with something wrong in it."""
+        text = self.text
+        attributes: list[Attribute] = []
+        first: dict[str, Attribute] = {}
+        position = match.end()
+        self.check_name(Span(*match.span(1)))
+        while not self.hopeless:
+            if tag_end := _TAG_END.match(text, position):
+                self.check_space(position, tag_end.start(1))
+                return self.open_element(match, attributes, tag_end.end(), tag_end[1] == "/>", complete=True)
+            found = _ATTRIBUTE.match(text, position)
+            if found is None:
+                junk = _JUNK.match(text, position)
+                if junk is None:
+                    break
+                drop = Fix("Remove it", (TextEdit(Span(*junk.span(1)), ""),), preferred=False)
+                self.report(Span(*junk.span(1)), f"`{junk[1][:20]}` is not an attribute", drop)
+                position = junk.end()
+                continue
+            attribute = self.attribute(found, position)
+            if first.setdefault(attribute.name, attribute) is not attribute:
+                self.duplicate(attribute, first[attribute.name])
+            attributes.append(attribute)
+            position = attribute.span.end
+        self.report(
+            Span(*match.span()),
+            f"the start tag `<{shown(match[1])}` has no `>`",
+            Fix("Insert `>`", (TextEdit(Span(position, position), ">"),), preferred=False),
+        )
+        space = _TAG_SPACE.match(text, position)
+        return self.open_element(match, attributes, space.end() if space else position, False, complete=False)
+
+    def attribute(self, found: re.Match[str], at: int) -> Attribute:
+        """The attribute found in what follows `at`."""
+        name, equals = found[1], found[2]
+        name_span = Span(*found.span(1))
+        self.check_name(name_span)
+        if name_span.start > at:
+            self.check_space(at, name_span.start)
+        else:
+            insert = Fix("Insert a space", (TextEdit(Span(at, at), " "),))
+            self.report(name_span, "a space is missing before this attribute", insert)
+        if equals is not None:
+            self.check_space(*found.span(2))
+        else:
+            insert = Fix('Add `=""`', (TextEdit(Span(name_span.end, name_span.end), '=""'),), preferred=False)
+            self.report(name_span, f"attribute `{shown(name)}` has no value", insert)
+            return Attribute(name, "", name_span, Span(name_span.end, name_span.end), name_span, has_value=False)
+        group = 3 if found[3] is not None else 4
+        raw = found[group]
+        if raw is not None:
+            value_span = Span(*found.span(group))
+            if (end := self.swallowing(value_span)) is not None:
+                return self.open_value(name, name_span, Span(value_span.start, end))
+            if "&" in raw:
+                self.check_references(value_span)
+            return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, found.end()))
+        return self.odd_value(name, name_span, found.end(2))
+
+    def odd_value(self, name: str, name_span: Span, at: int) -> Attribute:
+        """A value with `<` in it, without its closing quote, or without quotes at all."""
+        text = self.text
+        quote = text[at : at + 1]
+        if quote not in ('"', "'"):
+            unquoted = _UNQUOTED.match(text, at)
+            end = unquoted.end() if unquoted else at
+            if text[at - 1].isspace() and _NEXT_ATTRIBUTE.match(text, at):
+                end = at = self.trim(name_span.end, at)
+            value_span = Span(at, end)
+            if end == at:
+                insert = Fix('Add `""`', (TextEdit(Span(at, at), '""'),), preferred=False)
+                message = f'attribute `{shown(name)}` has no value; write `{shown(name)}="…"`'
+                self.report(Span(name_span.start, at), message, insert)
+                return Attribute(name, "", name_span, value_span, Span(name_span.start, end), has_value=False)
+            quoted = (TextEdit(Span(at, at), '"'), TextEdit(Span(end, end), '"'))
+            self.report(value_span, "an attribute value stands in quotes", Fix("Add quotes", quoted))
+            self.check_references(value_span)
+            return Attribute(name, unescape(text[at:end]), name_span, value_span, Span(name_span.start, end))
+        start = at + 1
+        close = text.find(quote, start, start + _LONGEST_ODD_VALUE)
+        if close >= 0 and self.is_plausible_value(start, close):
+            value_span = Span(start, close)
+            for less in _LESS.finditer(text, start, close):
+                if self.hopeless:
+                    break
+                place = Span._make(less.span())
+                escape = Fix("Write `&lt;`", (TextEdit(place, "&lt;"),))
+                self.report(place, "`<` in an attribute value is written `&lt;`", escape)
+            self.check_references(value_span)
+            raw = text[start:close]
+            return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, close + 1))
+        next_tag = text.find("<", start)
+        stop = len(text) if next_tag < 0 else next_tag
+        line_end = next((i for i in (text.find("\n", start, stop), text.find("\r", start, stop)) if i >= 0), stop)
+        greater = text.find(">", start, line_end)
+        end = line_end if greater < 0 else greater
+        if end > start and text[end - 1] == "/":
+            end -= 1
+        return self.open_value(name, name_span, Span(start, end))
+
+    def open_value(self, name: str, name_span: Span, value: Span) -> Attribute:
+        """A value without its closing quote."""
+        start, end = value.start, self.trim(*value)
+        quote = self.text[start - 1]
+        self.report(
+            Span(name_span.start, end),
+            f"the value of `{shown(name)}` has no closing {quote}",
+            Fix(f"Insert {quote}", (TextEdit(Span(end, end), quote),)),
+        )
+        self.check_references(Span(start, end))
+        raw = self.text[start:end]
+        return Attribute(name, unescape(raw), name_span, Span(start, end), Span(name_span.start, end))
+
+    def swallowing(self, value: Span) -> int | None:
+        """Where a value really ends, if its closing quote is the opening one of the next attribute."""
+        text = self.text
+        if text[value.end - 1] != "=" and not text[value.end - 1].isspace():
+            return None
+        next_attribute = _SWALLOWED.search(text, *value)
+        if next_attribute is None:
+            return None
+        on_next_line = "\n" in text[value.start : value.end]
+        return next_attribute.start() if on_next_line or not _AFTER_VALUE.match(text, value.end + 1) else None
+
+    def is_plausible_value(self, start: int, close: int) -> bool:
+        """Whether the quote at `close` ends the value begun at `start`, or already belongs to the next attribute."""
+        text = self.text
+        if text[close - 1] == "=" and close - 1 >= start:
+            return False
+        if not _AFTER_VALUE.match(text, close + 1):
+            return False
+        less = text.find("<", start, close)
+        while less >= 0:
+            # A tag on a line of its own, or `</`, was not meant as "less than".
+            before = text.rfind("\n", start, less)
+            if text[less + 1 : less + 2] in ("/", "!", "?") or (before >= 0 and not text[before:less].strip()):
+                return False
+            less = text.find("<", less + 1, close)
+        return True
+
+    def open_element(
+        self, match: re.Match[str], attributes: list[Attribute], end: int, self_closing: bool, *, complete: bool
+    ) -> int:
+        prefix, colon, local = match[1].partition(":")
+        if not colon:
+            prefix, local = "", prefix
+        element = Element(local, prefix, Span(*match.span(1)), attributes, Span(match.start(), end))
+        element.self_closing = self_closing
+        element.complete = complete
+        if colon or ":" in self.text[match.end(1) : end]:
+            self.check_prefixes(element)
+        if len(self.stack) < MAX_DEPTH:
+            self.add(element)
+        else:
+            self.skipped_depth += not self_closing
+            self.hopeless = self.hopeless or self.skipped_depth > _MAX_SKIPPED_DEPTH
+            if self.skipped_depth == (0 if self_closing else 1):
+                self.too_deep(element)
+        if not self_closing:
+            name = match[1]
+            self.stack.append(element)
+            self.names.append(name)
+            self.open_names[name] = self.open_names.get(name, 0) + 1
+        return end
+
+    def end_tag(self, at: int) -> int:
+        match = _END_TAG.match(self.text, at)
+        assert match is not None
+        name = match[2]
+        if name is None:
+            return self.nameless_end_tag(Span(at, match.end() if match[3] else at + 2))
+        name_span = Span(*match.span(2))
+        if match[1]:
+            gap = Span(*match.span(1))
+            self.report(gap, "the name stands right behind `</`", Fix("Remove the space", (TextEdit(gap, ""),)))
+        if match[3]:
+            self.check_space(name_span.end, match.end())
+        end = match.end() if match[3] else self.end_tag_junk(Span(at, name_span.end))
+        tag = Span(at, end)
+        if not self.stack:
+            drop = Fix("Remove it", (TextEdit(tag, ""),))
+            self.stray(tag, f"`</{shown(name)}>` closes nothing", drop)
+        elif self.open_names.get(name):
+            while self.names[-1] != name:
+                self.close_unclosed(at)
+            self.close(tag, name_span)
+        elif resemble(name, self.names[-1]):
+            wanted = self.names[-1]
+            self.report(
+                name_span,
+                f"`</{shown(name)}>` does not match `<{shown(wanted)}>`",
+                Fix(f"Write `{shown(wanted)}`", (TextEdit(name_span, wanted),)),
+                related=(Related(self.stack[-1].name_span, "opened here"),),
+            )
+            self.close(tag, name_span)
+        else:
+            drop = Fix("Remove it", (TextEdit(tag, ""),), preferred=False)
+            message = f"`</{shown(name)}>` closes nothing; `<{shown(self.names[-1])}>` is open"
+            self.stray(tag, message, drop)
+        return end
+
+    def stray(self, tag: Span, message: str, drop: Fix) -> None:
+        self.report(tag, message, drop)
+        self.add(Text("", tag))
+
+    def nameless_end_tag(self, tag: Span) -> int:
+        if not self.stack:
+            self.stray(tag, "the end tag has no name", Fix("Remove it", (TextEdit(tag, ""),)))
+            return tag.end
+        wanted = self.names[-1]
+        write = Fix(f"Write `</{shown(wanted)}>`", (TextEdit(tag, f"</{wanted}>"),))
+        self.report(tag, f"the end tag has no name; `<{shown(wanted)}>` is open", write)
+        self.close(tag, Span(tag.start + 2, tag.start + 2))
+        return tag.end
+
+    def end_tag_junk(self, tag: Span) -> int:
+        """What follows the name in an end tag that does not end there; where the tag does end."""
+        if junk := _END_TAG_JUNK.match(self.text, tag.end):
+            place = Span(junk.start(), junk.end() - 1)
+            self.report(place, "an end tag holds nothing but its name", Fix("Remove it", (TextEdit(place, ""),)))
+            return junk.end()
+        insert = Fix("Insert `>`", (TextEdit(Span(tag.end, tag.end), ">"),))
+        self.report(tag, "the end tag has no `>`", insert)
+        return tag.end
+
+    # --------------------------------------------------------------- closing
+
+    def close(self, tag: Span, name_span: Span) -> None:
+        element = self.pop()
+        element.span = Span(element.span.start, tag.end)
+        element.close_span = tag
+        element.close_name_span = name_span
+
+    def close_unclosed(self, at: int) -> None:
+        """End the innermost element, whose end tag is missing, before offset `at`."""
+        name = self.names[-1]
+        element = self.pop()
+        was_complete, element.complete = element.complete, False
+        if not was_complete:
+            # The start tag is still being typed: what follows it is its sibling, not its child.
+            siblings = self.stack[-1] if self.stack else None
+            nodes, elements = element.nodes, element.elements
+            element.nodes, element.elements = [], []
+            (siblings.nodes if siblings else self.nodes).extend(nodes)
+            if siblings:
+                siblings.elements.extend(elements)
+            return
+        element.span = Span(element.span.start, at)
+        end = self.trim(element.open_span.end, at)
+        close_tag = Fix(f"Insert `</{shown(name)}>`", (TextEdit(Span(end, end), f"</{name}>"),))
+        if not element.elements and not children_text(element).strip(SPACE):
+            slash = element.open_span.end - 1
+            close_tag = Fix("Close it with `/>`", (TextEdit(Span(slash, slash), " /"),))
+        self.report(element.name_span, f"`<{shown(name)}>` is never closed", close_tag)
+
+    def pop(self) -> Element:
+        element, name = self.stack.pop(), self.names.pop()
+        self.open_names[name] -= 1
+        if self.skipped_depth:
+            self.skipped_depth -= 1
+        self.forget_prefixes()
+        return element
+
+    def forget_prefixes(self) -> None:
+        """Those that no element in `stack` declares."""
+        while self.declared and self.declared[-1][0] >= len(self.stack):
+            self.prefixes[self.declared.pop()[1]] -= 1
+
+    # ------------------------------------------------------ everything else
+
+    def comment(self, at: int) -> int:
+        close = self.text.find("-->", at + 4)
+        end = len(self.text) if close < 0 else close + 3
+        if close < 0:
+            self.report(Span(at, at + 4), "the comment is never closed with `-->`")
+        content_end = end if close < 0 else close
+        if (double := self.text.find("--", at + 4, content_end + 1)) >= 0:
+            self.report(Span(double, double + 2), "`--` is not allowed inside a comment")
+        self.add(Comment(self.text[at + 4 : content_end], Span(at, end)))
+        return end
+
+    def cdata(self, at: int) -> int:
+        close = self.text.find("]]>", at)
+        end = len(self.text) if close < 0 else close + 3
+        if close < 0:
+            self.report(Span(at, at + 9), "the CDATA section is never closed with `]]>`")
+        self.add(CData(self.text[at + 9 : end if close < 0 else close], Span(at, end)))
+        return end
+
+    def instruction(self, at: int) -> int:
+        close = self.text.find("?>", at) if self.instructions_end else -1
+        if close < 0:
+            self.instructions_end = False
+            less = self.text.find("<", at + 1)
+            end = self.trim(at + 2, len(self.text) if less < 0 else less)
+            self.report(Span(at, end), "the processing instruction is never closed with `?>`")
+        else:
+            end = close + 2
+            self.check_instruction(Span(at, end))
+        self.add(Instruction(self.text[at + 2 : end if close < 0 else close], Span(at, end)))
+        return end
+
+    def document_type(self, at: int) -> int:
+        text, end = self.text, document_type_end(self.text, at)
+        span = Span(at, end)
+        self.add(Instruction(text[at + 2 : end], span))
+        if "<!ENTITY" in text[at:end]:
+            message = "entities are not expanded here: write out what they stand for"
+        else:
+            message = "a document type declaration has no effect here and is not read"
+        self.report(span, message, Fix("Remove it", (TextEdit(span, ""),)), code="document-type")
+        return end
+
+    def add_text(self, start: int, end: int) -> None:
+        raw = self.text[start:end]
+        if "&" in raw:
+            self.check_references(Span(start, end))
+        if (close := raw.find("]]>")) >= 0:
+            place = Span(start + close, start + close + 3)
+            escape = Fix("Write `]]&gt;`", (TextEdit(place, "]]&gt;"),))
+            self.report(place, "`]]>` stands only at the end of a CDATA section; as text write `]]&gt;`", escape)
+        self.add(Text(unescape(raw), Span(start, end)))
+
+    def add(self, node: Node) -> None:
+        if not self.stack:
+            self.nodes.append(node)
+        elif not self.skipped_depth:
+            parent = self.stack[-1]
+            parent.nodes.append(node)
+            if isinstance(node, Element):
+                parent.elements.append(node)
+
+    # ---------------------------------------------------------------- checks
+
+    def check_characters(self) -> None:
+        if bad := _BAD_CHARACTER.search(self.text):
+            self.report(Span(*bad.span()), f"the character U+{ord(bad[0]):04X} is not allowed in XML")
+
+    def check_references(self, span: Span) -> None:
+        for match in _AMPERSAND.finditer(self.text, span.start, span.end):
+            if self.hopeless:
+                return
+            reference = REFERENCE.match(self.text, match.start(), span.end)
+            if reference is None:
+                escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),))
+                self.report(Span(*match.span()), "`&` as such is written `&amp;`", escape)
+                continue
+            decimal, hexadecimal, name = reference.groups()
+            place = Span(*reference.span())
+            if name and name not in PREDEFINED:
+                escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), preferred=False)
+                message = f"the entity `&{name};` is not defined; entities are not expanded here"
+                self.report(place, message, escape, code="undefined-entity")
+            elif not name and not is_character(int(decimal) if decimal else int(hexadecimal, 16)):
+                self.report(place, f"`{reference[0]}` stands for no character that XML allows")
+
+    def check_name(self, span: Span) -> None:
+        name = self.text[span.start : span.end]
+        if not is_name(name):
+            self.report(span, f"`{shown(name)}` is not a name that XML allows")
+
+    def check_space(self, start: int, end: int) -> None:
+        """Report characters that look like a space to a person but not to XML."""
+        if odd := _ODD_SPACE.search(self.text, start, end):
+            place = Span(*odd.span())
+            message = f"the character U+{ord(odd[0][0]):04X} only looks like a space"
+            self.report(place, message, Fix("Write a space", (TextEdit(place, " "),)))
+
+    def check_prefixes(self, element: Element) -> None:
+        for attribute in element.attributes:
+            if attribute.name.startswith("xmlns:"):
+                prefix = attribute.name[6:]
+                self.declared.append((len(self.stack), prefix))
+                self.prefixes[prefix] = self.prefixes.get(prefix, 0) + 1
+        for span in (element.name_span, *(attribute.name_span for attribute in element.attributes)):
+            prefix, colon, _ = self.text[span.start : span.end].partition(":")
+            if colon and not self.prefixes.get(prefix) and is_name(prefix):
+                place = Span(span.start, span.start + len(prefix))
+                self.report(place, f"the prefix `{shown(prefix)}` is not declared with `xmlns:{shown(prefix)}`")
+        if element.self_closing:
+            self.forget_prefixes()
+
+    def check_instruction(self, span: Span) -> None:
+        content = self.text[span.start + 2 : span.end - 2]
+        name = _INSTRUCTION_NAME.match(content)
+        if name is None:
+            self.report(span, "a processing instruction begins with a name")
+        elif name[0] == "xml" and span.start > 0:
+            self.report(span, "the XML declaration must be the very first thing in the file")
+        elif name[0] == "xml":
+            self.check_declaration(content, span)
+
+    def check_declaration(self, content: str, span: Span) -> None:
+        declaration = _XML_DECLARATION.fullmatch(content)
+        if declaration is None:
+            self.report(span, 'an XML declaration has the form `<?xml version="1.0" encoding="UTF-8"?>`')
+        elif encoding := declaration["encoding"]:
+            try:
+                codecs.lookup(encoding)
+            except LookupError:
+                start = span.start + 2 + declaration.start("encoding")
+                place = Span(start, start + len(encoding))
+                write = Fix("Write `UTF-8`", (TextEdit(place, "UTF-8"),))
+                self.report(place, f"there is no encoding `{shown(encoding)}`; the file was read as UTF-8", write)
+
+    def check_roots(self) -> Element | None:
+        roots = [node for node in self.nodes if isinstance(node, Element)]
+        if not roots:
+            self.report(Span(0, min(1, len(self.text))), "the file has no element")
+            return None
+        for extra in roots[1:]:
+            self.report(
+                extra.name_span,
+                f"a document has one root; `<{shown(extra.name)}>` stands outside `<{shown(roots[0].name)}>`",
+                related=(Related(roots[0].name_span, "the root"),),
+            )
+        for node in self.nodes:
+            raw = self.text[node.span.start : node.span.end]
+            is_data = isinstance(node, CData) or (isinstance(node, Text) and node.value)
+            if is_data and (stripped := raw.strip(SPACE)):
+                start = node.span.start + raw.index(stripped)
+                self.report(Span(start, start + len(stripped)), "text outside the root element")
+        return roots[0]
+
+    def duplicate(self, attribute: Attribute, first: Attribute) -> None:
+        self.report(
+            attribute.name_span,
+            f"attribute `{shown(attribute.name)}` is given twice",
+            Fix("Remove this one", (TextEdit(attribute.span, ""),), preferred=False),
+            code="duplicate-attribute",
+            related=(Related(first.name_span, "given first here"),),
+        )
+
+    def too_deep(self, element: Element) -> None:
+        message = f"elements are nested more than {MAX_DEPTH} deep; what is inside is not analysed"
+        self.report(element.name_span, message, code="nesting-too-deep")
+
+    def report(
+        self,
+        span: Span,
+        message: str,
+        *fixes: Fix,
+        code: str = "xml-syntax",
+        related: tuple[Related, ...] = (),
+    ) -> None:
+        if len(self.findings) < MAX_FINDINGS:
+            self.findings.append(Finding(code, span, message, fixes=fixes, related=related))
+        elif not self.hopeless:
+            self.hopeless = True
+            self.findings.append(Finding("xml-syntax", span, "too many mistakes: the file is not read from here on"))
+
+    def trim(self, start: int, end: int) -> int:
+        """`end` moved back over white space, not before `start`."""
+        while end > start and self.text[end - 1] in SPACE:
+            end -= 1
+        return end
+
+
+def document_type_end(text: str, at: int) -> int:
+    """Where the document type declaration that begins at `at` ends; the end of the text if it never does."""
+    inside, position = False, at
+    while match := _DOCTYPE_MARK.search(text, position):
+        mark, position = match[0], match.end()
+        if closer := _DOCTYPE_CLOSERS.get(mark):
+            close = text.find(closer, position)
+            if close < 0:
+                break
+            position = close + len(closer)
+        elif mark == ">" and not inside:
+            return position
+        else:
+            inside = mark == "[" or (inside and mark != "]")
+    start = text.find("]", at) if inside else at
+    end = text.find(">", start) if start >= 0 else -1
+    return len(text) if end < 0 else end + 1
+
+
+def resemble(name: str, wanted: str) -> bool:
+    """Whether the end tag `name` was probably meant to close `wanted`."""
+    if name.rpartition(":")[2] == wanted.rpartition(":")[2]:
+        return True
+    short = max(len(name), len(wanted)) <= _LONGEST_SIMILAR_NAME
+    return short and SequenceMatcher(None, name, wanted).ratio() > 0.6
+
+
+def shown(name: str) -> str:
+    """`name` as a message shows it."""
+    return name if len(name) <= 60 else f"{name[:59]}…"

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The XML tree.
+
+- Lossless: the spans of a node's children and tags cover the node's text, comments and white space included. (Only
+  elements nested too deep are left out.)
+- Written once by the parser and never changed afterwards.
+- No links to parents: whoever walks the tree carries what it needs (`Document.path_at` gives the ancestors of a place).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+from roaml.diagnostics import Finding
+from roaml.text import Decoded, Span
+from roaml.xml.escapes import decoded
+
+
+class Attribute(NamedTuple):
+    """`name` is as written, prefix included. `value` has its references resolved; it is empty if there is none.
+
+    `value_span` lies between the quotes; `span` is the whole attribute. `has_value` is false in `<a name>`.
+    """
+
+    name: str
+    value: str
+    name_span: Span
+    value_span: Span
+    span: Span
+    has_value: bool = True
+
+
+class Text(NamedTuple):
+    """Character data between tags; `value` has its references resolved. Empty for an end tag that closes nothing."""
+
+    value: str
+    span: Span
+
+
+class CData(NamedTuple):
+    value: str
+    span: Span
+
+
+class Comment(NamedTuple):
+    """`value` is the text between `<!--` and `-->`."""
+
+    value: str
+    span: Span
+
+
+class Instruction(NamedTuple):
+    """A processing instruction, XML declaration or document type declaration; nothing in it is interpreted."""
+
+    value: str
+    span: Span
+
+
+class Element:
+    """One element.
+
+    Attributes:
+        name: local name, without prefix.
+        prefix: namespace prefix, often empty.
+        name_span: the whole name in the start tag.
+        attributes: in document order; of two with one name both are kept.
+        nodes: all children, in document order.
+        elements: the child elements alone.
+        span: from `<` to behind the end tag; without one, to behind the last of the children.
+        open_span: the start tag, from `<` to behind `>`; without one, to the next `<`.
+        close_span: the end tag, or None if the element is self-closing or was never closed.
+        close_name_span: the name in the end tag.
+        self_closing: written as `<a/>`.
+        complete: the start tag has its `>` and, unless self-closing, an end tag of its own.
+    """
+
+    __slots__ = (
+        "attributes",
+        "close_name_span",
+        "close_span",
+        "complete",
+        "elements",
+        "name",
+        "name_span",
+        "nodes",
+        "open_span",
+        "prefix",
+        "self_closing",
+        "span",
+    )
+
+    def __init__(self, name: str, prefix: str, name_span: Span, attributes: list[Attribute], open_span: Span) -> None:
+        self.name = name
+        self.prefix = prefix
+        self.name_span = name_span
+        self.attributes = attributes
+        self.open_span = open_span
+        self.span = open_span
+        self.nodes: list[Node] = []
+        self.elements: list[Element] = []
+        self.close_span: Span | None = None
+        self.close_name_span: Span | None = None
+        self.self_closing = False
+        self.complete = True
+
+    def get(self, name: str) -> Attribute | None:
+        """The first attribute called `name`."""
+        for attribute in self.attributes:
+            if attribute.name == name:
+                return attribute
+        return None
+
+    def find(self, name: str) -> Element | None:
+        """The first child element called `name`."""
+        for child in self.elements:
+            if child.name == name:
+                return child
+        return None
+
+    def walk(self) -> Iterator[Element]:
+        """This element and all below it, in document order."""
+        stack = [self]
+        while stack:
+            element = stack.pop()
+            yield element
+            stack.extend(reversed(element.elements))
+
+    @property
+    def content_span(self) -> Span:
+        """Where the children stand: between start tag and end tag."""
+        return Span(self.open_span.end, self.close_span.start if self.close_span else self.span.end)
+
+    def __repr__(self) -> str:
+        return f"<{self.name} {self.span.start}..{self.span.end}>"
+
+
+Node: TypeAlias = Element | Text | CData | Comment | Instruction
+
+
+def children_text(element: Element) -> str:
+    """The character data directly inside `element`, comments left out."""
+    return "".join(node.value for node in element.nodes if isinstance(node, (Text, CData)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Document:
+    """A parsed text. `root` is the first element, None only if there is none; by mistake others may follow it."""
+
+    text: str
+    root: Element | None
+    nodes: tuple[Node, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def namespaces(self) -> Mapping[str, str]:
+        """Prefix -> namespace as declared on the root; the default namespace has the empty prefix."""
+        if self.root is None:
+            return {}
+        return {
+            a.name.partition(":")[2]: a.value
+            for a in self.root.attributes
+            if a.name == "xmlns" or a.name.startswith("xmlns:")
+        }
+
+    def decoded(self, span: Span) -> Decoded:
+        """The text in `span` with its references resolved, and the way back to the source."""
+        return decoded(self.text, span)
+
+    def path_at(self, offset: int) -> list[Element]:
+        """The elements around `offset`, outermost first; a caret at the end of an unfinished element is inside it."""
+        path: list[Element] = []
+        level = [node for node in self.nodes if isinstance(node, Element)]
+        while level:
+            inside = [e for e in level if e.span.start < offset < e.span.end]
+            if not inside:
+                inside = [e for e in level if e.span.end == offset and not e.complete]
+            if not inside:
+                break
+            path.append(inside[0])
+            level = inside[0].elements
+        return path

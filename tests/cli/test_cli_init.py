@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp init DIR`"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from command import Command
+
+
+def files(folder: Path) -> dict[str, str]:
+    return {p.relative_to(folder).as_posix(): p.read_text() for p in folder.rglob("*") if p.is_file()}
+
+
+@pytest.mark.parametrize("name", ["my_robot", "deep/er/robot", "with space ü", "."])
+def test_what_it_writes_is_clean(command: Command, tmp_path: Path, name: str) -> None:
+    done = command("init", name)
+    assert (done.status, done.err) == (0, "")
+    written = files(tmp_path / name)
+    assert {"main.xml", "tree.xml", "properties.jani"} <= written.keys()
+    lines = done.out.splitlines()
+    told = {line.removeprefix("wrote ") for line in lines[:-2]}
+    assert told == {os.path.normpath(os.path.join(name, file)) for file in written}
+    quoted = f"'{name}/main.xml'" if " " in name else f"{name}/main.xml"
+    assert lines[-1] == f"next: as2fm-lsp --check {quoted}"
+    checked = command("--check", tmp_path / name / "main.xml", "--warnings-as-errors", "--severity", "information")
+    assert checked.status == 0
+    assert checked.out.startswith(f"{len(written)} files checked: ")
+
+
+def test_twice(command: Command, tmp_path: Path) -> None:
+    assert command("init", "robot").status == 0
+    (tmp_path / "robot" / "main.xml").write_text("mine")
+    (tmp_path / "robot" / "tree.xml").unlink()
+    before = files(tmp_path)
+    done = command("init", "robot")
+    assert (done.status, done.out) == (2, "")
+    assert "main.xml exists already; nothing was written" in done.err
+    assert files(tmp_path) == before
+
+
+def test_beside_other_files(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "README.md").write_text("mine")
+    assert command("init", ".").status == 0
+    assert (tmp_path / "README.md").read_text() == "mine"
+
+
+def test_where_nothing_can_be_written(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    for name in ("file", "file/robot"):
+        done = command("init", name)
+        assert (done.status, done.out) == (2, "")
+        assert done.err.startswith(f"as2fm-lsp: {name}: ")
+    assert files(tmp_path) == {"file": "mine"}

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is asked for, and with which status the command ends: 0 clean, 1 found, 2 wrong use, 3 a failure of ours."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+from command import Command
+
+import clock
+import roaml.project.checking
+from roaml import __version__, api
+from roaml.rules import RULES
+
+
+def test_clean(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    done = command("--check", "main.xml")
+    assert done == (0, "3 files checked: no diagnostics\n", "")
+
+
+def test_errors(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    done = command("--check", "main.xml")
+    assert done.status == 1
+    assert done.out == (
+        "clock.ascxml:9:31: error: there is no variable `coutn`; did you mean `count`? [undeclared-variable]\n"
+        '    9 |             <assign location="coutn" expr="(count + 1) % 10" />\n'
+        "      |                               ^^^^^\n"
+        "3 files checked: 1 error\n"
+    )
+    assert not done.err
+
+
+def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.UNHEARD_CLOCK)
+    done = command("--check", ".")
+    assert (done.status, done.out.splitlines()[-1]) == (0, "3 files checked: 1 hint")
+    (tmp_path / "as2fm.toml").write_text('severity = { topic-without-subscriber = "warning" }\n')
+    assert command("--check", ".").status == 0
+    assert command("--check", ".", "--warnings-as-errors").status == 1
+    assert command("--check", ".", "--warnings-as-errors", "--severity", "error").status == 0
+    (tmp_path / "as2fm.toml").write_text(
+        'severity = { topic-without-subscriber = "warning" }\nwarnings-as-errors = true\n'
+    )
+    assert command("--check", ".").status == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["--check"], "--check needs a PATH"),
+        (["--check", "nowhere.xml"], "there is no such file or folder"),
+        (["--check", ".", "--select", "no-such-rule"], "there is no rule no-such-rule"),
+        (["--check", ".", "--ignore", "xml-syntax,no-such-rule"], "there is no rule no-such-rule"),
+        (["--check", ".", "--format", "html"], "invalid choice: 'html'"),
+        (["--check", ".", "--severity", "fatal"], "invalid choice: 'fatal'"),
+        (["--check", ".", "--frobnicate"], "unrecognized arguments: --frobnicate"),
+        (["--check", ".", "--output"], "expected one argument"),
+        (["--check", ".", "--stdin-filename", "."], "takes the name of a file"),
+        (["main.xml"], "used with --check only"),
+        (["--format", "json"], "used with --check only"),
+        (["--explain", "unknwon-element"], "did you mean unknown-element?"),
+        (["--explain", ""], "there is no rule"),
+        (["--tcp", "nonsense"], "--tcp takes HOST:PORT"),
+        (["--tcp", "localhost:99999"], "--tcp takes HOST:PORT"),
+        (["--tcp", "localhost:²"], "--tcp takes HOST:PORT"),
+        (["init"], "the following arguments are required: DIR"),
+        (["migrate"], "the following arguments are required: PATH"),
+        (["migrate", "nowhere"], "there is no such file or folder"),
+    ],
+)
+def test_wrong_use(command: Command, arguments: list[str], complaint: str) -> None:
+    done = command(*arguments)
+    assert done.status == 2
+    assert complaint in done.err
+    assert not done.out
+
+
+def test_help_shows_every_option_with_examples(command: Command) -> None:
+    done = command("--help")
+    assert done.status == 0
+    for word in ("--check", "--ros-path", "--baseline", "--explain", "init", "migrate", "examples:", "exit status:"):
+        assert word in done.out
+    for name in ("init", "migrate"):
+        assert command(name, "--help").out.startswith(f"usage: as2fm-lsp {name}")
+
+
+def test_version(command: Command) -> None:
+    assert command("--version") == (0, f"as2fm-lsp {__version__}\n", "")
+
+
+def test_explain(command: Command) -> None:
+    done = command("--explain", "unknown-element")
+    assert done.status == 0
+    assert done.out.startswith("# unknown-element\n")
+    assert "## Why" in done.out
+
+
+def test_select_and_ignore(command: Command, check: Command, tmp_path: Path) -> None:
+    both = clock.UNHEARD_CLOCK.replace('location="count"', 'location="coutn"')
+    clock.write(tmp_path, clock=both)
+    assert check(".").codes == ["topic-without-subscriber", "undeclared-variable"]
+    assert check(".", "--select", "undeclared-variable").codes == ["undeclared-variable"]
+    assert check(".", "--select", "undeclared-variable, topic-without-subscriber").status == 1
+    assert check(".", "--select", "undeclared-variable", "--select", "topic-without-subscriber").codes == [
+        "topic-without-subscriber",
+        "undeclared-variable",
+    ]
+    done = check(".", "--ignore", "undeclared-variable")
+    assert (done.status, done.codes) == (0, ["topic-without-subscriber"])
+    assert check(".", "--ignore", "undeclared-variable,topic-without-subscriber").codes == []
+    assert check(".", "--severity", "error").codes == ["undeclared-variable"]
+    assert check(".", "--severity", "warning").codes == ["undeclared-variable"]
+    assert check(".", "--severity", "hint").codes == ["topic-without-subscriber", "undeclared-variable"]
+
+
+def test_what_is_selected_is_not_ignored_by_the_configuration(check: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    (tmp_path / "as2fm.toml").write_text('ignore = ["undeclared-variable"]\n')
+    assert check(".").codes == []
+    assert check(".", "--select", "undeclared-variable").codes == ["undeclared-variable"]
+
+
+def test_statistics(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.UNHEARD_CLOCK.replace("count + 1", "coutn + conut"))
+    done = command("--check", ".", "--statistics")
+    assert done.status == 1
+    assert done.out == "     2 error        undeclared-variable\n     1 hint         topic-without-subscriber\n"
+
+
+def crash(_: object) -> None:
+    raise ZeroDivisionError("a mistake of ours")
+
+
+def test_a_rule_that_crashes_is_a_failure_of_ours_whatever_is_shown(
+    check: Command, command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other rules go on, and no option makes it look clean."""
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    rules = [dataclasses.replace(r, machine=crash) if r.code == "undefined-state" else r for r in RULES]
+    monkeypatch.setattr(roaml.project.checking, "RULES", rules)
+    done = check("clock.ascxml")
+    assert done.status == 3
+    assert sorted(done.codes) == ["internal-error", "undeclared-variable"]
+    assert "`undefined-state` failed (ZeroDivisionError: a mistake of ours)" in done.rows[0]["message"]
+    for options in (
+        ["--select", "undeclared-variable"],
+        ["--ignore", "internal-error"],
+        ["--severity", "error"],
+        ["--baseline", "known.json"],
+        ["--baseline", "known.json"],
+    ):
+        assert command("--check", "clock.ascxml", *options).status == 3, options
+
+
+def test_a_crash_outside_of_rules(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock.write(tmp_path)
+    monkeypatch.setattr(api, "check", crash)
+    done = command("--check", ".")
+    assert done.status == 3
+    assert "Traceback" in done.err
+    assert "mistake of the tool itself; please report it" in done.err
+
+
+def test_an_interrupt_is_quiet(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    clock.write(tmp_path)
+    monkeypatch.setattr(api, "check", interrupt)
+    assert command("--check", ".") == (130, "", "")

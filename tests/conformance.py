@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The conformance cases that may lie beside the project. Without them, tests that read them collect no such case."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).resolve().parents[2] / "shared" / "conformance"
+PRESENT = (ROOT / "cases.toml").is_file()
+INTERFACES = ROOT / "interfaces"
+NOTICE = "conformance cases: present" if PRESENT else "conformance cases: not present, so none of them is collected"
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A planted mistake: the folder of a system, and the system file of the same system without it."""
+
+    id: str
+    folder: Path
+    base: Path
+    severity: str
+    at: tuple[str, ...]
+
+    @property
+    def main(self) -> Path:
+        return self.folder / "main.xml"
+
+
+def _table(name: str) -> list[dict[str, Any]]:
+    if not PRESENT:
+        return []
+    return list(tomllib.loads((ROOT / name).read_text(encoding="utf-8"))["case"])
+
+
+@cache
+def systems() -> tuple[Path, ...]:
+    """The system files of all models that must be clean."""
+    return tuple(dict.fromkeys(ROOT / case["model"] for case in _table("cases.toml")))
+
+
+@cache
+def mistakes() -> tuple[Mistake, ...]:
+    return tuple(
+        Mistake(case["id"], ROOT / "bad" / case["id"], ROOT / case["base"], case["severity"], tuple(case["at"]))
+        for case in _table("bad.toml")
+    )
+
+
+def label(path: Path) -> str:
+    """A short name for a file of the set."""
+    return path.relative_to(ROOT).as_posix()

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by examples/run and tests/run: makes .venv in the tree and installs the project into it.
+#
+# prepare EXTRAS   EXTRAS is "" or a list such as "[dev]". Quick when nothing has changed.
+
+fail() {
+    echo "$1" >&2
+    exit 1
+}
+
+find_python() {
+    for candidate in "${PYTHON:-}" python3 python3.13 python3.12 python3.11 python3.10; do
+        if [ -n "$candidate" ] && command -v "$candidate" >/dev/null 2>&1 &&
+            "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+            echo "$candidate"
+            return
+        fi
+    done
+    fail "Python 3.10 or newer is needed: install it, or name it with PYTHON=/path/to/python3"
+}
+
+make_environment() {
+    python=$(find_python)
+    "$python" -m venv .venv >/dev/null 2>&1 && return
+    rm -rf .venv
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
+        apt-get -qq update >/dev/null 2>&1 || true
+        apt-get -qq install -y python3-venv >/dev/null 2>&1 || true
+        "$python" -m venv .venv && return
+    fi
+    fail "the Python module venv is missing: as root, 'apt-get install python3-venv'"
+}
+
+prepare() {
+    wanted=$(cat pyproject.toml | cksum)
+    case "$(cat .venv/prepared 2>/dev/null)" in
+        "$wanted $1" | "$wanted [dev]") return ;;
+    esac
+    [ -x .venv/bin/python ] || make_environment
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$1" 2>.venv/pip.log ||
+        { cat .venv/pip.log >&2; fail "pip could not install the project; is a package index configured and reachable?"; }
+    echo "$wanted $1" >.venv/prepared
+}

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is damaged: the conformance models, the examples, the rules' documents and the rules' test cases."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import conformance
+from fixture import read_marks, split_files
+from roaml import api
+from roaml.project.settings import Settings
+from roaml.text import decode
+
+ROOT = Path(__file__).resolve().parents[2]
+EXTENSIONS = (".xml", ".ascxml", ".scxml", ".jani", ".json", ".msg", ".srv", ".action")
+NOWHERE = os.path.join(os.sep, "nowhere")
+"""The folder of models that are only in memory."""
+
+_BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_TITLE = re.compile(r"^## .+\n", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Model:
+    """Some files that belong together. `main` is the one that is checked, with all that it names."""
+
+    name: str
+    main: str
+    texts: dict[str, str]
+    ros_paths: tuple[str, ...] = ()
+
+
+@cache
+def systems() -> tuple[Model, ...]:
+    """The conformance models and the examples, always in one order."""
+    found = [_on_disk(path, (str(conformance.INTERFACES),)) for path in sorted(conformance.systems())]
+    return (*found, *(_on_disk(path, ()) for path in sorted((ROOT / "examples").glob("*/main.xml"))))
+
+
+@cache
+def snippets() -> tuple[Model, ...]:
+    """The small models in the rules' documents and in the rules' test cases, always in one order."""
+    return tuple(_written())
+
+
+@cache
+def interfaces() -> dict[str, str]:
+    """The interface definitions of the conformance models."""
+    paths = sorted(path for path in conformance.INTERFACES.rglob("*") if path.suffix in EXTENSIONS)
+    return {str(path): decode(str(path), path.read_bytes()).text for path in paths}
+
+
+def _on_disk(main: Path, ros_paths: tuple[str, ...]) -> Model:
+    result = api.check([str(main)], ros_paths, Settings())
+    texts = {path: result.source(path).text for path in result.files}
+    return Model(f"{main.parent.name}/{main.name}", str(main), texts, ros_paths)
+
+
+def _written() -> Iterator[Model]:
+    documents = sorted((ROOT / "server" / "roaml" / "rules").glob("*.md"))
+    for document in documents:
+        for number, block in enumerate(_BLOCK.findall(document.read_text(encoding="utf-8"))):
+            yield from _in_memory(f"{document.stem}_{number}", block)
+    for case in sorted((ROOT / "tests" / "rules").rglob("*.txt")):
+        common, *parts = _TITLE.split(case.read_text(encoding="utf-8"))
+        for number, part in enumerate(parts):
+            yield from _in_memory(f"{case.stem}_case_{number}", common + part if part.startswith("-- ") else part)
+
+
+def _in_memory(name: str, written: str) -> Iterator[Model]:
+    files = {n: read_marks(n, text)[0] for n, text in split_files(written).items() if n.endswith(EXTENSIONS)}
+    if files:
+        folder = os.path.join(NOWHERE, name)
+        texts = {os.path.normpath(os.path.join(folder, n)): text for n, text in files.items()}
+        main = next((path for path, text in texts.items() if "<roaml" in text), next(iter(texts)))
+        yield Model(name, main, texts)

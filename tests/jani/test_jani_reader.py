@@ -1,0 +1,522 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading models: every mistake is told where it stands, and nothing stops the reader.
+
+In the examples, ⟦ ⟧ enclose what a finding is about, `'` stands for `"`, and each example is put into a small sound
+model at the place that its first word names.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from jani_strategies import MODELS
+
+from roaml.diagnostics import Finding, Severity
+from roaml.jani.expressions import Binary, Integer, Missing, Name, Real
+from roaml.jani.model import Edge, Model
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.reader import read_model, read_properties
+from roaml.jani.writer import write
+from roaml.json import MAX_DEPTH, parse
+from roaml.text import Span, apply_edits
+
+PLACES = {
+    "type": "'mdp'",
+    "features": "['arrays', 'datatypes', 'functions', 'x-mine']",
+    "metadata": "{'author': 'me'}",
+    "actions": "[{'name': 'go'}]",
+    "constants": "[{'name': 'C', 'type': 'int', 'value': 3}]",
+    "variables": "[{'name': 'n', 'type': 'int'}, {'name': 'r', 'type': 'real'}, {'name': 'ok', 'type': 'bool'},"
+    " {'name': 'a', 'type': {'kind': 'array', 'base': 'int'}}, {'name': 'p', 'type': {'kind': 'datatype', 'ref': 'P'}},"
+    " {'name': 'o', 'type': {'kind': 'option', 'base': 'int'}}, {'name': 'c', 'type': 'continuous'}]",
+    "datatypes": "[{'name': 'P', 'members': [{'name': 'x', 'type': 'int'}]}]",
+    "functions": "[{'name': 'f', 'type': 'int', 'parameters': [{'name': 'k', 'type': 'int'}], 'body': 'k'}]",
+    "locals": "[]",
+    "locations": "[{'name': 'idle'}]",
+    "initial": "['idle']",
+    "guard": "true",
+    "assignments": "[]",
+    "edges": "[{'location': 'idle', 'action': 'go', 'guard': {'exp': GUARD},"
+    " 'destinations': [{'location': 'idle', 'assignments': ASSIGNMENTS}]}]",
+    "elements": "[{'automaton': 'A'}]",
+    "syncs": "[{'synchronise': ['go'], 'result': 'go'}]",
+    "property": "{'op': 'initial'}",
+    "properties": "[{'name': 'q', 'expression': PROPERTY}]",
+}
+MODEL = (
+    "{'jani-version': 1, 'name': 'm', 'type': TYPE, 'features': FEATURES, 'metadata': METADATA, 'actions': ACTIONS,"
+    " 'constants': CONSTANTS, 'variables': VARIABLES, 'datatypes': DATATYPES, 'functions': FUNCTIONS,"
+    " 'automata': [{'name': 'A', 'variables': LOCALS, 'locations': LOCATIONS, 'initial-locations': INITIAL,"
+    " 'edges': EDGES}], 'system': {'elements': ELEMENTS, 'syncs': SYNCS}, 'properties': PROPERTIES}"
+)
+
+
+def model_with(place: str, text: str) -> str:
+    places = {**PLACES, place: text}
+    whole = MODEL
+    while found := re.search(r"\b[A-Z]{4,}\b", whole):
+        whole = whole[: found.start()] + places[found[0].lower()] + whole[found.end() :]
+    return whole.replace("'", '"')
+
+
+def marked(text: str) -> tuple[str, list[Span]]:
+    """The text without its marks, and what they enclosed."""
+    spans = []
+    while "⟦" in text:
+        start, end = text.index("⟦"), text.index("⟧")
+        spans.append(Span(start, end - 1))
+        text = text[:start] + text[start + 1 : end] + text[end + 1 :]
+    return text, spans
+
+
+def read(text: str) -> tuple[Model, tuple[Finding, ...]]:
+    value, findings = parse(text)
+    assert findings == ()
+    model, findings = read_model(value, "m.jani")
+    assert model is not None
+    return model, findings
+
+
+def test_the_model_of_the_examples_is_sound() -> None:
+    model, findings = read(model_with("guard", "true"))
+    assert findings == ()
+    assert model.variables[0].name == "n"
+
+
+SYNTAX = [
+    ("type", "⟦'mdpp'⟧", "there is no model type `mdpp`; did you mean `mdp`?"),
+    ("type", "⟦1⟧", "a model type is written as a string, not as a number"),
+    ("features", "['⟦array⟧']", "there is no feature `array`; did you mean `arrays`?"),
+    ("features", "[⟦'edge-priorities'⟧]", "what the feature `edge-priorities` adds to JANI is not read"),
+    ("features", "[⟦1⟧]", "a feature is written as a string, not as a number"),
+    ("metadata", "⟦'me'⟧", "metadata is written as an object `{ }`, not as a string"),
+    ("metadata", "{'⟦autor⟧': 'me'}", "there is no member of metadata called `autor`; did you mean `author`?"),
+    ("metadata", "{'url': ⟦1⟧}", "`url` is written as a string, not as a number"),
+    (
+        "constants",
+        "[{'name': 'C', 'type': {'kind': 'bounded', 'base': ⟦'bool'⟧}}]",
+        "only int and real can have bounds",
+    ),
+    ("variables", "⟦{}⟧", "`variables` is written as a list `[ ]`, not as an object"),
+    ("variables", "[⟦1⟧]", "a variable is written as an object `{ }`, not as a number"),
+    ("variables", "[⟦{⟧}]", "a variable needs `name` and `type`"),
+    ("variables", "[{'name': ⟦''⟧, 'type': 'int'}]", "`name` must not be empty"),
+    ("variables", "[{'name': 'n', 'type': ⟦'integer'⟧}]", "there is no type `integer`"),
+    (
+        "variables",
+        "[{'name': 'n', 'type': {'kind': '⟦aray⟧'}}]",
+        "there is no kind of type `aray`; did you mean `array`?",
+    ),
+    ("variables", "[{'name': 'n', 'type': ⟦{⟧'base': 'int'}}]", "a type needs `kind`"),
+    ("variables", "[{'name': 'n', 'type': ⟦{⟧'kind': 'array'}}]", "an array type needs `base`"),
+    ("variables", "[{'name': 'n', 'type': 'int', 'transient': ⟦1⟧}]", "`transient` is written as true or false"),
+    ("guard", "⟦null⟧", "an expression is written as a number, true, false, a name or an object `{ }`, not as null"),
+    ("guard", "⟦1e999⟧", "this number is too large"),
+    ("guard", "⟦''⟧", "a name must not be empty"),
+    ("guard", "⟦{⟧}", "an expression needs `op`"),
+    ("guard", "{'op': ⟦1⟧}", "`op` is written as a string, not as a number"),
+    ("guard", "{'op': '⟦xor⟧', 'left': true, 'right': true}", "there is no operator `xor`; did you mean `or`?"),
+    ("guard", "⟦{⟧'op': '∧', 'left': true}", "`∧` needs `right`"),
+    (
+        "guard",
+        "{'op': '¬', 'exp': true, '⟦left⟧': true}",
+        "there is no member of `¬` called `left`",
+    ),
+    ("guard", "⟦{'op': 'deadlock'}⟧", "this can only stand in a property, not in an expression"),
+    ("guard", "{'constant': '⟦pi⟧'}", "there is no constant `pi`"),
+    ("guard", "{'constant': ⟦3⟧}", "`constant` is written as a string, not as a number"),
+    ("guard", "{'op': '=', 'left': {'distribution': '⟦Uniforn⟧', 'args': []}, 'right': 1}", "did you mean `Uniform`?"),
+    (
+        "guard",
+        "{'op': '=', 'left': {'distribution': 'Uniform', 'args': ⟦[1]⟧}, 'right': 1}",
+        "`Uniform` has 2 arguments, not 1",
+    ),
+    ("guard", "{'op': '=', 'left': {'op': 'av', 'elements': ⟦1⟧}, 'right': 'a'}", "`elements` is written as a list"),
+    (
+        "assignments",
+        "[{'ref': ⟦{'op': '+', 'left': 'n', 'right': 1}⟧, 'value': 1}]",
+        "only a variable or a part of one",
+    ),
+    ("assignments", "[{'ref': ⟦{'op': 'aa', 'exp': 1, 'index': 0}⟧, 'value': 1}]", "only a variable or a part of one"),
+    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦1.5⟧}]", "`index` is a whole number"),
+    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` is written as a whole number, not as true"),
+    ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "there is no member of an assignment called `guard`"),
+    ("edges", "[⟦{⟧'location': 'idle'}]", "an edge needs `destinations`"),
+    ("syncs", "[{'synchronise': ⟦['go', null]⟧}]", "the vector has 2 entries, but the system has 1 elements"),
+    ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action is written as a string, or null, not as a number"),
+    (
+        "property",
+        "{'op': '⟦Pmn⟧', 'exp': {'op': 'F', 'exp': true}}",
+        "there is no operator `Pmn`; did you mean `Pmin`?",
+    ),
+    (
+        "property",
+        "{'op': 'filter', 'fun': '⟦value⟧', 'values': 1, 'states': true}",
+        "there is no filter function `value`; did you mean `values`?",
+    ),
+    (
+        "property",
+        "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': true, 'step-bounds': {'⟦uper⟧': 3}}}",
+        "there is no member of an interval called `uper`; did you mean `upper`?",
+    ),
+    (
+        "property",
+        "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': true, 'step-bounds': ⟦3⟧}}",
+        "an interval is written as an object `{ }`, not as a number",
+    ),
+    (
+        "property",
+        "{'op': 'Emin', 'exp': 1, 'accumulate': ['⟦step⟧']}",
+        "there is no kind of accumulation `step`; did you mean `steps`?",
+    ),
+]
+
+NAMES = [
+    ("actions", "[{'name': 'go'}, {'name': '⟦go⟧'}]", "action `go` is declared twice"),
+    ("variables", "[{'name': '⟦C⟧', 'type': 'int'}]", "variable `C` is declared twice"),
+    ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides the one of the model"),
+    ("locations", "[{'name': 'idle'}, {'name': '⟦idle⟧'}]", "location `idle` is declared twice"),
+    ("initial", "['⟦idel⟧']", "there is no location `idel`; did you mean `idle`?"),
+    ("initial", "[⟦3⟧]", "an entry of `initial-locations` is written as a string, not as a number"),
+    ("edges", "[{'location': '⟦x⟧', 'destinations': []}]", "there is no location `x`"),
+    ("edges", "[{'location': 'idle', 'destinations': [{'location': '⟦x⟧'}]}]", "there is no location `x`"),
+    ("edges", "[{'location': 'idle', 'action': '⟦goo⟧', 'destinations': []}]", "there is no action `goo`; did you"),
+    ("elements", "[{'automaton': '⟦B⟧'}]", "there is no automaton `B`"),
+    ("elements", "[{'automaton': 'A', 'input-enable': ['⟦stop⟧']}]", "there is no action `stop`"),
+    ("syncs", "[{'synchronise': ['⟦stop⟧']}]", "there is no action `stop`"),
+    ("syncs", "[{'synchronise': ['go'], 'result': '⟦stop⟧'}]", "there is no action `stop`"),
+    ("properties", "[{'name': 'q', 'expression': 'ok'}, {'name': '⟦q⟧', 'expression': 'ok'}]", "declared twice"),
+    ("datatypes", "[{'name': 'P', 'members': [{'name': 'x', 'type': {'kind': 'datatype', 'ref': 'P'}}]}]", ""),
+    (
+        "functions",
+        "[{'name': 'f', 'type': 'int', 'body': '⟦j⟧', 'parameters': [{'name': 'k', 'type': 'int'}]}]",
+        "there is no variable `j`",
+    ),
+    ("guard", "{'op': '∧', 'left': '⟦okay⟧', 'right': '⟦unknown⟧'}", "there is no variable"),
+    ("guard", "'⟦okk⟧'", "there is no variable `okk`; did you mean `ok`?"),
+    (
+        "guard",
+        "{'op': '=', 'left': ⟦{'op': 'call', 'function': 'g', 'args': []}⟧, 'right': 1}",
+        "there is no function `g`",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'right': 1, 'left': ⟦{'op': 'da', 'exp': 'p', 'member': 'y'}⟧}",
+        "there is no member of `P` called `y`",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'right': 'p', 'left': ⟦{'op': 'dv', 'type': 'Q', 'values': []}⟧}",
+        "there is no datatype `Q`",
+    ),
+    ("assignments", "[{'ref': '⟦m⟧', 'value': '⟦k⟧'}]", "there is no variable"),
+    ("assignments", "[{'ref': 'a', 'value': {'op': 'ac', 'var': 'i', 'length': '⟦i⟧', 'exp': 'i'}}]", None),
+    (
+        "property",
+        "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': '⟦okk⟧'}}",
+        "there is no variable `okk`; did you mean `ok`?",
+    ),
+    ("variables", "[⟦{'name': 'p', 'type': {'kind': 'datatype', 'ref': 'Pt'}}⟧]", "there is no datatype `Pt`"),
+]
+
+TYPES = [
+    ("guard", "⟦1⟧", "a guard must be true or false, but this is an int"),
+    (
+        "guard",
+        "{'op': '∧', 'left': ⟦'n'⟧, 'right': true}",
+        "an operand of `∧` must be true or false, but this is an int",
+    ),
+    ("guard", "{'op': '<', 'left': 'n', 'right': ⟦'ok'⟧}", "an operand of `<` must be a number, but this is a bool"),
+    (
+        "guard",
+        "⟦{'op': '=', 'left': 'n', 'right': 'ok'}⟧",
+        "the two values must be of one type, but they are an int and a bool",
+    ),
+    ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': 'a', 'index': ⟦'r'⟧}, 'right': 1}", "an index must be an int"),
+    ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': ⟦'n'⟧, 'index': 0}, 'right': 1}", "only an array has elements"),
+    (
+        "guard",
+        "{'op': '=', 'left': {'op': 'da', 'exp': ⟦'n'⟧, 'member': 'x'}, 'right': 1}",
+        "only a datatype has members",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'left': {'op': 'oa', 'exp': ⟦'n'⟧}, 'right': 1}",
+        "this must be an option, but it is an int",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'left': {'op': 'call', 'function': 'f', 'args': [⟦true⟧]}, 'right': 1}",
+        "`k` of `f` must be an int, but this is a bool",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'left': ⟦{'op': 'call', 'function': 'f', 'args': []}⟧, 'right': 1}",
+        "`f` takes 1 arguments, not 0",
+    ),
+    (
+        "guard",
+        "{'op': '=', 'left': ⟦{'op': 'dv', 'type': 'P', 'values': []}⟧, 'right': 'p'}",
+        "a `P` needs a value for `x`",
+    ),
+    ("guard", "{'op': 'ite', 'if': ⟦1⟧, 'then': true, 'else': false}", "a condition must be true or false"),
+    (
+        "assignments",
+        "[{'ref': 'n', 'value': ⟦'r'⟧}]",
+        "`n` is an int, but this is a real; `floor` or `ceil` make it an int",
+    ),
+    (
+        "assignments",
+        "[{'ref': 'n', 'value': ⟦{'op': '/', 'left': 4, 'right': 2}⟧}]",
+        "`n` is an int, but this is a real",
+    ),
+    (
+        "assignments",
+        "[{'ref': 'n', 'value': ⟦{'op': 'pow', 'left': 2, 'right': 'n'}⟧}]",
+        "`n` is an int, but this is a real",
+    ),
+    ("assignments", "[{'ref': 'r', 'value': 'n'}, {'ref': 'n', 'value': {'op': 'pow', 'left': 2, 'right': 2}}]", None),
+    ("assignments", "[{'ref': '⟦C⟧', 'value': '⟦k⟧'}]", None),
+    (
+        "assignments",
+        "[{'ref': {'op': 'aa', 'exp': 'a', 'index': 0}, 'value': ⟦true⟧}]",
+        "this is an int, but this is a bool",
+    ),
+    (
+        "assignments",
+        "[{'ref': 'a', 'value': {'op': 'av', 'elements': []}}, {'ref': 'o', 'value': {'op': 'empty'}}]",
+        None,
+    ),
+    (
+        "assignments",
+        "[{'ref': 'a', 'value': ⟦{'op': 'av', 'elements': [1.5]}⟧}]",
+        "`a` is an array of int, but this is an array of real",
+    ),
+    (
+        "assignments",
+        "[{'ref': 'a', 'value': {'op': 'av', 'elements': [1, ⟦true⟧]}}]",
+        "the two values must be of one type",
+    ),
+    ("assignments", "[{'ref': 'n', 'value': {'distribution': 'DiscreteUniform', 'args': [0, 9]}}]", None),
+    (
+        "assignments",
+        "[{'ref': 'n', 'value': ⟦{'distribution': 'Uniform', 'args': [0, 9]}⟧}]",
+        "`n` is an int, but this is a real",
+    ),
+    ("assignments", "[{'ref': 'n', 'value': {'op': 'nondet', 'var': 'i', 'exp': 'i'}}]", None),
+    ("assignments", "[{'ref': 'r', 'value': {'op': 'der', 'var': 'c'}}]", None),
+    ("variables", "[{'name': 'v', 'type': 'int', 'initial-value': ⟦true⟧}]", "`v` is an int, but this is a bool"),
+    (
+        "variables",
+        "[{'name': 'v', 'type': {'kind': 'bounded', 'base': 'int', 'upper-bound': ⟦1.5⟧}}]",
+        "a bound of this type is an int, but this is a real",
+    ),
+    ("constants", "[{'name': 'C', 'type': 'bool', 'value': ⟦3⟧}]", "the constant `C` is a bool, but this is an int"),
+    (
+        "functions",
+        "[{'name': 'f', 'type': 'bool', 'parameters': [], 'body': ⟦3⟧}]",
+        "`f` gives a bool, but this is an int",
+    ),
+    (
+        "property",
+        "⟦{'op': 'F', 'exp': 'ok'}⟧",
+        "a property cannot be a formula about paths; put it into `Pmin` or `Pmax`",
+    ),
+    ("property", "{'op': 'Pmin', 'exp': ⟦'ok'⟧}", "`Pmin` needs a formula about paths, with `F`, `G` or `U`"),
+    (
+        "property",
+        "{'op': 'Pmax', 'exp': {'op': 'U', 'left': ⟦'n'⟧, 'right': 'ok'}}",
+        "an operand of `U` must be true or false",
+    ),
+    (
+        "property",
+        "{'op': '≥', 'left': {'op': 'Pmin', 'exp': {'op': 'G', 'exp': 'ok'}}, 'right': ⟦'ok'⟧}",
+        "an operand of `≥` must be a number, but this is a bool",
+    ),
+    (
+        "property",
+        "{'op': 'Pmin', 'exp': {'op': '∧', 'left': {'op': 'F', 'exp': 'ok'}, 'right': {'op': '¬', 'exp':"
+        " {'op': 'G', 'exp': {'op': 'deadlock'}}}}}",
+        None,
+    ),
+    (
+        "property",
+        "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': 'ok', 'step-bounds': {'upper': ⟦1.5⟧}}}",
+        "a bound must be an int, but this is a real",
+    ),
+    (
+        "property",
+        "{'op': 'filter', 'fun': '∀', 'values': ⟦'n'⟧, 'states': {'op': 'initial'}}",
+        "what `∀` looks at must be true",
+    ),
+    (
+        "property",
+        "{'op': 'filter', 'fun': 'max', 'values': ⟦'ok'⟧, 'states': true}",
+        "what `max` looks at must be a number",
+    ),
+    ("property", "{'op': 'filter', 'fun': 'count', 'values': ⟦1⟧, 'states': ⟦1⟧}", None),
+    ("property", "{'op': 'Emin', 'exp': ⟦'ok'⟧, 'reach': ⟦1⟧, 'step-instant': ⟦0.5⟧}", None),
+    ("property", "{'op': 'Smax', 'exp': 'ok'}", None),
+    (
+        "property",
+        "{'op': 'Smax', 'exp': ⟦'a'⟧, 'accumulate': ['steps']}",
+        "the value of a steady-state formula must be a number",
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("code", "place", "example", "message"),
+    [
+        *(("jani-syntax", *case) for case in SYNTAX),
+        *(("jani-name", *case) for case in NAMES),
+        *(("jani-type", *case) for case in TYPES),
+    ],
+)
+def test_mistakes(code: str, place: str, example: str, message: str | None) -> None:
+    text, expected = marked(model_with(place, example))
+    _, findings = read(text)
+    # A quoted name is reported with or without its quotes.
+    found = [finding.span for finding in findings]
+    assert [text[slice(*span)].strip('"') for span in found] == [text[slice(*span)].strip('"') for span in expected]
+    for span, wanted in zip(found, expected, strict=True):
+        assert wanted.start - 1 <= span.start <= wanted.start + 1
+    if message is not None:
+        assert all(message in finding.message for finding in findings)
+        assert {finding.code for finding in findings} <= {code, "jani-syntax"}
+
+
+@pytest.mark.parametrize(
+    ("place", "example", "mended"),
+    [
+        ("initial", "['idel']", "['idle']"),
+        ("guard", "{'op': 'xor', 'left': true, 'right': true}", "{'op': 'or', 'left': true, 'right': true}"),
+        ("guard", "'okk'", "'ok'"),
+        ("assignments", "[{'ref': 'n', 'value': 1, 'indx': 0}]", "[{'ref': 'n', 'value': 1, 'index': 0}]"),
+    ],
+)
+def test_suggestions_mend_the_text(place: str, example: str, mended: str) -> None:
+    text = model_with(place, example)
+    _, (finding,) = read(text)
+    assert apply_edits(text, finding.fixes[0].edits) == model_with(place, mended)
+
+
+def test_only_what_is_without_effect_is_a_warning() -> None:
+    _, findings = read(model_with("metadata", "{'autor': 'me'}"))
+    assert [finding.severity for finding in findings] == [Severity.WARNING]
+    _, findings = read(model_with("initial", "['idel']"))
+    assert [finding.severity for finding in findings] == [None]
+
+
+def test_origins() -> None:
+    text = model_with("guard", "{'op': '<', 'left': 'n', 'right': 2.5}")
+    model, _ = read(text)
+    edge = model.automata[0].edges[0]
+    guard = edge.guard
+    assert guard is not None
+    assert guard.exp == Binary(BinaryOperator.LESS, Name("n"), Real(2.5))
+    assert isinstance(guard.exp, Binary)
+    destination = edge.destinations[0]
+    places = {
+        '{"op": "<", "left": "n", "right": 2.5}': guard.exp.origin,
+        "n": guard.exp.left.origin,
+        "2.5": guard.exp.right.origin,
+        '{"location": "idle", "assignments": []}': destination.origin,
+        '{"name": "idle"}': model.automata[0].locations[0].origin,
+        '{"synchronise": ["go"], "result": "go"}': model.system.syncs[0].origin,
+        '{"name": "q", "expression": {"op": "initial"}}': model.properties[0].origin,
+    }
+    for expected, origin in places.items():
+        assert origin is not None
+        assert origin.path == "m.jani"
+        assert text[slice(*origin.span)] == expected
+    assert Edge("idle", (destination,), "go", guard) == edge
+
+
+def test_what_is_readable_is_read() -> None:
+    """Half-typed properties keep their other parts."""
+    text = '{"properties": [{"name": "p", "expression": {"op": "∧", "left": , "right": {"op": "<", "left": "x"}}}, {"na'
+    value, findings = parse(text)
+    assert {finding.code for finding in findings} == {"json-syntax"}
+    properties, findings = read_properties(value)
+    assert [(finding.message, text[slice(*finding.span)]) for finding in findings] == [
+        ("`<` needs `right`", "{"),
+        ("a property needs `expression` and `name`", "{"),
+        ("there is no member of a property called `na`", "na"),
+    ]
+    expected = Binary(BinaryOperator.AND, Missing(), Binary(BinaryOperator.LESS, Name("x"), Missing()))
+    assert properties[0].expression == expected
+
+
+@pytest.mark.parametrize("text", ["[]", "1", "", "nonsense", '"x"', "null"])
+def test_no_object_at_all(text: str) -> None:
+    value, syntax = parse(text)
+    model, findings = read_model(value)
+    assert model is None
+    assert syntax or findings
+    properties, findings = read_properties(value)
+    assert properties == ()
+    assert syntax or findings
+
+
+def test_an_empty_object_lacks_everything() -> None:
+    _, findings = read("{}")
+    assert [finding.message for finding in findings] == [
+        "a model needs `automata` and `jani-version` and `system` and `type`"
+    ]
+
+
+def test_other_versions() -> None:
+    text = model_with("guard", "true").replace('"jani-version": 1', '"jani-version": 2')
+    _, findings = read(text)
+    assert [finding.message for finding in findings] == ["only version 1 of JANI is known"]
+
+
+def test_deep_expressions() -> None:
+    """As deep as JSON may be nested, and no deeper."""
+    depth = MAX_DEPTH - 20
+    text = model_with("guard", "{'op': '¬', 'exp': " * depth + "true" + "}" * depth)
+    _, findings = read(text)
+    assert findings == ()
+    value, findings = parse(model_with("guard", "{'op': '¬', 'exp': " * 5000 + "true" + "}" * 5000))
+    assert ["nested too deeply" in finding.message for finding in findings] == [True]
+    read_model(value)
+
+
+def test_deep_types() -> None:
+    depth = MAX_DEPTH - 20
+    type_ = "{'kind': 'array', 'base': " * depth + "'int'" + "}" * depth
+    model, findings = read(model_with("locals", f"[{{'name': 'deep', 'type': {type_}}}]"))
+    assert findings == ()
+    assert type_.replace("'", '"').replace(" ", "") in "".join(write(model))
+
+
+def test_integers_and_reals_are_told_apart() -> None:
+    model, _ = read(model_with("assignments", "[{'ref': 'r', 'value': 2}, {'ref': 'r', 'value': 2.0}]"))
+    assignments = model.automata[0].edges[0].destinations[0].assignments
+    assert [assignment.value for assignment in assignments] == [Integer(2), Real(2.0)]
+
+
+SCRAPS = st.sampled_from(
+    ["{", "}", "[", "]", ",", ":", "1", "true", "null", '"x"', '"op"', '"exp"', '"name"', '"automata"', '"∧"', '"type"']
+)
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(MODELS, st.data())
+def test_damaged_models(model: object, data: st.DataObject) -> None:
+    """Whatever is cut out of a model or put into it: no exception, and all places in the text."""
+    assert isinstance(model, Model)
+    text = "".join(write(model))
+    for _ in range(data.draw(st.integers(1, 4))):
+        start = data.draw(st.integers(0, len(text)))
+        end = min(len(text), start + data.draw(st.integers(0, 30)))
+        text = text[:start] + data.draw(SCRAPS | st.just("")) + text[end:]
+    value, _ = parse(text)
+    _, findings = read_model(value)
+    _, more = read_properties(value)
+    for finding in (*findings, *more):
+        assert 0 <= finding.span.start <= finding.span.end <= len(text)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A real client over standard input and output, and what tests ask of it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from lsprotocol import types
+from pygls.protocol import default_converter
+from pygls.uris import to_fs_path
+from pytest_lsp import LanguageClient
+from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, register_lsp_features
+
+COMMAND = (sys.executable, "-m", "as2fm_lsp")
+PULLS = types.ClientCapabilities(
+    text_document=types.TextDocumentClientCapabilities(diagnostic=types.DiagnosticClientCapabilities())
+)
+
+
+class Client(LanguageClient):
+    """The client of pytest-lsp, which holds every message against the specification, with what is asked here."""
+
+    def __init__(self) -> None:
+        super().__init__(converter_factory=default_converter)
+        self.published: dict[str, types.PublishDiagnosticsParams] = {}
+        self.history: list[types.PublishDiagnosticsParams] = []
+        self.news = asyncio.Event()
+        register_lsp_features(self, DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published})
+
+    # ------------------------------------------------------------- documents
+
+    def open(self, path: Path, text: str | None = None, language: str = "ascxml") -> None:
+        text = path.read_text(encoding="utf-8") if text is None else text
+        item = types.TextDocumentItem(path.as_uri(), language, 1, text)
+        self.text_document_did_open(types.DidOpenTextDocumentParams(item))
+
+    def open_untitled(self, name: str, text: str, language: str = "ascxml") -> str:
+        """Open a document that has no file; its URI."""
+        uri = f"untitled:{name}"
+        self.text_document_did_open(types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, language, 1, text)))
+        return uri
+
+    def replace(self, path: Path, text: str, version: int = 2) -> None:
+        """The whole text anew."""
+        self.edit(path, types.TextDocumentContentChangeWholeDocument(text), version=version)
+
+    def edit(self, path: Path, *changes: types.TextDocumentContentChangeEvent, version: int = 2) -> None:
+        document = types.VersionedTextDocumentIdentifier(version, path.as_uri())
+        self.text_document_did_change(types.DidChangeTextDocumentParams(document, list(changes)))
+
+    def close(self, path: Path) -> None:
+        document = types.TextDocumentIdentifier(path.as_uri())
+        self.text_document_did_close(types.DidCloseTextDocumentParams(document))
+
+    def folders(self, added: Sequence[Path] = (), removed: Sequence[Path] = ()) -> None:
+        event = types.WorkspaceFoldersChangeEvent(
+            [types.WorkspaceFolder(f.as_uri(), f.name) for f in added],
+            [types.WorkspaceFolder(f.as_uri(), f.name) for f in removed],
+        )
+        self.workspace_did_change_workspace_folders(types.DidChangeWorkspaceFoldersParams(event))
+
+    def changed(self, *paths: Path, kind: types.FileChangeType = types.FileChangeType.Changed) -> None:
+        """Tell that files have changed on the disk."""
+        events = [types.FileEvent(path.as_uri(), kind) for path in paths]
+        self.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(events))
+
+    async def fixes(self, path: Path, range_: types.Range) -> list[types.CodeAction]:
+        """The quick fixes at a place."""
+        params = types.CodeActionParams(
+            types.TextDocumentIdentifier(path.as_uri()),
+            range_,
+            types.CodeActionContext([], only=[types.CodeActionKind.QuickFix]),
+        )
+        actions = await self.text_document_code_action_async(params)
+        return [action for action in actions or () if isinstance(action, types.CodeAction)]
+
+    # ----------------------------------------------------------- diagnostics
+
+    async def until(self, reached: Callable[[], bool], seconds: float = 20) -> None:
+        """Wait for published diagnostics until a condition holds."""
+        end = asyncio.get_running_loop().time() + seconds
+        while not reached():
+            self.news.clear()
+            await asyncio.wait_for(self.news.wait(), end - asyncio.get_running_loop().time())
+
+    async def until_codes(self, path: Path | str, *codes: str) -> Sequence[types.Diagnostic]:
+        """Wait until the diagnostics of a file have these codes."""
+        try:
+            await self.until(lambda: self.codes(path) == list(codes))
+        except asyncio.TimeoutError:
+            raise AssertionError(f"{path} has {self.codes(path)}, not {list(codes)}") from None
+        params = self.published.get(_uri(path))
+        return params.diagnostics if params else ()
+
+    def codes(self, path: Path | str) -> list[str]:
+        """The codes of the last published diagnostics of a file, given by its path or URI."""
+        params = self.published.get(_uri(path))
+        return [str(d.code) for d in params.diagnostics] if params else []
+
+    async def pull(self, path: Path) -> Sequence[types.Diagnostic]:
+        params = types.DocumentDiagnosticParams(types.TextDocumentIdentifier(path.as_uri()))
+        report = await self.text_document_diagnostic_async(params)
+        assert isinstance(report, types.RelatedFullDocumentDiagnosticReport)
+        return report.items
+
+    async def pull_all(self) -> dict[Path, Sequence[types.Diagnostic]]:
+        """The diagnostics of the whole workspace, by file."""
+        report = await self.workspace_diagnostic_async(types.WorkspaceDiagnosticParams([]))
+        return {
+            Path(str(to_fs_path(item.uri))): item.items
+            for item in report.items
+            if isinstance(item, types.WorkspaceFullDocumentDiagnosticReport)
+        }
+
+
+def _uri(path: Path | str) -> str:
+    return path.as_uri() if isinstance(path, Path) else path
+
+
+def _published(client: Client, params: types.PublishDiagnosticsParams) -> None:
+    client.published[params.uri] = params
+    client.history.append(params)
+    client.news.set()
+
+
+@asynccontextmanager
+async def connect(
+    *folders: Path,
+    capabilities: types.ClientCapabilities | None = None,
+    options: dict[str, object] | None = None,
+    settings: dict[str, object] | None = None,
+) -> AsyncIterator[Client]:
+    """A server with these folders open."""
+    client = Client()
+    capabilities = capabilities or types.ClientCapabilities()
+    if settings is not None:
+        client.set_configuration({"as2fm": settings})
+        capabilities.workspace = types.WorkspaceClientCapabilities(configuration=True)
+    await client.start_io(*COMMAND)
+    try:
+        await client.initialize_session(
+            types.InitializeParams(
+                capabilities=capabilities,
+                workspace_folders=[types.WorkspaceFolder(folder.as_uri(), folder.name) for folder in folders],
+                initialization_options=options,
+            )
+        )
+        yield client
+        await client.shutdown_session()
+    finally:
+        await client.stop()
+
+
+class RawServer:
+    """A server that is sent bytes, for what no client of a library would send."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+
+    def send(self, data: bytes) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(data)
+
+    def tell(self, method: str, params: object = None, id_: int | None = None) -> None:
+        message: dict[str, object] = {"jsonrpc": "2.0", "method": method}
+        if params is not None:
+            message["params"] = params
+        if id_ is not None:
+            message["id"] = id_
+        self.send(frame(message))
+
+    async def end(self) -> tuple[int, list[dict[str, object]], str]:
+        """Close its input and wait: its exit status, what it said, and its log."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        try:
+            out, err = await asyncio.wait_for(self._process.communicate(), 30)
+        finally:
+            if self._process.returncode is None:
+                self._process.kill()
+        return self._process.returncode, list(_messages(out)), err.decode()
+
+
+async def start_raw(*arguments: str) -> RawServer:
+    pipe = asyncio.subprocess.PIPE
+    process = await asyncio.create_subprocess_exec(*COMMAND, *arguments, stdin=pipe, stdout=pipe, stderr=pipe)
+    return RawServer(process)
+
+
+def frame(message: object) -> bytes:
+    """A message as it stands on the wire."""
+    body = json.dumps(message).encode()
+    return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
+
+
+def _messages(data: bytes) -> Iterator[dict[str, object]]:
+    while data:
+        head, _, rest = data.partition(b"\r\n\r\n")
+        lengths = [line for line in head.split(b"\r\n") if line.lower().startswith(b"content-length:")]
+        length = int(lengths[0].partition(b":")[2])
+        yield json.loads(rest[:length])
+        data = rest[length:]

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How a server begins and ends, and what it makes of bytes that are no messages."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import sys
+from pathlib import Path
+
+import pytest
+from client import COMMAND, frame, start_raw
+from lsprotocol import types
+from pygls.lsp.client import LanguageClient
+
+import clock
+
+INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
+
+
+async def test_shutdown_and_exit() -> None:
+    server = await start_raw()
+    server.tell("initialize", INITIALIZE, 1)
+    server.tell("initialized", {})
+    server.tell("shutdown", id_=2)
+    server.tell("exit")
+    status, messages, log = await server.end()
+    assert (status, log) == (0, "")
+    assert {"jsonrpc": "2.0", "id": 2, "result": None} in messages
+
+
+async def test_exit_without_shutdown() -> None:
+    server = await start_raw("--stdio")
+    server.tell("initialize", INITIALIZE, 1)
+    server.tell("exit")
+    status, messages, log = await server.end()
+    assert (status, log) == (1, "")
+    assert [message.get("id") for message in messages] == [1]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        frame({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": INITIALIZE}),
+        b"Content-Length: 1000\r\n\r\n{",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n" + bytes(range(256)) * 20 + b"Content-Length: 10",
+    ],
+    ids=["initialize", "half a message", "noise"],
+)
+async def test_the_input_ends(data: bytes) -> None:
+    """As when the editor has crashed: no process is left behind."""
+    server = await start_raw()
+    server.send(data)
+    status, _, _ = await server.end()
+    assert status == 1
+
+
+GARBAGE = [
+    b"Content-Length: 5\r\n\r\n{bad}",
+    b"Content-Length: 2\r\n\r\n[]",
+    b"Content-Length: 4\r\n\r\nnull",
+    b"Content-Length: 4\r\n\r\n\xff\xfe\x00\x01",
+    b"no header at all\n",
+    frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"wrong": 1}}),
+    frame({"jsonrpc": "2.0", "method": "textDocument/didOpen"}),
+    frame({"jsonrpc": "2.0", "method": "$/unknown", "params": {}}),
+    frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": 99}}),
+    frame({"jsonrpc": "2.0", "id": 7, "method": "no/such", "params": {}}),
+    frame({"jsonrpc": "2.0", "id": 8, "result": None}),
+    frame(
+        {
+            "jsonrpc": "2.0",
+            "method": "textDocument/didChange",
+            "params": {
+                "textDocument": {"uri": "file:///nowhere/x.ascxml", "version": 1},
+                "contentChanges": [{"text": "<a"}],
+            },
+        }
+    ),
+    frame(
+        {
+            "jsonrpc": "2.0",
+            "method": "textDocument/didClose",
+            "params": {"textDocument": {"uri": "file:///nowhere/x.ascxml"}},
+        }
+    ),
+    frame({"jsonrpc": "2.0", "method": "workspace/didChangeConfiguration", "params": {"settings": [1]}}),
+    frame({"jsonrpc": "2.0", "method": "workspace/didChangeConfiguration", "params": {"settings": {"as2fm": 5}}}),
+    frame(
+        {
+            "jsonrpc": "2.0",
+            "method": "workspace/didChangeConfiguration",
+            "params": {"settings": {"as2fm": {"ignore": {"a": []}, "severity": {"xml-syntax": ["error"]}}}},
+        }
+    ),
+]
+
+
+async def test_what_is_no_message_does_not_end_it() -> None:
+    """After each piece of it the server still answers as before."""
+    server = await start_raw()
+    server.tell("initialize", INITIALIZE, 1)
+    server.tell("initialized", {})
+    opened = {"uri": "untitled:1", "languageId": "ascxml", "version": 1, "text": "<ascxml"}
+    server.tell("textDocument/didOpen", {"textDocument": opened})
+    server.tell("textDocument/codeAction", request("untitled:1"), 99)
+    for number, garbage in enumerate(GARBAGE):
+        server.send(garbage)
+        server.tell("textDocument/codeAction", request("untitled:1"), 100 + number)
+    server.tell("shutdown", id_=2)
+    server.tell("exit")
+    status, messages, _ = await server.end()
+    assert status == 0
+    answers = {message["id"]: message for message in messages if "id" in message and "method" not in message}
+    for number, garbage in enumerate(GARBAGE):
+        assert answers[100 + number]["result"] == answers[99]["result"], garbage
+    assert [action["title"] for action in answers[99]["result"]] == ["Insert `>`"]
+
+
+def request(uri: str) -> dict[str, object]:
+    place = {"line": 0, "character": 0}
+    return {"textDocument": {"uri": uri}, "range": {"start": place, "end": place}, "context": {"diagnostics": []}}
+
+
+@pytest.mark.parametrize("options", [{"settings": [1], "diagnostics": 5}, [7]], ids=["object", "list"])
+async def test_odd_initialization_options(options: object) -> None:
+    server = await start_raw()
+    server.tell("initialize", {**INITIALIZE, "initializationOptions": options}, 1)
+    server.tell("shutdown", id_=2)
+    server.tell("exit")
+    status, messages, _ = await server.end()
+    assert status == 0
+    assert "error" not in messages[0]
+
+
+async def test_what_it_can_do() -> None:
+    server = await start_raw()
+    server.tell("initialize", {**INITIALIZE, "capabilities": {"textDocument": {"diagnostic": {}}}}, 1)
+    server.tell("shutdown", id_=2)
+    server.tell("exit")
+    _, messages, _ = await server.end()
+    result = messages[0]["result"]
+    assert isinstance(result, dict)
+    assert result["serverInfo"]["name"] == "as2fm-lsp"
+    capabilities = result["capabilities"]
+    assert capabilities["positionEncoding"] == "utf-16"
+    assert capabilities["textDocumentSync"]["change"] == types.TextDocumentSyncKind.Incremental
+    assert capabilities["textDocumentSync"]["openClose"] is True
+    assert capabilities["diagnosticProvider"] == {
+        "identifier": "as2fm",
+        "interFileDependencies": True,
+        "workspaceDiagnostics": True,
+    }
+    assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix"]}
+    assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
+
+
+async def test_tcp(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    port = free_port()
+    process = await asyncio.create_subprocess_exec(*COMMAND, "--tcp", f"127.0.0.1:{port}")
+    client = LanguageClient("test", "1")
+    published = asyncio.Event()
+    found: list[types.PublishDiagnosticsParams] = []
+
+    @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+    def publish(params: types.PublishDiagnosticsParams) -> None:
+        found.append(params)
+        published.set()
+
+    await connect_to(client, port)
+    await client.initialize_async(
+        types.InitializeParams(
+            capabilities=types.ClientCapabilities(),
+            workspace_folders=[types.WorkspaceFolder(tmp_path.as_uri(), "robot")],
+        )
+    )
+    client.initialized(types.InitializedParams())
+    await asyncio.wait_for(published.wait(), 30)
+    assert [(Path(p.uri).name, [d.code for d in p.diagnostics]) for p in found] == [
+        ("clock.ascxml", ["undeclared-variable"])
+    ]
+    await client.shutdown_async(None)
+    client.exit(None)
+    assert await asyncio.wait_for(process.wait(), 30) == 0
+
+
+async def connect_to(client: LanguageClient, port: int) -> None:
+    for _ in range(200):
+        try:
+            await client.start_tcp("127.0.0.1", port)
+        except OSError:
+            await asyncio.sleep(0.1)
+        else:
+            return
+    raise AssertionError("the server does not listen")
+
+
+async def test_tcp_ends_with_its_client() -> None:
+    port = free_port()
+    process = await asyncio.create_subprocess_exec(*COMMAND, "--tcp", f"localhost:{port}")
+    for _ in range(200):
+        try:
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+        except OSError:
+            await asyncio.sleep(0.1)
+        else:
+            writer.close()
+            break
+    assert await asyncio.wait_for(process.wait(), 30) == 1
+
+
+async def test_a_port_that_is_taken() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        server = await start_raw("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
+        status, _, log = await server.end()
+    assert status == 2
+    assert log.startswith("as2fm-lsp: --tcp 127.0.0.1:")
+    assert "address already in use" in log
+
+
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        port = listener.getsockname()[1]
+    assert isinstance(port, int)
+    return port
+
+
+async def test_it_imports_nothing_but_what_it_needs() -> None:
+    """`xmlschema` alone takes a quarter of a second; the cold start is felt."""
+    code = "import sys; import as2fm_lsp.server; print(*{'xmlschema', 'numpy', 'rosbags'} & sys.modules.keys())"
+    process = await asyncio.create_subprocess_exec(sys.executable, "-c", code, stdout=asyncio.subprocess.PIPE)
+    out, _ = await process.communicate()
+    assert out.split() == []

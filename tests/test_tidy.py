@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What must stay true of the code itself."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import roaml.rules
+from as2fm_lsp.cli.init import template
+from roaml import api
+from roaml.diagnostics import Severity
+from roaml.rules import RULES
+
+ROOT = Path(__file__).resolve().parents[1]
+SERVER = ROOT / "server"
+MODULES = sorted(SERVER.rglob("*.py"))
+
+# Who may touch the disk: the user's files, or the package's own resources.
+READS_USER_FILES = ("roaml/project/", "roaml/api.py", "roaml/interfaces/search.py", "as2fm_lsp/")
+READS_RESOURCES = (
+    "roaml/language/resources.py",
+    "roaml/language/grammar.py",
+    "roaml/language/validate.py",
+    "roaml/rules/__init__.py",
+)
+DISK_MODULES = {"os", "pathlib", "shutil", "tempfile", "glob", "io", "subprocess", "socket", "urllib"}
+
+
+def test_layers() -> None:
+    command = [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def test_only_some_modules_touch_the_disk() -> None:
+    offenders = []
+    for path in MODULES:
+        name = path.relative_to(SERVER).as_posix()
+        if name.startswith(READS_USER_FILES) or name in READS_RESOURCES:
+            continue
+        offenders += [f"{name}: {used}" for used in disk_access(path)]
+    assert not offenders
+
+
+def disk_access(path: Path) -> Iterator[str]:
+    """Imports and calls with which a module could read or write files."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        match node:
+            case ast.Import(names=names):
+                yield from (name.name for name in names if name.name.partition(".")[0] in DISK_MODULES)
+            case ast.ImportFrom(module=str(module)) if module.partition(".")[0] in DISK_MODULES:
+                yield module
+            case ast.Call(func=ast.Name(id="open")):
+                yield "open()"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(SERVER).as_posix())
+def test_module_opens_with_licence_and_purpose(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith("# SPDX-License-Identifier: Apache-2.0\n")
+    assert ast.get_docstring(ast.parse(text)), "the module says nothing about its purpose"
+
+
+def test_every_rule_module_is_registered() -> None:
+    folder = Path(roaml.rules.__file__).parent
+    modules = {path.stem for path in folder.glob("*.py") if re.search(r"^RULE = ", path.read_text(), re.MULTILINE)}
+    assert modules == {rule.code.replace("-", "_") for rule in RULES}
+    codes = [rule.code for rule in RULES]
+    assert len(codes) == len(set(codes))
+
+
+def test_reference_manual_is_current() -> None:
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "docs/build.py"), "--check"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_example_is_what_init_writes() -> None:
+    folder = ROOT / "examples" / "delivery_robot"
+    written = {path.relative_to(folder).as_posix(): path.read_text() for path in folder.rglob("*") if path.is_file()}
+    assert written == dict(template("delivery_robot"))
+
+
+def test_examples_are_clean() -> None:
+    result = api.check([str(ROOT / "examples")])
+    assert len(result.files) >= 8
+    assert not [d for d in result.diagnostics if d.severity >= Severity.WARNING]
+
+
+def test_nothing_names_a_machine_or_registry() -> None:
+    """No path of a machine and no registry host in what is committed."""
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    wrong = []
+    for name in listed:
+        path = ROOT / name
+        if path.suffix in (".png", ".ico") or path == Path(__file__) or not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if re.search(r"/work/|/root/|registry\.npmjs|pypi\.org", text):
+            wrong.append(name)
+    assert not wrong
