@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The conformance cases that may lie beside the project. Without them, tests that read them collect no such case."""
+"""The conformance cases that may lie beside the project.
+
+Only the files `test_*conformance*.py` need them, and these are not collected where there are none.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,12 @@ else:
 ROOT = Path(__file__).resolve().parents[2] / "shared" / "conformance"
 PRESENT = (ROOT / "cases.toml").is_file()
 INTERFACES = ROOT / "interfaces"
-NOTICE = "conformance cases: present" if PRESENT else "conformance cases: not present, so none of them is collected"
+INTERFACE_FILES = sorted(file for kind in ("msg", "srv", "action") for file in INTERFACES.glob(f"*/{kind}/*.{kind}"))
+
+REFERENCES = sorted((ROOT / "reference").glob("*.jani.gz"))
+"""Whole models in JANI, compressed."""
+WHOLE_MODELS = sorted((ROOT / "models" / "battery_example").glob("*.jani"))
+PROPERTY_FILES = sorted(set((ROOT / "models").glob("*/**/*.jani")) - set(WHOLE_MODELS))
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,7 @@ from command import Command
 
 import as2fm_lsp.cli.migrate
 import clock
-import conformance
 from fixture import split_files
-from roaml import api
 
 OLD = split_files(
     """\
@@ -356,43 +354,3 @@ def test_a_broken_system_does_not_stop_it(command: Command, tmp_path: Path) -> N
     after = read(tmp_path)
     assert after["main.xml"] == NEW["main.xml"].replace("p.jani", "missing.jani").encode()
     assert after["nodes/base.ascxml"] == NEW["nodes/base.ascxml"].replace("</state>", "").encode()
-
-
-AGED = (
-    ("<roaml", "<convince_mc_tc"),
-    ("</roaml", "</convince_mc_tc"),
-    ("<parameters", "<mc_parameters"),
-    ("</parameters", "</mc_parameters"),
-    ("<ascxml", "<scxml"),
-    ("</ascxml", "</scxml"),
-    ('"node-ascxml"', '"ros-scxml"'),
-    ('"bt-plugin-ascxml"', '"bt-plugin-ros-scxml"'),
-    (".ascxml", ".scxml"),
-)
-
-
-def test_conformance_models_made_old_become_what_they_were(command: Command, tmp_path: Path) -> None:
-    alone = [path for path in conformance.systems() if "../" not in path.read_text(encoding="utf-8")]
-    for source in dict.fromkeys(path.parent for path in alone):
-        files = {path: path.read_bytes().decode() for path in sorted(source.rglob("*")) if path.is_file()}
-        ways = {}
-        for way in ("new", "old"):
-            folder = tmp_path / way / source.name
-            for path, text in files.items():
-                name = path.relative_to(source).as_posix()
-                write(folder, {aged(name): aged(text)} if way == "old" else {name: text})
-            done = command("migrate", folder, "--ros-path", conformance.INTERFACES)
-            assert done.status == 0, source
-            ways[way] = {os.path.relpath(p, folder): Path(p).read_bytes() for p in files_of_systems(folder)}
-        assert ways["old"] == ways["new"], source
-
-
-def aged(text: str) -> str:
-    for new, old in AGED:
-        text = text.replace(new, old)
-    return text
-
-
-def files_of_systems(folder: Path) -> set[str]:
-    analysis = api.check([str(folder)]).snapshot.analysis
-    return {path for system in analysis.system_paths for path in analysis.files_of(system)}

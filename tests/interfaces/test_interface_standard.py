@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shipped definitions are those of ROS 2, and those of the conformance models are read without a word."""
+"""The shipped definitions are those of ROS 2."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
+import conformance
 from roaml.interfaces import KINDS, ArrayKind, Definition, FieldType, Kind, Registry, SearchPath, parse
 from roaml.text import decode
 
-CONFORMANCE = Path(__file__).resolve().parents[3] / "shared" / "conformance" / "interfaces"
-CONFORMANCE_FILES = sorted(file for kind in KINDS for file in CONFORMANCE.glob(f"*/{kind}/*.{kind}"))
 STANDARD = Path(str(resources.files("roaml.interfaces"))) / "standard"
 
 
@@ -23,7 +22,7 @@ def read(path: str) -> Any:
     return decode(path, Path(path).read_bytes())
 
 
-REGISTRY = Registry(SearchPath(ros_paths=[str(CONFORMANCE)]), read)
+REGISTRY = Registry(SearchPath(ros_paths=[str(conformance.INTERFACES)]), read)
 
 
 def shipped() -> Iterator[tuple[str, Kind, str]]:
@@ -55,16 +54,6 @@ def test_shipped_file(file: Path) -> None:
 
 def test_shipped_files_are_found() -> None:
     assert len(list(shipped())) == len(list(STANDARD.glob("*/*/*")))
-
-
-if CONFORMANCE_FILES:  # not part of the repository
-
-    @pytest.mark.parametrize("file", CONFORMANCE_FILES, ids=lambda file: "/".join(file.parts[-3:]))
-    def test_conformance_file(file: Path) -> None:
-        check(file)
-        found = REGISTRY.find(file.parts[-2], file.parts[-3], file.stem)  # type: ignore[arg-type]
-        assert isinstance(found, Definition)
-        assert found.path == str(file)
 
 
 # ---------------------------------------------------------------------------------------------- compared with rosbags

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import gzip
 import json
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from jani_conformance import PROPERTY_FILES, REFERENCES, WHOLE_MODELS
 from jani_strategies import EXPRESSIONS, MODELS, PROPERTIES
 
 from roaml.jani.expressions import ArrayValue, Binary, Expression, Integer, Missing, Name, Real, Unary
@@ -239,35 +236,3 @@ def test_properties_are_read_back(property_: Property) -> None:
 @given(EXPRESSIONS)
 def test_expressions_are_json(expression: Expression) -> None:
     json.loads(FormulaWriter().text(expression))
-
-
-if REFERENCES:
-
-    @pytest.mark.parametrize("path", [*REFERENCES, *WHOLE_MODELS], ids=lambda path: path.name)
-    def test_reference_models(path: Path) -> None:
-        data = path.read_bytes()
-        text = (gzip.decompress(data) if path.suffix == ".gz" else data).decode()
-        value, findings = parse(text)
-        assert findings == ()
-        model, findings = read_model(value, str(path))
-        # The one hand-written model has a guard in an assignment, where JANI knows none.
-        assert [f.message for f in findings] == ["there is no member of an assignment called `guard`"] * (
-            path.name == "demo_manual.jani"
-        )
-        assert model is not None
-        ours = written(model)
-        assert written(read(ours)) == ours
-        expected = json.loads(text)
-        result = json.loads(ours)
-        assert set(result.pop("features")) - {"derived-operators"} <= set(expected.pop("features", []))
-        if path in REFERENCES:
-            assert list(json.loads(ours)) == list(json.loads(text))
-            assert json.dumps(result) == json.dumps(expected)
-
-    @pytest.mark.parametrize("path", PROPERTY_FILES, ids=lambda path: "/".join(path.parts[-2:]))
-    def test_property_lists_are_copied(path: Path) -> None:
-        text = path.read_text(encoding="utf-8")
-        properties, findings = read_properties(parse(text)[0], str(path))
-        assert findings == ()
-        ours = json.loads(write_properties(properties))
-        assert json.dumps(ours, sort_keys=True) == json.dumps(json.loads(text)["properties"], sort_keys=True)

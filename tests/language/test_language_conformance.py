@@ -60,8 +60,3 @@ def test_nothing_found_in_the_bottom_layers(path: Path) -> None:
     assert document.findings == ()
     assert document.root is not None
     assert validate(document, GRAMMARS[document.root.name]) == ()
-
-
-def test_every_schema_is_valid_for_itself() -> None:
-    for name in ("ascxml.xsd", "ascxml-namespace.xsd", "roaml.xsd", "behaviortree.xsd", "structs.xsd", "scxml.xsd"):
-        assert schema(name) is not None

@@ -238,3 +238,10 @@ def test_find_and_parents() -> None:
     for grammar in GRAMMARS:
         for path, ours, _ in pairs(grammar):
             assert grammar.find(ours.name) is not None, path
+
+
+@pytest.mark.parametrize(
+    "name", ["ascxml.xsd", "ascxml-namespace.xsd", "roaml.xsd", "behaviortree.xsd", "structs.xsd", "scxml.xsd"]
+)
+def test_plain_lxml_reads_the_schema(name: str) -> None:
+    etree.XMLSchema(etree.parse(str(schema_path(name))))
