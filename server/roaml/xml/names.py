@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 SPACE = " \t\r\n"
@@ -11,18 +12,42 @@ _START = (
     "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c\u200d\u2070-\u218f\u2c00-\u2fef"
     "\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
-LOCAL_NAME = f"[{_START}][{_START}.0-9\u00b7\u0300-\u036f\u203f\u2040-]*"
-NAME = f"{LOCAL_NAME}(?::{LOCAL_NAME})?"
-"""A pattern: a name, with or without a prefix."""
+_LOCAL_NAME = f"[{_START}][{_START}.0-9\u00b7\u0300-\u036f\u203f\u2040-]*"
 
-_NAME = re.compile(NAME)
-_LOCAL = re.compile(LOCAL_NAME)
+
+_ASCII_LOCAL_NAME = r"[A-Za-z_][A-Za-z_.0-9-]*"
+ASCII_NAME = f"{_ASCII_LOCAL_NAME}(?::{_ASCII_LOCAL_NAME})?"
+"""A pattern: a name of ASCII characters, with or without a prefix. Unlike one for Unicode it is compiled at once."""
+
+
+class _Pattern:
+    """Tries ASCII first. The pattern for all of Unicode is compiled when first needed: most models do without, and
+    every start of the tool would pay for it."""
+
+    def __init__(self, form: str) -> None:
+        self._ascii = re.compile(form.format(_ASCII_LOCAL_NAME))
+        self._all = functools.cache(lambda: re.compile(form.format(_LOCAL_NAME)))
+
+    def match(self, text: str) -> re.Match[str] | None:
+        return self._ascii.match(text) or (None if text.isascii() else self._all().match(text))
+
+
+_NAME = _Pattern(r"{0}(?::{0})?\Z")
+_LOCAL = _Pattern(r"{0}\Z")
+_LEADING = _Pattern(rf"{{0}}(?=[{SPACE}]|\Z)")
 
 
 def is_name(text: str) -> bool:
-    return _NAME.fullmatch(text) is not None
+    """Whether `text` is a name, with or without a prefix."""
+    return _NAME.match(text) is not None
 
 
 def is_local_name(text: str) -> bool:
     """Whether `text` is a name without prefix."""
-    return _LOCAL.fullmatch(text) is not None
+    return _LOCAL.match(text) is not None
+
+
+def leading_local_name(text: str) -> str:
+    """The name without prefix, up to white space, that `text` begins with; "" if there is none."""
+    match = _LEADING.match(text)
+    return match[0] if match else ""
