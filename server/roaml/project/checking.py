@@ -243,11 +243,14 @@ class _Run:
         match self.kind:
             case FileKind.PROPERTIES:
                 _, findings = self.analysis.json(self.path) or (None, ())
-                return FileContext(self.source, findings or self.analysis.properties(self.path)[1])
+                broken = any(finding.code == "json-syntax" for finding in findings)
+                more = () if broken else self.analysis.properties(self.path)[1]
+                return FileContext(self.source, (*findings, *more))
             case FileKind.JSON_STRUCTS:
                 value, findings = self.analysis.json(self.path) or (None, ())
-                more = structs_in_json(value)[1] if value is not None and not findings else ()
-                return FileContext(self.source, (*findings, *more))
+                broken = any(finding.code == "json-syntax" for finding in findings)
+                problems = () if value is None or broken else structs_in_json(value)[1]
+                return FileContext(self.source, (*findings, *problems))
             case FileKind.JANI_MODEL:
                 _, findings = self.analysis.json(self.path) or (None, ())
                 return FileContext(self.source, findings)
