@@ -11,13 +11,14 @@
 from __future__ import annotations
 
 import codecs
+import functools
 import re
 from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
 from roaml.text import Span, TextEdit
 from roaml.xml.escapes import PREDEFINED, REFERENCE, is_character, unescape
-from roaml.xml.names import LOCAL_NAME, NAME, SPACE, is_name
+from roaml.xml.names import ASCII_NAME, NAME, SPACE, is_local_name, is_name
 from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 MAX_DEPTH = 100
@@ -28,9 +29,20 @@ MAX_FINDINGS = 100
 
 _MAX_SKIPPED_DEPTH = 10_000
 
-# A tag without mistakes.
 _SPACE = f"[{SPACE}]"
-_SOUND_TAG = re.compile(f"<({NAME})((?:{_SPACE}+{NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>")
+
+
+def _sound_tag(name: str) -> re.Pattern[str]:
+    """A start tag without mistakes, whose names match the pattern `name`."""
+    return re.compile(f"<({name})((?:{_SPACE}+{name}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>")
+
+
+@functools.cache
+def _sound_tag_in_any_script() -> re.Pattern[str]:
+    return _sound_tag(NAME)
+
+
+_SOUND_TAG = _sound_tag(ASCII_NAME)
 _SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
 # Any other tag: what was meant for a name, for white space, for a value.
@@ -53,7 +65,6 @@ _NEXT_ATTRIBUTE = re.compile(rf"{_NAME}\s*=")
 _AFTER_VALUE = re.compile(r"[\s/>?]|\Z")
 _DOCTYPE_MARK = re.compile(r"<!--|<\?|[\[\]>\"']")
 _DOCTYPE_CLOSERS = {"<!--": "-->", "<?": "?>", '"': '"', "'": "'"}
-_INSTRUCTION_NAME = re.compile(rf"{LOCAL_NAME}(?={_SPACE}|\Z)")
 _XML_DECLARATION = re.compile(
     rf"""xml{_SPACE}+version{_SPACE}*={_SPACE}*(["'])1\.[0-9]+\1
     (?:{_SPACE}+encoding{_SPACE}*={_SPACE}*(["'])(?P<encoding>[A-Za-z][A-Za-z0-9._-]*)\2)?
@@ -70,6 +81,7 @@ def parse(text: str) -> Document:
 class _Parser:
     def __init__(self, text: str) -> None:
         self.text = text
+        self.is_ascii = text.isascii()
         self.findings: list[Finding] = []
         self.nodes: list[Node] = []
         self.stack: list[Element] = []
@@ -116,7 +128,10 @@ class _Parser:
                 return self.document_type(at)
         elif following == "?":
             return self.instruction(at)
-        if sound := _SOUND_TAG.match(text, at):
+        sound = _SOUND_TAG.match(text, at)
+        if sound is None and not self.is_ascii:
+            sound = _sound_tag_in_any_script().match(text, at)
+        if sound is not None:
             return self.sound_tag(sound)
         match = _TAG_OPEN.match(text, at)
         if match is None:
@@ -530,12 +545,12 @@ class _Parser:
 
     def check_instruction(self, span: Span) -> None:
         content = self.text[span.start + 2 : span.end - 2]
-        name = _INSTRUCTION_NAME.match(content)
-        if name is None:
+        name = re.split(_SPACE, content, maxsplit=1)[0]
+        if not is_local_name(name):
             self.report(span, "a processing instruction begins with a name")
-        elif name[0] == "xml" and span.start > 0:
+        elif name == "xml" and span.start > 0:
             self.report(span, "the XML declaration must be the very first thing in the file")
-        elif name[0] == "xml":
+        elif name == "xml":
             self.check_declaration(content, span)
 
     def check_declaration(self, content: str, span: Span) -> None:
