@@ -20,8 +20,12 @@ from roaml.text import SourceFile
 
 log = logging.getLogger(__name__)
 
-PAUSE = 0.015
+PAUSE = 0.002
 """Seconds without a further change after which a change is looked at: keys that come at once are looked at together."""
+
+BREAK = 0.001
+"""Seconds after each file in which newer messages are read. Each takes several turns of the event loop, and a thread
+that must be let run."""
 
 
 class Diagnostics:
@@ -63,11 +67,11 @@ class Diagnostics:
         moment = self.session.moment()
         for path in [path for path in self._waiting if path in moment.versions]:
             self._check(moment, path)
-            await asyncio.sleep(0)
+            await asyncio.sleep(BREAK)
         there = moment.files()
         for path in there:
             self._check(moment, path)
-            await asyncio.sleep(0)
+            await asyncio.sleep(BREAK)
         for path in self._sent.keys() - set(there):
             self._send(path, [], None)
         self._waiting.clear()
@@ -121,7 +125,7 @@ class Diagnostics:
                 items.append(types.WorkspaceUnchangedDocumentDiagnosticReport(uri, result, version))
             else:
                 items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, found, version, result_id=result))
-            await asyncio.sleep(0)
+            await asyncio.sleep(BREAK)
         for path in known.keys() - set(there):
             uri = self.session.convert.uri(path)
             items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, [], None, result_id=result_id([])))

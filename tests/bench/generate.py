@@ -1,29 +1,57 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems of any size, always the same for the same numbers.
+"""Systems of any size, always the same for the same numbers, with nothing in them to complain about.
 
-`write_system` makes a ring of machines: each publishes on its own topic and subscribes to its neighbours', calls a
-service and sends plain events. The first machine is as long as asked for.
+`write_system` makes a ring of machines: each publishes on its own topics and listens to those of its neighbours, serves
+one service and calls another, sends plain events and computes with structs and arrays. The first machine is as long as
+asked for.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
+FIRST = "machine_0.ascxml"
+"""The name of the long machine."""
 
-def write_system(folder: Path, machines: int = 28, lines: int = 700, small_lines: int = 120) -> Path:
-    """Write a system of `machines` + 2 files; the first machine has about `lines` lines. Its system file."""
+_SHARED_FILES = 3
+"""`main.xml`, `types.xml` and `properties.jani`."""
+
+
+def write_system(folder: Path, files: int = 30, lines: int = 700, small_lines: int = 120) -> Path:
+    """Write a system of so many files; `FIRST` has about `lines` lines, the others `small_lines`. Its system file."""
     folder.mkdir(parents=True, exist_ok=True)
+    machines = files - _SHARED_FILES
     for number in range(machines):
         text = machine(number, machines, lines if number == 0 else small_lines)
         (folder / f"machine_{number}.ascxml").write_text(text, encoding="utf-8")
-    inputs = "\n".join(f'        <input type="node-ascxml" src="machine_{n}.ascxml" />' for n in range(machines))
+    (folder / "types.xml").write_text(TYPES, encoding="utf-8")
+    (folder / "properties.jani").write_text(properties(machines), encoding="utf-8")
     main = folder / "main.xml"
-    main.write_text(
-        f"""<roaml>
+    main.write_text(system(machines), encoding="utf-8")
+    return main
+
+
+def machine(number: int, machines: int, lines: int) -> str:
+    """One machine of the ring."""
+    before, after = (number - 1) % machines, (number + 1) % machines
+    head = declarations(number, before, after)
+    height = state(0, 0, number, before).count("\n")
+    count = max(2, round((lines - head.count("\n")) / height))
+    states = "".join(state(i, (i + 1) % count, number, before) for i in range(count))
+    return f"{head}{states}</ascxml>\n"
+
+
+def system(machines: int) -> str:
+    inputs = "\n".join(f'        <input type="node-ascxml" src="machine_{n}.ascxml" />' for n in range(machines))
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<roaml>
     <parameters>
         <max_time value="100" unit="s" />
         <max_array_size value="10" />
     </parameters>
+    <data_declarations>
+        <input type="xml" src="types.xml" />
+    </data_declarations>
     <node_models>
 {inputs}
     </node_models>
@@ -31,24 +59,37 @@ def write_system(folder: Path, machines: int = 28, lines: int = 700, small_lines
         <input type="jani" src="properties.jani" />
     </properties>
 </roaml>
-""",
-        encoding="utf-8",
-    )
-    (folder / "properties.jani").write_text(properties(machines), encoding="utf-8")
-    return main
+"""
 
 
-def machine(number: int, machines: int, lines: int) -> str:
-    """One machine of the ring."""
-    before, after = (number - 1) % machines, (number + 1) % machines
-    head = f"""<?xml version="1.0" encoding="UTF-8"?>
+TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+<types>
+    <struct id="Pose">
+        <member id="x" type="float64" />
+        <member id="y" type="float64" />
+        <member id="heading" type="float64" />
+    </struct>
+    <struct id="Goal">
+        <member id="pose" type="Pose" />
+        <member id="weight" type="int32" />
+    </struct>
+</types>
+"""
+
+
+def declarations(number: int, before: int, after: int) -> str:
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
 <ascxml name="Machine{number}" version="1.0" initial="state_0" xmlns="http://www.w3.org/2005/07/scxml">
     <datamodel>
         <data id="counter" type="int32" expr="0" />
         <data id="speed" type="float64" expr="0.0" />
+        <data id="turn" type="float64" expr="0.0" />
         <data id="ready" type="bool" expr="false" />
         <data id="values" type="int32[10]" expr="[]" />
         <data id="sum" type="int64" expr="0" />
+        <data id="here" type="Pose" expr="{{'x': 0.0, 'y': 0.0, 'heading': 0.0}}" />
+        <data id="goal" type="Goal" expr="{{'pose': {{'x': 1.0, 'y': 2.0, 'heading': 0.0}}, 'weight': 1}}" />
+        <data id="route" type="Pose[5]" expr="[]" />
     </datamodel>
 
     <ros_topic_publisher name="out" topic="/ring/topic_{number}" type="std_msgs/Int32" />
@@ -57,11 +98,8 @@ def machine(number: int, machines: int, lines: int) -> str:
     <ros_topic_subscriber name="other_twist" topic="/ring/twist_{after}" type="geometry_msgs/Twist" />
     <ros_service_client name="add" service_name="/ring/add_{after}" type="example_interfaces/AddTwoInts" />
     <ros_service_server name="serve" service_name="/ring/add_{number}" type="example_interfaces/AddTwoInts" />
-    <ros_time_rate name="timer" rate_hz="10" />
+    <ros_time_rate name="t{number}" rate_hz="10" />
 """
-    count = max(2, (lines - head.count("\n")) // 58)
-    states = "".join(state(i, (i + 1) % count, number, before) for i in range(count))
-    return f"{head}{states}</ascxml>\n"
 
 
 def state(number: int, following: int, machine_number: int, before: int) -> str:
@@ -72,20 +110,24 @@ def state(number: int, following: int, machine_number: int, before: int) -> str:
                 <field name="data" expr="counter" />
             </ros_topic_publish>
         </onentry>
-        <ros_rate_callback name="timer" target="state_{following}" cond="counter &lt; 100 &amp;&amp; !ready">
+        <ros_rate_callback name="t{machine_number}" target="state_{following}" cond="counter &lt; 99 &amp;&amp; !ready">
             <assign location="counter" expr="counter + 1" />
-            <assign location="speed" expr="Math.min(speed + 0.1 * counter, 2.5)" />
+            <assign location="here.x" expr="here.x + 0.1 * speed * Math.cos(here.heading)" />
+            <assign location="here.y" expr="here.y + 0.1 * speed * Math.sin(here.heading)" />
+            <assign location="route[{number % 5}]" expr="here" />
+            <assign location="speed" expr="Math.min(speed + 0.1 * goal.weight, 2.5)" />
             <ros_topic_publish name="twist">
                 <field name="linear.x" expr="speed" />
                 <field name="linear.y" expr="0.5" />
                 <field name="linear.z" expr="0.5" />
                 <field name="angular.x" expr="0.5" />
                 <field name="angular.y" expr="0.5" />
-                <field name="angular.z" expr="speed * 0.5" />
+                <field name="angular.z" expr="speed * 0.5 + turn" />
             </ros_topic_publish>
         </ros_rate_callback>
-        <ros_rate_callback name="timer" target="state_{number}">
+        <ros_rate_callback name="t{machine_number}" target="state_{number}">
             <assign location="counter" expr="0" />
+            <assign location="goal.pose" expr="route[{(number + 1) % 5}]" />
         </ros_rate_callback>
         <ros_topic_callback name="in" target="state_{following}">
             <assign location="counter" expr="_msg.data % 100" />
@@ -96,16 +138,16 @@ def state(number: int, following: int, machine_number: int, before: int) -> str:
                 </ros_service_send_request>
             <elseif cond="counter &gt; 50 || values.length &gt; 3" />
                 <assign location="values[0]" expr="counter" />
-                <send event="ring_{machine_number}_event_{number}">
-                    <param name="value" expr="counter * 2" />
-                    <param name="ready" expr="counter &gt; 3" />
+                <send event="ring_{machine_number}_event_{number % 2}">
+                    <param name="value" expr="counter * 2 + values[{number % 10}]" />
+                    <param name="pose" expr="here" />
                 </send>
             <else />
                 <assign location="ready" expr="!ready" />
             </if>
         </ros_topic_callback>
         <ros_topic_callback name="other_twist" target="state_{number}">
-            <assign location="speed" expr="_msg.linear.x * 0.5 + _msg.angular.z" />
+            <assign location="turn" expr="_msg.linear.x * 0.5 + _msg.angular.z" />
         </ros_topic_callback>
         <ros_service_handle_request name="serve" target="state_{number}">
             <assign location="sum" expr="_req.a + _req.b" />
@@ -116,8 +158,8 @@ def state(number: int, following: int, machine_number: int, before: int) -> str:
         <ros_service_handle_response name="add" target="state_{following}">
             <assign location="sum" expr="_res.sum" />
         </ros_service_handle_response>
-        <transition event="ring_{before}_event_0" target="state_{number}">
-            <assign location="counter" expr="_event.data.value" />
+        <transition event="ring_{before}_event_{number % 2}" cond="_event.data.value &gt; 10" target="state_{number}">
+            <assign location="goal.pose" expr="_event.data.pose" />
         </transition>
     </state>
 """

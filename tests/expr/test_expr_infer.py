@@ -110,6 +110,8 @@ TYPES = [
     ("unknown == p", "bool"),
     ("v[unknown]", "int16"),
     ("[unknown, 1]", "int[2]"),
+    ("Math.max(unknown - 5, 0)", "unknown"),
+    ("Math.floor(unknown)", "int"),
     ("_msg.", "unknown"),
 ]
 

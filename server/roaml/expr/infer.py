@@ -390,7 +390,9 @@ class _Inference:
             if not (isinstance(type_, Unknown) or is_number(type_)):
                 self.problems.append(BadOperand(argument.span, f"Math.{function.name}", type_, "a number"))
         if function.result == "same":
-            return INT if arguments and all(is_kind(type_, "int") for type_ in arguments) else REAL
+            if not arguments or not all(map(is_number, arguments)):
+                return UNKNOWN
+            return INT if all(is_kind(type_, "int") for type_ in arguments) else REAL
         return INT if function.result == "int" else REAL
 
     def array(self, expr: ArrayLiteral) -> Type:

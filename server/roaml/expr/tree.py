@@ -8,7 +8,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -141,6 +140,9 @@ Expr: TypeAlias = (
 )
 
 
+_LEAVES = (Name, Number, String, Boolean)
+
+
 def children(expr: Expr) -> tuple[Expr, ...]:
     """The direct subexpressions, left to right."""
     match expr:
@@ -166,13 +168,18 @@ def children(expr: Expr) -> tuple[Expr, ...]:
             return ()
 
 
-def walk(expr: Expr) -> Iterator[Expr]:
-    """`expr` and everything in it, outer before inner."""
-    stack = [expr]
+def walk(expr: Expr) -> list[Expr]:
+    """`expr` and everything in it, outer before inner, left to right."""
+    if isinstance(expr, _LEAVES):
+        return [expr]  # as most are
+    found: list[Expr] = []
+    stack: list[Expr] = [expr]
     while stack:
         node = stack.pop()
-        yield node
-        stack.extend(reversed(children(node)))
+        found.append(node)
+        if not isinstance(node, _LEAVES):
+            stack.extend(reversed(children(node)))
+    return found
 
 
 def is_draw(expr: Expr) -> bool:

@@ -287,14 +287,18 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def _clean(value: str) -> str:
-    return _FORBIDDEN.sub("\ufffd", value)
+    return value if value.isprintable() else _FORBIDDEN.sub("\ufffd", value)
+
+
+_is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
+"""The same few names stand all over a document."""
 
 
 def _new(parent: Any, element: Element) -> Any:
     attributes = {
-        a.name: _clean(a.value) for a in element.attributes if is_local_name(a.name) and not a.name.startswith("xml")
+        a.name: _clean(a.value) for a in element.attributes if _is_local_name(a.name) and not a.name.startswith("xml")
     }
-    tag = element.name if is_local_name(element.name) else "not-a-name"
+    tag = element.name if _is_local_name(element.name) else "not-a-name"
     return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)
 
 

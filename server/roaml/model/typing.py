@@ -114,8 +114,19 @@ class TypedMachine:
     variables: Mapping[str, Mapping[str, Type]]
 
 
-def type_machine(machine: Machine, environment: Environment) -> TypedMachine:
+def type_machine(
+    machine: Machine, environment: Environment, without_events: TypedMachine | None = None
+) -> TypedMachine:
+    """
+    Args:
+        without_events: the machine typed in the same environment, but for the event data: what cannot read any is taken
+            over from there.
+    """
     typer = _Typer(machine, environment)
+    for value in without_events.values if without_events else ():
+        handler = value.place.handler
+        if handler is not None and handler.trigger != "event":
+            typer.known.setdefault(handler, []).append(value)
     for chart in machine.charts:
         typer.chart(chart)
     return TypedMachine(tuple(typer.values), typer.variables)
@@ -203,6 +214,7 @@ class _Typer:
     environment: Environment
     values: list[TypedValue] = field(default_factory=list)
     variables: dict[str, dict[str, Type]] = field(default_factory=dict)
+    known: dict[Handler, list[TypedValue]] = field(default_factory=dict)
 
     def chart(self, chart: Chart) -> None:
         variables: dict[str, Type] = {}
@@ -242,6 +254,9 @@ class _Typer:
 
     def handler(self, handler: Handler, chart: Chart, state: State, variables: Mapping[str, Type], late: bool) -> None:
         if not handler.effective:
+            return
+        if handler in self.known:
+            self.values += self.known[handler]
             return
         if handler.cond is not None:
             known = bindings(handler, "cond", self.machine, self.environment)

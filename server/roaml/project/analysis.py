@@ -106,6 +106,7 @@ class Analysis:
         self._interfaces: dict[tuple[str, str], InterfaceType | NotFound] = {}
         self._systems: dict[str, System | None] = {}
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
+        self._structs: dict[str, Structs] = {}
 
     # ---------------------------------------------------------- single files
 
@@ -273,6 +274,11 @@ class Analysis:
         """The structs that a system declares. A struct file in no system declares for itself only."""
         if system is None:
             return NO_STRUCTS
+        if system not in self._structs:
+            self._structs[system] = self._resolve_structs(system)
+        return self._structs[system]
+
+    def _resolve_structs(self, system: str) -> Structs:
         files = (f.path for f in self.listed(system) if f.usable and f.input.section == "data_declarations")
         declared = (declaration.outline for path in files for declaration in self.struct_declarations(path))
         outlines = tuple(found for found in declared if found is not None)
@@ -368,9 +374,12 @@ class Analysis:
         known = {name: events[name] for name in _received(machine) if name in events}
         key = (source.digest, structs.outlines, self.interfaces_of(machine), known)
         environment = _MachineEnvironment(self, structs, known)
+        if not known:
+            return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))
         # What is known without the events is needed to link the system, and must outlive what is known with them.
-        computation = "typed with events" if known else "typed"
-        return self.memo.get(computation, (path, system), key, lambda: type_machine(machine, environment))
+        before = self.typed(path, system, structs, {})
+        compute = functools.partial(type_machine, machine, environment, before)
+        return self.memo.get("typed with events", (path, system), key, compute)
 
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
         """The ROS types that a machine declares, in order."""

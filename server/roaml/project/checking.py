@@ -109,10 +109,10 @@ class Checker:
     def _kind(self, path: str, system: str | None) -> FileKind:
         """What a file is: by itself, or else as what a system lists it."""
         kind = self.analysis.kind(path)
-        listed = [f for f in self.analysis.listed(system) if f.path == path] if system else []
-        if kind is FileKind.UNKNOWN and any(f.found is FileKind.JSON_STRUCTS for f in listed):
-            return FileKind.JSON_STRUCTS
-        return kind
+        if kind is not FileKind.UNKNOWN or system is None:
+            return kind
+        listed = (f.found for f in self.analysis.listed(system) if f.path == path)
+        return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
 
     def _wanted(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings

@@ -20,9 +20,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         if not isinstance(value.value, Expression) or (value.wanted is not None and is_kind(value.wanted, "int")):
             continue  # type-mismatch says more
-        meant = {span for call in _whole(value.value.tree) for span in _divisions(call)}
-        for problem in value.problems:
-            if isinstance(problem, IntegerDivision) and problem.span not in meant:
+        problems = [problem for problem in value.problems if isinstance(problem, IntegerDivision)]
+        meant = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()
+        for problem in problems:
+            if problem.span not in meant:
                 message = "`/` of integers gives a real number (`7 / 2` is 3.5)"
                 yield RULE.at(
                     problem.span, f"{message}; for a whole one write `Math.floor(a / b)`", *_fixes(value.value, problem)

@@ -18,7 +18,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         if not value.place.late or not isinstance(value.value, Expression):
             continue
-        name = next((n for n in _names(value.value.tree) if n.name in known_here(value.place)), None)
+        known = known_here(value.place)
+        name = next((n for n in _names(value.value.tree) if n.name in known), None) if known else None
         if name is not None:
             yield RULE.at(name.span, _message(value, name.name), severity=_severity(value))
 

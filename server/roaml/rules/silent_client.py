@@ -47,9 +47,10 @@ def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
         for statement in all_statements(chart):
             if isinstance(statement, Communicate):
                 yield find_handle(context.machine, statement), statement.element.name
-    for element in dict.fromkeys(element for _, element in ANSWERS.values()):
-        if misspelled.among(context.machine.element.walk(), element, HL_SCXML):
-            yield None, element
+    unknown = [element for element in context.machine.element.walk() if element.name not in HL_SCXML.elements]
+    for name in dict.fromkeys(name for _, name in ANSWERS.values()):
+        if misspelled.among(unknown, name, HL_SCXML):
+            yield None, name
 
 
 RULE = Rule("silent-client", Severity.ERROR, "An answer is waited for to something that is never sent.", machine=check)

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The checker: whole folders, the server as an editor uses it, the command line, and how times grow with a system."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import conformance
+from bench.generate import FIRST, machine, write_system
+from bench.keystrokes import keys
+from bench.report import Benchmark, Row, listed, median, megabytes, percentile, seconds
+from bench.server import started
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SYSTEM_FILES = 30
+GROWTH = (10, 30, 100, 300)
+"""Machines in a system."""
+
+RIGHT, WRONG = 'expr="0"', 'expr="O"'
+"""A document must begin with a mistake: a server says nothing of one that has none."""
+
+
+def models() -> list[Row]:
+    """Many small systems, checked at once."""
+    if conformance.PRESENT:
+        name, folder, ros_path = "conformance models", conformance.ROOT / "models", str(conformance.INTERFACES)
+    else:
+        name, folder, ros_path = "examples (there are no conformance models)", EXAMPLES, ""
+    files, took = checks(folder, 5, ros_path)
+    how = f"{files} files in one call of `api.check`, the first in its process; median of {len(took)} processes"
+    return [Row(f"check of the {name}", seconds(median(took)), "< 3 s", how)]
+
+
+def editing() -> list[Row]:
+    """Typing in a long machine of a system, and what the server holds in memory after it."""
+    took = []
+    with system(SYSTEM_FILES) as folder, started() as server:
+        path = folder / FIRST
+        text = path.read_text(encoding="utf-8")
+        server.initialize(folder)
+        server.open(path, text.replace(RIGHT, WRONG, 1))
+        server.diagnostics(path, 1)
+        server.change(path, 2, {"text": text})
+        server.diagnostics(path, 2)
+        for version, key in enumerate(keys(text), 3):
+            sent = server.change(path, version, key.change())
+            arrived, _ = server.diagnostics(path, version)
+            took.append(arrived - sent)
+        memory = server.resident_memory()
+    how = (
+        f"{len(took)} keys, each once the one before is answered, in a machine of {text.count(chr(10))} lines in a "
+        f"system of {SYSTEM_FILES} files: from `didChange` to the file's diagnostics, over stdio"
+    )
+    return [
+        Row("keystroke, median", seconds(median(took)), "", how),
+        Row("keystroke, 95th percentile", seconds(percentile(took, 95)), "< 60 ms", "the same keys"),
+        Row("memory", megabytes(memory), "< 150 MB", "resident memory of the server after these keys"),
+    ]
+
+
+def cold_start() -> list[Row]:
+    """From nothing to the first diagnostics in the editor."""
+    took = []
+    with system(SYSTEM_FILES) as folder:
+        path = folder / FIRST
+        text = path.read_text(encoding="utf-8").replace(RIGHT, WRONG, 1)
+        for _ in range(7):
+            with started() as server:
+                server.initialize(folder)
+                server.open(path, text)
+                arrived, _ = server.diagnostics(path, 1)
+                took.append(arrived - server.started)
+    how = f"from the start of the process to diagnostics of that machine in that system; median of {len(took)}"
+    return [Row("cold start", seconds(median(took)), "< 1.2 s", how)]
+
+
+def large_file() -> list[Row]:
+    """Opening what nobody should open."""
+    lines = 1000
+    text = machine(0, 2, round(lines * 10e6 / len(machine(0, 2, lines))))
+    took = []
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name).resolve() / "large.ascxml"
+        path.write_text(text, encoding="utf-8")
+        for _ in range(5):
+            with started() as server:
+                server.initialize(path.parent)
+                sent = server.open(path, text)
+                arrived, found = server.diagnostics(path, 1)
+                took.append(arrived - sent)
+    answer = " and ".join(f"`{each['code']}`, {each['message']}" for each in found)
+    how = f"a machine of {len(text) / 1e6:.1f} MB, from `didOpen` to its diagnostics, over stdio; the answer: {answer}"
+    return [Row("10 MB opened", seconds(median(took)), "< 10 s", how)]
+
+
+def command_line() -> list[Row]:
+    """A whole call, as in CI."""
+    main = EXAMPLES / "delivery_robot" / "main.xml"
+    took = []
+    for _ in range(9):
+        before = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "as2fm_lsp", "--check", str(main)], capture_output=True, check=True)
+        took.append(time.perf_counter() - before)
+    how = f"`as2fm-lsp --check examples/delivery_robot/main.xml`, the whole process; median of {len(took)}"
+    return [Row("command line", seconds(median(took)), "", how)]
+
+
+def growth() -> list[Row]:
+    """Whether a system of twice the size takes twice the time."""
+    medians = []
+    for machines in GROWTH:
+        with system(machines + 3) as folder:
+            medians.append(median(checks(folder / "main.xml", 3)[1]))
+    rates = [f"{each / machines * 1000:.1f}" for each, machines in zip(medians, GROWTH, strict=True)]
+    how = f"generated systems of {listed(GROWTH)} machines; {listed(rates)} ms for each machine"
+    return [Row("growth", listed(map(seconds, medians)), "linear", how)]
+
+
+BENCHMARKS: dict[str, Benchmark] = {
+    "models": models,
+    "editing": editing,
+    "cold-start": cold_start,
+    "large-file": large_file,
+    "command-line": command_line,
+    "growth": growth,
+}
+
+
+_CHECK = """
+import sys, time
+from as2fm_lsp.__main__ import spare_the_collector
+from roaml import api
+spare_the_collector()
+before = time.perf_counter()
+result = api.check([sys.argv[1]], sys.argv[2:])
+print(len(result.files), time.perf_counter() - before)
+"""
+
+
+def checks(path: Path, runs: int, *ros_paths: str) -> tuple[int, list[float]]:
+    """How many files were checked, and the seconds that it took in each of some processes, imports not counted."""
+    files, took = 0, []
+    for _ in range(runs):
+        command = [sys.executable, "-c", _CHECK, str(path), *filter(None, ros_paths)]
+        files_there, spent = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+        files = int(files_there)
+        took.append(float(spent))
+    return files, took
+
+
+@contextmanager
+def system(files: int) -> Iterator[Path]:
+    """The folder of a generated system."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name).resolve()
+        write_system(folder, files)
+        yield folder

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Typing in a generated machine, key by key.
+
+A name, a tag, an expression loses its last character and gets it back; then a new statement is written from its first
+character to its last. Before or after every key the text has a mistake, so that the server has something to say of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+WORDS = (
+    '<data id="counter',
+    '<ros_topic_publisher name="out" topic="/ring/topic_0" type="std_msgs/Int32',
+    '<ros_topic_publisher name="out" topic="/ring/topic_0',
+    'service_name="/ring/add_0',
+    '<state id="state_3',
+    "<ros_topic_publish",
+    'cond="counter &lt;',
+    'target="state_4',
+    'expr="Math.min(speed + 0.1 * goal',
+    '<field name="linear.x',
+    'expr="_msg.data',
+    'location="here.x',
+    'event="ring_0_event_1',
+    'expr="!ready',
+    "</ros_topic_callback",
+    'expr="_res.sum',
+)
+"""What loses its last character. Some are seen by other files, as the names of topics and events are."""
+
+STATEMENT = '<assign location="counter" expr="Math.max(counter - 2, 0)" />'
+
+
+class Key(NamedTuple):
+    """One key: `start` and `end` are offsets in the text before, which becomes `text`."""
+
+    start: int
+    end: int
+    inserted: str
+    before: str
+    text: str
+
+    def change(self) -> dict[str, Any]:
+        """The content change that tells of it."""
+        start, end = position(self.before, self.start), position(self.before, self.end)
+        return {"range": {"start": start, "end": end}, "text": self.inserted}
+
+
+def position(text: str, offset: int) -> dict[str, int]:
+    """Of a text in ASCII, whose columns are the same in all encodings."""
+    return {"line": text.count("\n", 0, offset), "character": offset - text.rfind("\n", 0, offset) - 1}
+
+
+def keys(text: str, rounds: int = 3) -> Iterator[Key]:
+    """Each word backwards and forwards `rounds` times, at different places; then the statement. The text is as before
+    in the end, but for the statement."""
+    for number in range(rounds):
+        for word in WORDS:
+            yield from _retyped(text, _place(text, word, number) + len(word))
+    at = _place(text, "<assign ", rounds)
+    for character in STATEMENT:
+        changed = text[:at] + character + text[at:]
+        yield Key(at, at, character, text, changed)
+        text, at = changed, at + 1
+
+
+def _place(text: str, word: str, number: int) -> int:
+    places = [at for at in range(len(text)) if text.startswith(word, at)]
+    return places[number * 2 % len(places)]
+
+
+def _retyped(text: str, end: int) -> Iterator[Key]:
+    shorter = text[: end - 1] + text[end:]
+    yield Key(end - 1, end, "", text, shorter)
+    yield Key(end - 1, end - 1, text[end - 1], shorter, text)

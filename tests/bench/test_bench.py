@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What benchmarks measure is what they say. That they are fast is for people to judge."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bench.generate import FIRST, write_system
+from bench.keystrokes import keys
+from bench.report import Row, percentile, seconds, table
+from bench.server import started
+from roaml import api
+from roaml.project.settings import Settings
+from roaml.project.workspace import Workspace
+
+
+@pytest.mark.parametrize(("files", "lines"), [(5, 700), (30, 700), (12, 200)])
+def test_a_generated_system_has_nothing_to_complain_about(tmp_path: Path, files: int, lines: int) -> None:
+    main = write_system(tmp_path, files, lines)
+    result = api.check([str(main)], settings=Settings())
+    assert [f"{d.path}: {d.code} {d.message}" for d in result.diagnostics] == []
+    assert len(result.files) == len(list(tmp_path.iterdir())) == files
+    written = (tmp_path / FIRST).read_text(encoding="utf-8").count("\n")
+    assert abs(written - lines) <= 35
+
+
+def test_a_generated_system_is_always_the_same(tmp_path: Path) -> None:
+    first, second = (write_system(tmp_path / name, 6).parent for name in ("a", "b"))
+    assert {f.name: f.read_bytes() for f in first.iterdir()} == {f.name: f.read_bytes() for f in second.iterdir()}
+
+
+def test_keys_change_what_is_wrong(tmp_path: Path) -> None:
+    write_system(tmp_path, 6, lines=350, small_lines=60)
+    path = str(tmp_path / FIRST)
+    text = Path(path).read_text(encoding="utf-8")
+    workspace = Workspace([str(tmp_path)], Settings())
+    known, last, changes = workspace.snapshot().checker.diagnostics(path), text, 0
+    pressed = list(keys(text, rounds=1))
+    for key in pressed:
+        assert key.before == last
+        assert key.text == key.before[: key.start] + key.inserted + key.before[key.end :]
+        workspace.open(path, key.text)
+        found = workspace.snapshot().checker.diagnostics(path)
+        assert found or known, f"a server would not answer {key.change()}"
+        changes += found != known
+        known, last = found, key.text
+    assert known == ()
+    assert changes > 0.9 * len(pressed)
+
+
+def test_keys_name_places_as_the_protocol_does(tmp_path: Path) -> None:
+    write_system(tmp_path, 6)
+    text = (tmp_path / FIRST).read_text(encoding="utf-8")
+    first, second = list(keys(text))[:2]
+    line = text.splitlines().index('        <data id="counter" type="int32" expr="0" />')
+    start, end = ({"line": line, "character": character} for character in (24, 25))
+    assert first.change() == {"range": {"start": start, "end": end}, "text": ""}
+    assert second.change() == {"range": {"start": start, "end": start}, "text": "r"}
+
+
+def test_the_server_answers(tmp_path: Path) -> None:
+    write_system(tmp_path, 6, lines=150)
+    path = tmp_path / FIRST
+    text = path.read_text(encoding="utf-8")
+    with started() as server:
+        server.initialize(tmp_path)
+        sent = server.open(path, text.replace('"speed"', '"sped"', 1))
+        arrived, found = server.diagnostics(path, 1)
+        assert {each["code"] for each in found} == {"undeclared-variable", "unused-variable"}
+        assert server.started < sent < arrived
+        server.change(path, 2, {"text": text})
+        assert server.diagnostics(path, 2)[1] == []
+
+
+def test_figures() -> None:
+    assert [percentile([3, 1, 2], percent) for percent in (1, 50, 95, 100)] == [1, 2, 3, 3]
+    assert percentile(range(1, 101), 95) == 95
+    assert [seconds(value) for value in (0.0041, 0.29, 0.31, 12)] == ["4 ms", "290 ms", "0.31 s", "12.00 s"]
+    assert table([Row("a", "1 ms", "", "b")]).splitlines()[-1] == "| a | 1 ms |  | b |"
