@@ -92,7 +92,8 @@ def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
 def attribute(type_: AttributeType) -> str:
     text = type_.documentation
     if type_.port:
-        text += f" An {type_.port.direction}put port of type `{type_.port.type}`."
+        text += f" An {type_.port.direction}put port of type `{type_.port.type}`"
+        text += ", which must hold a constant." if type_.port.constant else "."
     for choice in type_.simple.choices:
         text += f" `{choice.value}`: {choice.documentation}"
     cell = re.sub(r"\s+", " ", text).replace("|", "\\|")
