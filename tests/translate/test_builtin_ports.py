@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 
 import bt_model
@@ -11,7 +12,7 @@ import bt_runs
 import pytest
 from bt_cases import cases, gated
 from bt_trees import Setup, Tree, leaf, node, system, writer
-from translating import FOLDER, checked, errors, lowered
+from translating import FOLDER, errors, lowered
 
 from roaml.diagnostics import Diagnostic
 from roaml.language import BEHAVIOR_TREE
@@ -24,7 +25,7 @@ EXAMPLES = {part.kind: part for tree in reversed(list(cases())) for part in tree
 PORTS = [(kind, port) for kind, plugin in builtin_plugins().items() for port in plugin.ports if port.direction == "in"]
 
 
-def in_tree(found: list[Diagnostic], text: str) -> list[str]:
+def in_tree(found: Sequence[Diagnostic], text: str) -> list[str]:
     """What the findings are about; all are in the tree."""
     assert {d.path for d in found} <= {os.path.join(FOLDER, "tree.xml")}
     return [text[d.span.start : d.span.end] for d in found]
@@ -41,7 +42,7 @@ def test_port_bound_to_the_blackboard(kind: str, port: PortOutline) -> None:
     plain = EXAMPLES[kind]
     tree = gated(replace(plain, ports=tuple({**dict(plain.ports), port.key: value}.items())))
     files = system(tree, SETUP)
-    found = errors(checked(files))
+    found = errors(files)
     role = next(a.port for a in BEHAVIOR_TREE.elements[kind].ports if a.name == port.key)
     assert role is not None
     if role.constant:
@@ -169,7 +170,7 @@ SCRIPTS = [a.name for a in BEHAVIOR_TREE.elements["Sequence"].attributes.values(
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_script(script: str) -> None:
     files = system(node("Sequence", leaf("S"), **{script: "x := 1"}), SETUP)
-    found = errors(checked(files))
+    found = errors(files)
     assert [d.code for d in found] == ["untranslatable-script"]
     assert in_tree(found, files["tree.xml"])[0].startswith(script)
 
@@ -179,4 +180,4 @@ def test_node_that_cannot_be_translated(kind: str) -> None:
     element = BEHAVIOR_TREE.elements[kind]
     ports = {a.name: "1" for a in element.ports}
     files = system(node("Sequence", node(kind, *[leaf("S")] * (element.any_child is not None), **ports)), SETUP)
-    assert kind in in_tree(errors(checked(files)), files["tree.xml"])
+    assert kind in in_tree(errors(files), files["tree.xml"])

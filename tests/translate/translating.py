@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping
 
 from roaml import api
+from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
 from roaml.project.settings import Settings
 from roaml.scxml.model import Network
@@ -24,6 +25,15 @@ def loaded(files: Mapping[str, str], main: str = "main.xml") -> api.LoadedSystem
     """
     texts = {os.path.join(FOLDER, name): text for name, text in files.items()}
     return api.load(os.path.join(FOLDER, main), settings=Settings(), texts=texts)
+
+
+def errors(files: Mapping[str, str], main: str = "main.xml") -> tuple[Diagnostic, ...]:
+    """What keeps the system from being translated."""
+    try:
+        loaded(files, main)
+    except api.ModelError as error:
+        return error.result.diagnostics
+    return ()
 
 
 def lowered(files: Mapping[str, str], main: str = "main.xml") -> Network:
