@@ -21,7 +21,7 @@ SCRIPTS = (
 )
 """In each, every answer is followed by every other; they have different lengths, so that all answers meet."""
 
-GATE = "SSRSSSFSSSSRSFSSSSF"
+GATE = "SSRSRFSFSFSSSSFSSSS"
 
 WRITERS = {
     "n": writer("n", 1, 2, 1, 0, -1),

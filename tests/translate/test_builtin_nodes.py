@@ -44,13 +44,13 @@ def test_all_are_modelled() -> None:
 
 @pytest.mark.parametrize("tree", CASES, ids=name)
 def test_node(tree: Tree) -> None:
-    tree, setup = ungated(tree), Setup(25)
+    tree, setup = ungated(tree), Setup(20)
     check(lowered(system(tree, setup)), tree, bt_model.run(tree, setup), seed=1)
 
 
 @pytest.mark.parametrize("tree", CASES, ids=name)
 def test_node_that_is_halted(tree: Tree) -> None:
-    tree, setup = gated(tree), Setup(40)
+    tree, setup = gated(tree), Setup(30)
     expected = bt_model.run(tree, setup)
     check(lowered(system(tree, setup)), tree, expected, seed=1)
     number = 1000 + len(list(tree.walk())) - len(list(tree.children[-1].walk()))
