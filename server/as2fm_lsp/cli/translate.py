@@ -40,7 +40,7 @@ exit status: 0 translated, 1 the system has errors and nothing was written, 2 wr
 
 
 def run(arguments: Sequence[str]) -> int:
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     overrides = Overrides(options.max_time, options.max_array_size)
     output = options.output or jani_path(options.main)
     settings, problems = find_settings(os.path.abspath(options.main))
@@ -82,31 +82,31 @@ def run(arguments: Sequence[str]) -> int:
     return CLEAN
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(
         prog="as2fm-lsp translate",
         description="Translate a system to JANI, and to plain SCXML on request.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("main", metavar="MAIN.xml", help="the system file")
-    parser.add_argument(
+    result.add_argument("main", metavar="MAIN.xml", help="the system file")
+    result.add_argument(
         "-o", "--output", metavar="FILE", help="the JANI file; MAIN.jani if not given, - for standard output"
     )
-    parser.add_argument("--indent", type=_count, metavar="N", help="lay the JANI file out for people")
-    parser.add_argument("--map", metavar="FILE", help="write where every automaton, edge and variable comes from")
-    parser.add_argument("--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton")
+    result.add_argument("--indent", type=_count, metavar="N", help="lay the JANI file out for people")
+    result.add_argument("--map", metavar="FILE", help="write where every automaton, edge and variable comes from")
+    result.add_argument("--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton")
     for notation in NOTATIONS.values():
         help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
-        parser.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
-    parser.add_argument(
+        result.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
+    result.add_argument(
         "--property", action="append", default=[], metavar="NAME", help="put only this property into the JANI file"
     )
-    parser.add_argument("--max-array-size", type=_size, metavar="N", help="in place of that in MAIN.xml")
-    parser.add_argument("--max-time", type=_time, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
-    parser.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
-    parser.add_argument("--format", default="text", choices=("text", "json"), help="how errors are written")
-    return parser
+    result.add_argument("--max-array-size", type=_size, metavar="N", help="in place of that in MAIN.xml")
+    result.add_argument("--max-time", type=_time, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
+    result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
+    result.add_argument("--format", default="text", choices=("text", "json"), help="how errors are written")
+    return result
 
 
 def _count(text: str) -> int:
