@@ -480,3 +480,13 @@ def test_deep_but_not_too_deep() -> None:
 
 def test_mistakes_are_bounded() -> None:
     assert len(parse(Decoded("[" + "," * 9000, 0))[1]) == MAX_FINDINGS
+
+
+SIMPLE = ["a", "a.b", "_msg.data.x", "a.new.b_1", "and.x", "a" + ".b" * 8, "a" + ".b" * 9, "true", "true.x", "this.x"]
+SIMPLE += ["0", "12", "012", "0.5", "2.0", "10.250", "0.1234567890123456789", "1234567890123456"]
+
+
+@pytest.mark.parametrize("text", SIMPLE)
+def test_simple_ones_are_read_like_all_others(text: str) -> None:
+    """White space behind an expression changes nothing but that it is not read the quick way."""
+    assert parse(Decoded(text, 5)) == parse(Decoded(f"{text} ", 5))

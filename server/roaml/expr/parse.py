@@ -65,8 +65,9 @@ _TOKEN = re.compile(
     )""",
     re.VERBOSE | re.DOTALL,
 )
-_SIMPLE_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
-_SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})\Z", re.ASCII)
+# What most expressions are: a name or members of one, a plain number.
+_SIMPLE_PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*){0,8}\Z", re.ASCII)
+_SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
 _ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
 
@@ -122,13 +123,23 @@ def tokens(source: Decoded) -> list[Token]:
 def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
     """The expression in `source` and all that is wrong with its form."""
     text = source.text
-    if _SIMPLE_NAME.match(text) and text not in _WORDS:
-        return Name(source.span(0, len(text)), text), ()
-    if _SIMPLE_NUMBER.match(text):
-        return Number(source.span(0, len(text)), int(text), False), ()
+    if _SIMPLE_PATH.match(text) and (path := text.split("."))[0] not in _WORDS:
+        return _path(source, path), ()
+    if number := _SIMPLE_NUMBER.match(text):
+        is_real = number[1] is not None
+        return Number(source.span(0, len(text)), float(text) if is_real else int(text), is_real), ()
     parser = _Parser(source)
     expr = parser.whole()
     return expr, tuple(parser.findings)
+
+
+def _path(source: Decoded, names: list[str]) -> Expr:
+    end = len(names[0])
+    expr: Expr = Name(source.span(0, end), names[0])
+    for name in names[1:]:
+        start, end = end + 1, end + 1 + len(name)
+        expr = Member(source.span(0, end), expr, name, source.span(start, end))
+    return expr
 
 
 class _TooDeepError(Exception):

@@ -298,11 +298,12 @@ def _plugin(machine: Machine) -> PluginOutline:
 
 
 def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
-    """Per handler, the event parameters `_event.data.NAME` that it reads."""
+    """Per handler of a plain event, the parameters `_event.data.NAME` that it reads."""
     found: defaultdict[Handler, set[str]] = defaultdict(set)
     for value in typed.values:
-        if value.place.handler is not None and isinstance(value.value, Expression):
-            found[value.place.handler].update(event_parameters(value.value.tree))
+        handler = value.place.handler
+        if handler is not None and handler.trigger == "event" and isinstance(value.value, Expression):
+            found[handler].update(event_parameters(value.value.tree))
     return found
 
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from roaml.expr.infer import Problem, infer
+from roaml.expr.infer import Problem, RandomUsed, infer
 from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
 from roaml.language.grammar import Binding
@@ -303,7 +303,7 @@ class _Body:
         match statement:
             case Assign():
                 self.assign(statement)
-                if isinstance(statement.value, Expression) and uses_random(statement.value.tree):
+                if self.draws(statement.value):
                     self.later()
                 return
             case Send():
@@ -316,6 +316,11 @@ class _Body:
             case If():
                 self.choice(statement)
         self.later()
+
+    def draws(self, value: Value | None) -> bool:
+        """Whether a random number is drawn for a value, the last one that was typed."""
+        problems = self.typer.values[-1].problems if isinstance(value, Expression) else ()
+        return any(isinstance(problem, RandomUsed) for problem in problems)
 
     def later(self) -> None:
         if not self.place.late:
@@ -346,10 +351,8 @@ class _Body:
 
     def late_value(self, use: Use, value: Value | None, wanted: Type | None, element: Element, target: str) -> None:
         """A value that is sent: it is evaluated in the step of the sending, after the event arrived."""
-        before = self.place
         self.later()
         self.value(use, value, wanted, element, target)
-        self.place = before
 
     def communicate(self, statement: Communicate) -> None:
         declaration = find_handle(self.typer.machine, statement)

@@ -12,6 +12,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.event_data_unavailable import known_here
 from roaml.rules.interfaces import declared
 from roaml.rules.rule import MachineContext, Rule
 
@@ -26,9 +27,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         handler = value.place.handler
         if handler is None or not isinstance(value.value, Expression):
             continue
-        for node in walk(value.value.tree):
+        prefixes = PREFIXES.keys() & known_here(value.place)
+        for node in walk(value.value.tree) if prefixes else ():
             path = access_path(node) if isinstance(node, Member) else None
-            if isinstance(node, Member) and path is not None and path[0] in PREFIXES:
+            if isinstance(node, Member) and path is not None and path[0] in prefixes:
                 yield from _check(context, handler, node, ".".join(path[PREFIXES[path[0]] :]))
 
 
