@@ -72,7 +72,7 @@ def _same_threads(context: MachineContext) -> Iterator[Finding]:
             continue
         before = known.setdefault(thread.server.value, thread.server)
         if before is not thread.server:
-            message = f"the threads of `{thread.server.value}` are declared already; `n_threads` says how many there are"
+            message = f"the threads of `{thread.server.value}` are declared already; `n_threads` tells their number"
             yield RULE.at(thread.server.span, message, related=(Related(before.span, "declared first here"),))
 
 
