@@ -27,6 +27,9 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     model = api.to_jani(system)
     for finding in check_model(model):
         yield f"unsound: {finding.message}"
+    table = {variable.name for variable in model.variables} ^ set(system.analysis.globals(path))
+    if table:
+        yield f"the checker's table of global variables differs in {sorted(table)}"
     api.source_map(system, model)
     if not all(text for _, text in scxml_texts(api.to_scxml(system))):
         yield "an empty document of plain SCXML"

@@ -31,7 +31,7 @@ def blackboard(program: Program) -> Automaton | None:
     )
     answer = Send(BLACKBOARD_ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
     asked = Transition(BLACKBOARD_REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
-    idle = State("idle", (), (), (*writes, asked), origin)
+    idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
     return Automaton("bt_blackboard_fsm", Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 

@@ -185,6 +185,6 @@ def _blackboard(system: System) -> Iterator[_Event]:
     for name, ports in system.blackboard.items():
         if any(bound.port.written for bound in ports):
             yield f"bt_blackboard_set_{name}", None, [("value", variables[name])]
-    if any(bound.port.read for ports in system.blackboard.values() for bound in ports):
+    if system.reads_blackboard:
         yield "bt_blackboard_req", None, []
         yield "bt_blackboard_get", None, variables.items()

@@ -274,6 +274,11 @@ class System:
                     found.setdefault(value.variable, []).append(BoundPort(automaton, port))
         return {name: tuple(ports) for name, ports in found.items()}
 
+    @property
+    def reads_blackboard(self) -> bool:
+        """Whether some node reads a variable of the blackboard."""
+        return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
+
     def variable_type(self, variable: str) -> str:
         """The name of a blackboard variable's type: that of the first port that has a definite one (spec/02 §3.5)."""
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
