@@ -10,6 +10,7 @@ from expr_cases import show, tree_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roaml.expr.format import format_expr
 from roaml.expr.infer import constant, infer
 from roaml.expr.parse import MAX_DEPTH, MAX_FINDINGS, parse
 from roaml.expr.tree import Binary, Call, Expr, Index, Member, Name, Unary, children, walk
@@ -183,3 +184,14 @@ def test_walk_meets_everything_once(text: str) -> None:
     assert len({id(e) for e in met}) == len(met)
     assert met[0] is expr
     assert len(met) == 1 + sum(len(children(e)) for e in met)
+
+
+@given(operations())
+def test_formatted_and_read_again(tokens: list[str]) -> None:
+    """The normal form of an expression means the same, and is its own normal form."""
+    tree, _ = parse(Decoded(" ".join(tokens), 0))
+    text = format_expr(tree)
+    again, problems = parse(Decoded(text, 0))
+    assert problems == ()
+    assert show(again) == show(tree)
+    assert format_expr(again) == text
