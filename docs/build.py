@@ -11,9 +11,10 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from as2fm_lsp.cli import init, migrate, translate
 from as2fm_lsp.cli.main import EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
@@ -92,7 +93,8 @@ def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
 def attribute(type_: AttributeType) -> str:
     text = type_.documentation
     if type_.port:
-        text += f" An {type_.port.direction}put port of type `{type_.port.type}`."
+        text += f" An {type_.port.direction}put port of type `{type_.port.type}`"
+        text += ", which must hold a constant." if type_.port.constant else "."
     for choice in type_.simple.choices:
         text += f" `{choice.value}`: {choice.documentation}"
     cell = re.sub(r"\s+", " ", text).replace("|", "\\|")
@@ -193,11 +195,19 @@ def command_line() -> str:
     """Not argparse's own layout, which differs between versions of Python."""
     lines = ["# Command line\n", EXAMPLES_TEXT]
     for group in parser()._action_groups:
-        rows = [option(action) for action in group._group_actions if action.dest != "help"]
-        if rows:
-            title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
-            lines += [f"## {title}\n", "| option | meaning |", "| --- | --- |", *rows, ""]
+        title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
+        lines += options(title, group._group_actions)
+    for command in (init, migrate, translate):
+        each = command.parser()
+        lines += options(f"`{each.prog}`", each._actions, f"{each.description}\n")
     return "\n".join(lines)
+
+
+def options(title: str, actions: Iterable[argparse.Action], text: str = "") -> list[str]:
+    """A section with a table; nothing if there is nothing to tell."""
+    rows = [option(action) for action in actions if action.dest != "help"]
+    head = [f"## {title}\n", *filter(None, [text]), "| option | meaning |", "| --- | --- |"]
+    return [*head, *rows, ""] if rows else []
 
 
 def option(action: argparse.Action) -> str:

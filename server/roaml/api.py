@@ -7,6 +7,10 @@
     for diagnostic in result.diagnostics:
         print(diagnostic.path, diagnostic.message)
 
+    system = api.load("main.xml")
+    network = api.to_scxml(system)
+    model = api.to_jani(system)
+
 Nothing here prints or raises for what stands in a user's files; a path that does not exist is a `PathError`.
 """
 
@@ -17,15 +21,24 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Diagnostic
+from roaml.jani.model import Model
+from roaml.jani.properties import Property
+from roaml.lower import lower
 from roaml.model.kinds import FileKind
+from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.discover import is_inside
 from roaml.project.files import Problem
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings
+from roaml.project.source_map import SourceMap
+from roaml.project.source_map import source_map as _source_map
+from roaml.project.translation import program_of, properties_of
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.scxml.model import Network
 from roaml.text import SourceFile
+from roaml.to_jani import translate
 
 
 class PathError(ValueError):
@@ -91,6 +104,114 @@ def check(
     files = _files(named, snapshot, checked)
     diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path))
     return CheckResult(diagnostics, files, problems, snapshot)
+
+
+class ModelError(ValueError):
+    """A system has errors and cannot be translated. `result` holds these errors and nothing else."""
+
+    def __init__(self, result: CheckResult) -> None:
+        first = result.diagnostics[0]
+        more = f", and {len(result.diagnostics) - 1} more" if len(result.diagnostics) > 1 else ""
+        super().__init__(f"{first.path}: {first.message}{more}")
+        self.result = result
+
+
+class PropertyError(ValueError):
+    """A property was named that the system does not have; the message names those that it has."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedSystem:
+    """A system without errors, as its files were when it was loaded.
+
+    Attributes:
+        path: of the system file.
+        properties: those in its property files, in their order.
+        analysis: the models behind it.
+    """
+
+    path: str
+    properties: tuple[Property, ...]
+    analysis: Analysis
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """All files of the system, the system file first."""
+        return self.analysis.files_of(self.path)
+
+
+def load(
+    path: str,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    texts: Mapping[str, str | bytes] | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+) -> LoadedSystem:
+    """Read and check a system, to translate it.
+
+    Args:
+        path: the system file.
+        ros_paths, settings, texts: as for `check`.
+        overrides: parameters in place of those in the system file.
+
+    Raises:
+        PathError: the path cannot be read, or is not a system file.
+        ModelError: the system has errors.
+    """
+    if settings is None:
+        settings, _ = find_settings(os.path.abspath(path))
+        settings = replace(settings, ament_prefixes=ament_prefixes())
+    snapshot = check([path], ros_paths, replace(settings, overrides=overrides), texts).snapshot
+    return loaded(snapshot, os.path.abspath(path))
+
+
+def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
+    """A system of a workspace.
+
+    Args:
+        path: absolute, of the system file.
+
+    Raises:
+        PathError: the path is not a system file.
+        ModelError: the system has errors.
+    """
+    analysis = snapshot.analysis
+    if analysis.kind(path) is not FileKind.SYSTEM or analysis.system(path) is None:
+        raise PathError(f"{path}: this is no system file")
+    errors = snapshot.checker.errors(path)
+    if errors:
+        raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
+    return LoadedSystem(path, properties_of(analysis, path), analysis)
+
+
+def to_scxml(system: LoadedSystem) -> Network:
+    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` gives the files."""
+    return lower(program_of(system.analysis, system.path))
+
+
+def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Model:
+    """The system as a network of Markov decision processes. `roaml.jani.write` gives the text.
+
+    Args:
+        properties: the names of the properties that the model shall have; all if not given.
+
+    Raises:
+        PropertyError: the system has no property of a name.
+    """
+    found = system.properties
+    if properties is not None:
+        by_name = {each.name: each for each in found}
+        for name in (properties := tuple(properties)):
+            if name not in by_name:
+                known = ", ".join(by_name) or "none"
+                raise PropertyError(f"there is no property {name}; the system has: {known}")
+        found = tuple(by_name[name] for name in properties)
+    return translate(to_scxml(system), found)
+
+
+def source_map(system: LoadedSystem, model: Model) -> SourceMap:
+    """Where every automaton, edge and variable of a translated model comes from, as a value for JSON."""
+    return _source_map(model, system.analysis, system.path)
 
 
 def migrate(

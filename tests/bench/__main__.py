@@ -5,17 +5,20 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
-from bench import check
+from bench import check, translate
 from bench.report import Benchmark, machine, table
 
-BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS}
+BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS, **translate.BENCHMARKS}
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="run.py", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(BENCHMARKS)}; all if none is given")
-    names = parser.parse_args().names or list(BENCHMARKS)
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw how translations grow, as SVG")
+    options = parser.parse_args()
+    names = options.names or list(BENCHMARKS)
     unknown = [name for name in names if name not in BENCHMARKS]
     if unknown:
         parser.error(f"there is no benchmark {', '.join(unknown)}")
@@ -23,6 +26,8 @@ def main() -> int:
     for name in names:
         print(f"{name} …", file=sys.stderr, flush=True)
         rows += BENCHMARKS[name]()
+    if options.plot:
+        options.plot.write_text(translate.diagram(), encoding="utf-8")
     print(f"{table(rows)}\n\nMeasured with {machine()}.")
     return 0
 

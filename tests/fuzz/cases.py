@@ -12,6 +12,7 @@ from random import Random
 
 from fuzz.corpus import Model, interfaces, snippets, systems
 from fuzz.damage import ANY, ways
+from fuzz.translation import problems
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.project.settings import Settings
@@ -89,6 +90,8 @@ def _check(case: Case, texts: dict[str, str], fix: bool = True) -> Iterator[Fail
         yield Failure(_SLOW, f"{spent:.1f} s")
     for diagnostic in result.diagnostics:
         yield from _diagnostic(result, diagnostic)
+    for system in result.snapshot.analysis.system_paths:
+        yield from (Failure(kind, f"{system}: {kind}") for kind in problems(result.snapshot, system))
     if fix:
         yield from _fixed(case, texts, result.diagnostics)
 

@@ -152,6 +152,10 @@ async def connect(
         )
         yield client
         await client.shutdown_session()
+    except BaseException:
+        if client._server is not None and client._server.returncode is None:
+            client._server.kill()  # `stop` would wait for a server that nobody has told to end
+        raise
     finally:
         await client.stop()
 

@@ -151,7 +151,9 @@ async def test_what_it_can_do() -> None:
         "interFileDependencies": True,
         "workspaceDiagnostics": True,
     }
-    assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix"]}
+    assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix", "source"]}
+    assert capabilities["codeLensProvider"] == {"resolveProvider": False}
+    assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.translateToJani"]}
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
 
 

@@ -67,6 +67,8 @@ class Explorer:
 
     def successors(self, state: State) -> Iterator[State]:
         for sync in self.model.system.syncs:
+            if not all((state.locations[i], action) in self.edges[i] for i, action in sync.participants):
+                continue
             enabled = [self._enabled(state, i, action) for i, action in sync.participants]
             for edges in itertools.product(*enabled):
                 for ways in itertools.product(*(edge.destinations for edge in edges)):
@@ -74,8 +76,8 @@ class Explorer:
                         yield self._taken(state, [i for i, _ in sync.participants], ways)
 
     def _enabled(self, state: State, automaton: int, action: str) -> list[Edge]:
-        candidates = self.edges[automaton].get((state.locations[automaton], action), ())
-        known = {**self.globals(state), **self.locals(state, automaton)} if candidates else {}
+        candidates = self.edges[automaton][state.locations[automaton], action]
+        known = {**self.globals(state), **self.locals(state, automaton)}
         return [edge for edge in candidates if edge.guard is None or evaluate(edge.guard.exp, known)]
 
     def _possible(self, way: Destination, state: State) -> bool:

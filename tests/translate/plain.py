@@ -52,6 +52,8 @@ class Interpreter:
         self.automata = network.automata
         self.handled = [{t.event for s in a.states for t in s.transitions} - {""} for a in self.automata]
         self.senders = {s.event for a in self.automata for s in _sends(a)}
+        self.states = [{s.id: s for s in a.states} for a in self.automata]
+        self.spontaneous = [{s.id for s in a.states if any(not t.event for t in s.transitions)} for a in self.automata]
 
     def initial(self) -> Moment:
         machines = []
@@ -80,7 +82,7 @@ class Interpreter:
         for i, machine in enumerate(now.machines):
             if machine.rest:
                 yield from self.proceed(now, i)
-            else:
+            elif machine.state in self.spontaneous[i]:
                 yield from self.take(now, [i], "")
         for event in sorted(now.pending):
             listeners = [i for i, handled in enumerate(self.handled) if event in handled]
@@ -146,12 +148,12 @@ class Interpreter:
 
     def reactions(self, now: Moment, i: int, event: str) -> Iterator[Machine]:
         automaton, machine = self.automata[i], now.machines[i]
-        state = next(s for s in automaton.states if s.id == machine.state)
+        state = self.states[i][machine.state]
         data, params = dict(machine.data), dict(dict(now.sent).get(event, ()))
         own = [t for t in state.transitions if t.event == event]
         for transition in own:
             if transition.cond is None or value(transition.cond, data, params):
-                yield from self.targets(automaton, machine, transition, event)
+                yield from self.targets(i, machine, transition, event)
                 return
         if not event or automaton.role in (Role.TREE_ROOT, Role.HANDLER):
             return
@@ -159,8 +161,8 @@ class Interpreter:
         if not stuck and (own or not SYNCHRONISING.match(event)):
             yield machine
 
-    def targets(self, automaton: Automaton, machine: Machine, transition: Transition, event: str) -> Iterator[Machine]:
-        states = {s.id: s for s in automaton.states}
+    def targets(self, i: int, machine: Machine, transition: Transition, event: str) -> Iterator[Machine]:
+        states = self.states[i]
         for target in transition.targets:
             body = (*states[machine.state].exit, *target.body, *states[target.state].entry)
             yield Machine(target.state, machine.data, body, event)

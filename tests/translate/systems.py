@@ -57,10 +57,15 @@ def expressions(draw: st.DrawFn, kind: str, event: str | None, depth: int = 2) -
 
 @st.composite
 def statements(draw: st.DrawFn, event: str | None, known: tuple[str, ...], depth: int = 1) -> str:
-    kind = draw(st.sampled_from(("assign", "assign", "append", "send", "if" if depth else "assign")))
+    kind = draw(st.sampled_from(("assign", "assign", "append", "compare", "send", "if" if depth else "assign")))
     if kind == "append":
         index = draw(st.sampled_from(("0", "v.length % 3")))
         return f"<assign{_attributes(location=f'v[{index}]', expr=draw(expressions('int', event, 1)))}/>"
+    if kind == "compare":
+        lists = ("v", "_event.data.p") if event is not None and EVENTS[event] == "list" else ("v",)
+        left, operator = draw(st.sampled_from(lists)), draw(st.sampled_from(("==", "!=")))
+        right = draw(st.sampled_from((*lists, "[]", "[1]", "[1, 2]", "[2, 1]")))
+        return f"<assign{_attributes(location='b', expr=f'{left} {operator} {right}')}/>"
     if kind == "assign":
         variable = draw(st.sampled_from(sorted(VARIABLES)))
         return f"<assign{_attributes(location=variable, expr=draw(expressions(VARIABLES[variable], event)))}/>"

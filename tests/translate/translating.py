@@ -7,35 +7,38 @@ import os
 from collections.abc import Mapping
 
 from roaml import api
-from roaml.diagnostics import Diagnostic, Severity
+from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
-from roaml.lower import lower
 from roaml.project.settings import Settings
-from roaml.project.translation import program_of
 from roaml.scxml.model import Network
-from roaml.to_jani import translate
 
 FOLDER = os.path.abspath(os.sep + "model")
 
 
-def checked(files: Mapping[str, str], main: str = "main.xml") -> api.CheckResult:
+def loaded(files: Mapping[str, str], main: str = "main.xml") -> api.LoadedSystem:
+    """
+    Args:
+        files: name -> text.
+
+    Raises:
+        ModelError: the system has errors.
+    """
     texts = {os.path.join(FOLDER, name): text for name, text in files.items()}
-    return api.check([os.path.join(FOLDER, main)], settings=Settings(), texts=texts)
+    return api.load(os.path.join(FOLDER, main), settings=Settings(), texts=texts)
 
 
-def errors(result: api.CheckResult) -> list[Diagnostic]:
-    return [d for d in result.diagnostics if d.severity is Severity.ERROR]
+def errors(files: Mapping[str, str], main: str = "main.xml") -> tuple[Diagnostic, ...]:
+    """What keeps the system from being translated."""
+    try:
+        loaded(files, main)
+    except api.ModelError as error:
+        return error.result.diagnostics
+    return ()
 
 
 def lowered(files: Mapping[str, str], main: str = "main.xml") -> Network:
-    """
-    Raises:
-        AssertionError: the system has errors.
-    """
-    result = checked(files, main)
-    assert not errors(result), [f"{d.path}: {d.message}" for d in errors(result)]
-    return lower(program_of(result.snapshot.analysis, os.path.join(FOLDER, main)))
+    return api.to_scxml(loaded(files, main))
 
 
 def translated(files: Mapping[str, str], main: str = "main.xml") -> Model:
-    return translate(lowered(files, main))
+    return api.to_jani(loaded(files, main))

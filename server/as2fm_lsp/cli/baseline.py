@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.formats.report import Entry
-from as2fm_lsp.cli.output import write_file
+from as2fm_lsp.write import write_file
 
 VERSION = 1
 

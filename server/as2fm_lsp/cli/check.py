@@ -9,11 +9,13 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TextIO
 
 from as2fm_lsp.cli import baseline
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
-from as2fm_lsp.cli.output import print_text, write_file
+from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Severity
 from roaml.project.settings import SEVERITIES, ament_prefixes, find_settings
@@ -61,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
         except baseline.BaselineError as error:
             return _usage(str(error))
     strict = options.warnings_as_errors or settings.warnings_as_errors
-    color = options.output is None and _takes_color()
+    color = options.output is None and takes_color(sys.stdout)
     report = Report(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
     try:
         _write(options, report)
@@ -82,9 +84,9 @@ def _write(options: argparse.Namespace, report: Report) -> None:
         print_text(text, None if options.format == "text" else "utf-8")
 
 
-def _takes_color() -> bool:
+def takes_color(stream: TextIO) -> bool:
     """Whether a terminal reads what is written, and wants it colored (https://no-color.org)."""
-    return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def _statistics(entries: Sequence[Entry]) -> str:

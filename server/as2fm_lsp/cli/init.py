@@ -13,13 +13,11 @@ from pathlib import Path
 import as2fm_lsp
 from as2fm_lsp.cli.check import CLEAN, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import write_file
+from as2fm_lsp.write import write_file
 
 
 def run(arguments: Sequence[str]) -> int:
-    parser = argparse.ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
-    parser.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
-    folder = parser.parse_args(arguments).folder
+    folder = parser().parse_args(arguments).folder
     files = dict(template("delivery_robot"))
     for name in files:
         if os.path.exists(os.path.join(folder, name)):
@@ -37,6 +35,12 @@ def run(arguments: Sequence[str]) -> int:
         print(f"wrote {shown_path(os.path.join(folder, name))}")
     print(f"\nnext: as2fm-lsp --check {shlex.quote(os.path.join(folder, 'main.xml'))}")
     return CLEAN
+
+
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
+    result.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
+    return result
 
 
 def template(name: str) -> Iterator[tuple[str, str]]:

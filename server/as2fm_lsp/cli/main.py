@@ -25,6 +25,7 @@ examples:
   as2fm-lsp --explain late-event-data     what a rule means
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
+  as2fm-lsp translate main.xml            write main.jani; translate --help tells more
   as2fm-lsp                               language server on standard input and output
 
 exit status: 0 nothing found, 1 errors found, 2 wrong use, 3 a failure of the tool itself
@@ -64,6 +65,10 @@ def _dispatch(arguments: Sequence[str]) -> int:
         from as2fm_lsp.cli import migrate  # noqa: PLC0415
 
         return migrate.run(arguments[1:])
+    if command == "translate":
+        from as2fm_lsp.cli import translate  # noqa: PLC0415
+
+        return translate.run(arguments[1:])
     options = parser().parse_args(arguments)
     if options.explain is not None:
         from as2fm_lsp.cli import explain  # noqa: PLC0415

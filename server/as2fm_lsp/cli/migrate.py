@@ -12,13 +12,14 @@ from collections.abc import Sequence
 
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import print_text, write_file
+from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.project.migrate import Migration
 
 
 def run(arguments: Sequence[str]) -> int:
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     try:
         migrations = api.migrate(options.paths, options.ros_path)
     except api.PathError as error:
@@ -41,16 +42,16 @@ def run(arguments: Sequence[str]) -> int:
     return CLEAN
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(
         prog="as2fm-lsp migrate",
         description="Move systems of an older dialect to the current one, keeping comments and layout.",
         epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 wrong use",
     )
-    parser.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
-    parser.add_argument("--diff", action="store_true", help="show what would change and write nothing")
-    parser.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
-    return parser
+    result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
+    result.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
+    return result
 
 
 def _diff(migration: Migration) -> str:

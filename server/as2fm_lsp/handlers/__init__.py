@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from as2fm_lsp.handlers import code_action
+from as2fm_lsp.handlers import code_action, translate
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -13,5 +13,5 @@ if TYPE_CHECKING:
 
 def register(server: Server) -> None:
     """Make all features known to the server."""
-    for module in (code_action,):
+    for module in (code_action, translate):
         module.register(server)

@@ -182,6 +182,14 @@ def walk(expr: Expr) -> list[Expr]:
     return found
 
 
+def is_draw(expr: Expr) -> bool:
+    """Whether `expr` itself is a call of `Math.random`."""
+    match expr:
+        case Call(function=Member(object=Name(name="Math"), name="random")):
+            return True
+    return False
+
+
 def access_path(expr: Expr) -> tuple[str, ...] | None:
     """`a.b[0].c` as ("a", "b", "c"); None if `expr` is no chain of members and indexes that begins with a name."""
     names: list[str] = []

@@ -62,6 +62,7 @@ class _Writer:
     def model(self, model: Model) -> Iterator[str]:
         """The chunks; none begins or ends inside a token or between the brackets of an empty list."""
         declarations = self.declarations(model)
+        # Written first, because the features that they need stand before them.
         automata = [self.automaton(automaton) for automaton in model.automata]
         properties = _list(map(self.property, model.properties))
         yield f'{{"jani-version":1,"name":{quote(model.name)},"type":"{model.type.value}",'
@@ -69,7 +70,12 @@ class _Writer:
         if model.metadata is not None:
             yield f'"metadata":{_metadata(model.metadata)},'
         yield declarations
-        yield f',"automata":{_list(automata)},"system":'
+        yield ',"automata":'
+        if not automata:
+            yield "[]"
+        for number, automaton in enumerate(automata):
+            yield f",{automaton}" if number else f"[{automaton}"
+        yield '],"system":' if automata else ',"system":'
         yield from _system(model)
         yield f',"properties":{properties}}}'
 

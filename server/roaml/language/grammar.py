@@ -47,12 +47,21 @@ class SimpleType:
 
 @dataclass(frozen=True, slots=True)
 class PortType:
-    """A port of a tree node: "in" or "out", its base type or "any", whether it must be set, and what it holds else."""
+    """A port of a tree node.
+
+    Attributes:
+        direction: "in" or "out".
+        type: a base type or "any".
+        required: whether it must be set.
+        default: what it holds if it is not set.
+        constant: whether it must hold a constant.
+    """
 
     direction: str
     type: str
     required: bool
     default: str = ""
+    constant: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -393,4 +402,5 @@ def _number(text: str | None) -> float | None:
 
 
 def _port(role: Mapping[str, str]) -> PortType:
-    return PortType(role["direction"], role["type"], role.get("required") == "true", role.get("default", ""))
+    required, constant = (role.get(key) == "true" for key in ("required", "constant"))
+    return PortType(role["direction"], role["type"], required, role.get("default", ""), constant)

@@ -15,7 +15,7 @@ from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
-from roaml.scxml.model import Assign, Automaton, Branch, Data, If, Param, Role, Send, State, Statement
+from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, Send, State, Statement
 from roaml.text import Location
 
 GOAL_ID = "goal_id"
@@ -43,7 +43,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         (
             remember,
             *copied(feedback, sent("feedback"), origin),
-            _to_client(action, events.feedback_for, stored(feedback, origin), origin),
+            *_to_client(action, events.feedback_for, stored(feedback, origin), origin),
         ),
         origin,
     )
@@ -55,13 +55,13 @@ def action_handler(action: Channel, program: Program) -> Automaton:
             _store(CODE, origin),
             remember,
             *copied(result, sent("result"), origin),
-            _to_client(action, events.result_for, (code, *stored(result, origin)), origin),
+            *_to_client(action, events.result_for, (code, *stored(result, origin)), origin),
         ),
         origin,
     )
     decided = (
-        on(events.accepted, "waiting", (remember, _to_client(action, events.accept_for, (), origin)), origin),
-        on(events.rejected, "waiting", (remember, _to_client(action, events.reject_for, (), origin)), origin),
+        on(events.accepted, "waiting", (remember, *_to_client(action, events.accept_for, (), origin)), origin),
+        on(events.rejected, "waiting", (remember, *_to_client(action, events.reject_for, (), origin)), origin),
     )
     states = (
         State("waiting", (), (), (*requests, reported, finished), origin),
@@ -79,10 +79,11 @@ def _store(parameter: str, origin: Location) -> Statement:
 
 def _to_client(
     action: Channel, event: Callable[[SystemAutomaton], str], params: tuple[Param, ...], origin: Location
-) -> Statement:
-    """Sends the client with the remembered goal id the event that `event` names for it."""
+) -> Body:
+    """Sends the client with the remembered goal id the event that `event` names for it. (An action that nobody uses has
+    a handler, too.)"""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)
     )
-    return If(branches, (), origin)
+    return (If(branches, (), origin),) if branches else ()

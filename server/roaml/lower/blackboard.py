@@ -3,27 +3,18 @@
 
 from __future__ import annotations
 
-from roaml.expr.types import BASE_TYPES, Type
+from roaml.expr.types import BASE_TYPES
 from roaml.lower.build import default_value, event_data, name
-from roaml.lower.context import any_type
 from roaml.lower.machine import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.lower.program import Program
 from roaml.scxml.model import Assign, Automaton, Data, Param, Role, Send, State, Target, Transition
 from roaml.text import Location
 
 
-def variable_types(program: Program) -> dict[str, Type]:
-    """The blackboard variables and their types, as the ports that are bound to them have it."""
-    found: dict[str, Type] = {}
-    for variable, ports in program.system.blackboard.items():
-        definite = [BASE_TYPES[bound.port.type] for bound in ports if bound.port.type in BASE_TYPES]
-        found[variable] = definite[0] if definite else any_type(ports[0].automaton, program)
-    return found
-
-
 def blackboard(program: Program) -> Automaton | None:
     """None if the tree uses no variables."""
-    variables = variable_types(program)
+    system = program.system
+    variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:
         return None
     places = {variable: _place(program, variable) for variable in variables}

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from roaml.expr.operators import Operator
-from roaml.expr.tree import ArrayLiteral, Binary, Boolean, Expr, Index, Member, Name, Number, String
+from roaml.expr.tree import ArrayLiteral, Binary, Boolean, Call, Expr, Index, Member, Name, Number, String
 from roaml.expr.types import Array, Type, is_kind
 from roaml.lower.program import NOWHERE
 from roaml.text import Span
@@ -25,6 +25,10 @@ def integer(value: int, span: Span = NOWHERE) -> Number:
 def event_data(parameter: str, span: Span = NOWHERE) -> Expr:
     """`_event.data.<parameter>`: a parameter of the event that the transition waits for."""
     return Member(span, Member(span, Name(span, EVENT_DATA), "data", span), parameter, span)
+
+
+def random_number(span: Span = NOWHERE) -> Expr:
+    return Call(span, Member(span, Name(span, "Math"), "random", span), ())
 
 
 def length(array: Expr, span: Span = NOWHERE) -> Expr:

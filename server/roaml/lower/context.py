@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from roaml.expr.parse import parse
 from roaml.expr.tree import Boolean, Expr, String
-from roaml.expr.types import BASE_TYPES, STRING, UNKNOWN, Type, is_kind, resolve_type
+from roaml.expr.types import STRING, UNKNOWN, Type, is_kind, resolve_type
 from roaml.lower.data import as_type
 from roaml.lower.expressions import Scope
 from roaml.lower.program import Program
@@ -105,19 +105,3 @@ def literal(text: str, type_: Type, span: Span) -> Expr:
         return Boolean(span, text.strip() == "true")
     tree, _ = parse(Decoded(text, span.start))
     return as_type(tree, type_)
-
-
-def any_type(automaton: Automaton, program: Program) -> Type:
-    """The type of the ports that take any type, those of `Switch`.
-
-    It is that of the blackboard variables that they are bound to; string if there is none.
-    """
-    board = program.system.blackboard
-    bound = {
-        BASE_TYPES[other.port.type]
-        for port in automaton.outline.ports
-        if isinstance(value := automaton.port(port.key), Reference)
-        for other in board.get(value.variable, ())
-        if other.port.type in BASE_TYPES
-    }
-    return min(bound, key=str, default=STRING)

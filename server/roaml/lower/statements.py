@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
-from roaml.expr.tree import Expr
-from roaml.expr.types import BASE_TYPES, Struct, leaves, unwrap
-from roaml.lower.build import default_value, equal, event_data, integer, name
+from roaml.expr.infer import infer
+from roaml.expr.transform import map_children
+from roaml.expr.tree import Expr, is_draw, walk
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, leaves, unwrap
+from roaml.lower.build import default_value, equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
 from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
@@ -17,16 +20,21 @@ from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.typing import STATUSES, uses_random
+from roaml.model.typing import STATUSES
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
 from roaml.text import Location
 
-REAL = BASE_TYPES["float64"]
+INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
+
+MOST_DRAWS = 2
+"""Of random numbers in one assignment that are drawn at once, which makes 100 ways for the first, 10,000 for two."""
+
+TypedParam: TypeAlias = tuple[Param, Type]
 
 
 @dataclass(eq=False)
 class StatementLowering:
-    """Lowers the bodies of one automaton. `drawn` are variables for random numbers that are sent, made on the way."""
+    """Lowers the bodies of one automaton. `drawn` are variables for what is drawn at random, made on the way."""
 
     context: Context
     drawn: list[Data] = field(default_factory=list)
@@ -43,8 +51,8 @@ class StatementLowering:
                 yield self.choice(statement, scope, origin)
             case hl.Send():
                 assert statement.event is not None
-                params = [p for param in statement.params for p in self.params(param, "", scope)]
-                yield from self.send(statement.event.value, params, origin)
+                sent = [p for param in statement.params for p in self.params(param, "", scope)]
+                yield from self.send(statement.event.value, sent, origin)
             case Communicate():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
@@ -75,9 +83,26 @@ class StatementLowering:
             for path, _ in leaves(struct):
                 yield Assign(target.leaf(path), self.value(statement.value, scope), origin)
             return
-        values = self.values(statement.value, scope)
-        for path, value in values:
-            yield Assign(target.leaf(path), value, origin)
+        for path, value in self.values(statement.value, scope):
+            yield from self.store(target.leaf(path), value, origin)
+
+    def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
+        """An assignment. Many random numbers are drawn one after the other, and forgotten when they are used."""
+        if sum(map(is_draw, walk(value))) <= MOST_DRAWS:
+            yield Assign(location, value, origin)
+            return
+        drawn: list[Data] = []
+
+        def draw(expr: Expr) -> Expr:
+            if not is_draw(expr):
+                return map_children(expr, draw)
+            drawn.append(self.fresh(REAL, origin))
+            return name(drawn[-1].id)
+
+        used = draw(value)
+        yield from (Assign(name(data.id), random_number(), origin) for data in drawn)
+        yield Assign(location, used, origin)
+        yield from (Assign(name(data.id), data.value, origin) for data in drawn)
 
     def values(self, value: Value | None, scope: Scope) -> list[tuple[tuple[str, ...], Expr]]:
         if isinstance(value, Expression):
@@ -111,36 +136,45 @@ class StatementLowering:
 
     # ----------------------------------------------------------------- sending
 
-    def params(self, param: hl.Param, prefix: str, scope: Scope) -> Iterator[Param]:
+    def params(self, param: hl.Param, prefix: str, scope: Scope) -> Iterator[TypedParam]:
         assert param.name is not None
         origin = self.context.origin(param.element.span)
         identifier = prefix + param.name.value.replace(".", SEPARATOR)
+        types = self.types(param.value, scope)
         for path, value in self.values(param.value, scope):
-            yield Param(SEPARATOR.join((identifier, *path)), value, origin)
+            yield Param(SEPARATOR.join((identifier, *path)), value, origin), types.get(path, UNKNOWN)
 
-    def send(self, event: str, params: Iterable[Param], origin: Location) -> Iterator[Statement]:
-        """Random numbers are drawn before the event can be received (spec/07 1.13)."""
+    def types(self, value: Value | None, scope: Scope) -> dict[tuple[str, ...], Type]:
+        """The types of an expression's leaves."""
+        if not isinstance(value, Expression):
+            return {}
+        known = {**scope.variables, **scope.event}
+        return dict(leaves(infer(value.tree, known.get)[0]))
+
+    def send(self, event: str, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
+        """What is drawn at random is stored before the event can be received (spec/07 1.13)."""
         ready = []
-        for param in params:
+        for param, type_ in params:
             value = param.value
-            if uses_random(value):
-                drawn = Data(self._fresh_name(), REAL, default_value(REAL), param.origin)
-                self.drawn.append(drawn)
-                yield Assign(name(drawn.id), value, param.origin)
+            if any(map(is_draw, walk(value))):
+                drawn = self.fresh(type_, param.origin)
+                yield from self.store(name(drawn.id), value, param.origin)
                 value = name(drawn.id)
             ready.append(Param(param.name, value, param.origin))
         yield Send(event, tuple(ready), origin)
 
-    def _fresh_name(self) -> str:
+    def fresh(self, type_: Type, origin: Location) -> Data:
+        """A further variable of the automaton, for what is drawn at random."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
         while (found := f"random_{count}") in taken:
             count += 1
-        return found
+        self.drawn.append(Data(found, type_, default_value(type_), origin))
+        return self.drawn[-1]
 
     def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:
         fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
-        extra = self.arguments(statement, scope, origin)
+        extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
     def arguments(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Param]:
@@ -219,7 +253,8 @@ class StatementLowering:
         held = self.context.port(PortRead(statement.key, statement.element.span))
         assert isinstance(held, Reference)
         value = Param("value", lower_expr(statement.value.tree, scope), origin)
-        yield from self.send(f"bt_blackboard_set_{held.variable}", (value,), origin)
+        type_ = self.types(statement.value, scope).get((), UNKNOWN)
+        yield from self.send(f"bt_blackboard_set_{held.variable}", ((value, type_),), origin)
 
 
 def literal_index(child: Name) -> int | None:

@@ -181,9 +181,7 @@ def _calls(parent: Automaton, number: int) -> bool:
 
 
 def _blackboard(system: System) -> Iterator[_Event]:
-    variables: Mapping[str, Type] = {
-        name: BASE_TYPES.get(ports[0].port.type, INT) for name, ports in system.blackboard.items()
-    }
+    variables: Mapping[str, Type] = {name: BASE_TYPES[system.variable_type(name)] for name in system.blackboard}
     for name, ports in system.blackboard.items():
         if any(bound.port.written for bound in ports):
             yield f"bt_blackboard_set_{name}", None, [("value", variables[name])]

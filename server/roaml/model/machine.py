@@ -281,6 +281,25 @@ def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statemen
                 yield state, handler, target.body
 
 
+def executed_statements(chart: Chart) -> Iterator[Statement]:
+    """The statements that some transition executes. Those of `<onentry>` are left out where nothing leads to, those of
+    `<onexit>` where nothing leads away (spec/05: they become parts of the transitions)."""
+    handlers = [handler for state in chart.states for handler in state.handlers if handler.effective]
+    targets = {target.state.value for handler in handlers for target in handler.targets if target.state}
+    entered = {*targets, chart.initial.value if chart.initial else ""}
+    known = {state.id.value for state in chart.states if state.id}
+    misspelled = not entered <= known
+    for state, handler, body in bodies(chart):
+        if handler is not None:
+            runs = handler.effective
+        elif state.entry is not None and body is state.entry.statements:
+            runs = misspelled or (state.id is not None and state.id.value in entered)
+        else:
+            runs = any(handler.effective for handler in state.handlers)
+        if runs:
+            yield from statements(body)
+
+
 def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
     """All statements of a body, those inside `<if>` included, in document order."""
     for statement in body:

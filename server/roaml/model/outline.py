@@ -25,6 +25,7 @@ from roaml.model.machine import (
     SetOutput,
     Statement,
     all_statements,
+    executed_statements,
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.typing import TypedMachine, Use, find_handle
@@ -158,7 +159,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
                     tuple(SentField(p.name.value, types.get(p.element, UNKNOWN)) for p in statement.params if p.name),
                 )
                 for chart in machine.charts
-                for statement in all_statements(chart)
+                for statement in executed_statements(chart)
                 if isinstance(statement, Send) and statement.event
             )
         ),
@@ -183,13 +184,13 @@ def _handlers(machine: Machine) -> Iterator[Handler]:
                     yield handler
 
 
-def _statements(machine: Machine) -> Iterator[Statement]:
+def _executed(machine: Machine) -> Iterator[Statement]:
     for chart in machine.charts:
-        yield from all_statements(chart)
+        yield from executed_statements(chart)
 
 
 def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
-    users = [s for s in _statements(machine) if isinstance(s, Communicate)]
+    users = [s for chart in machine.charts for s in all_statements(chart) if isinstance(s, Communicate)]
     declarations = [find_handle(machine, user) for user in users]
     if any(
         d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)
@@ -203,7 +204,7 @@ def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
     values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
     values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
     read = {value.key.value for value in values if isinstance(value, PortRead) and value.key}
-    written = {s.key.value for s in _statements(machine) if isinstance(s, SetOutput) and s.key}
+    written = {s.key.value for s in _executed(machine) if isinstance(s, SetOutput) and s.key}
     return tuple(
         PortOutline(
             port.key.value,
@@ -221,7 +222,7 @@ def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[Interface
     sends: defaultdict[Element, set[str]] = defaultdict(set)
     receives: defaultdict[Element, set[str]] = defaultdict(set)
     fields: defaultdict[Element, dict[str, dict[str, Type]]] = defaultdict(dict)
-    for statement in _statements(machine):
+    for statement in _executed(machine):
         if isinstance(statement, Communicate) and (declaration := find_handle(machine, statement)):
             part = statement.type.sends
             sends[declaration.element].add(part)
@@ -281,7 +282,7 @@ def _port_key(value: Name | PortRead | None) -> str:
 
 def _plugin(machine: Machine) -> PluginOutline:
     triggers = {handler.trigger for handler in _handlers(machine)}
-    statements = list(_statements(machine))
+    statements = list(_executed(machine))
     calls = [statement for statement in statements if isinstance(statement, CallChild) and statement.child]
     indexes = [c.child.value for c in calls if c.child]
     literal = [int(index[:6]) for index in indexes if index.isascii() and index.isdigit()]

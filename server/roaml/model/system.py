@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import UNKNOWN, Struct, Type, join
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.expand import Constant, Instance, PortValue, Reference, Source
 from roaml.model.outline import (
@@ -31,6 +31,8 @@ from roaml.model.tree import EXPLICIT, SUBTREES
 CLOCK_TOPIC = "clock"
 CLOCK_TYPE = "builtin_interfaces/Time"
 CHILDREN_COUNT = "CHILDREN_COUNT"
+ANY_TYPE = "any"
+"""Stands where a port has a type, if the port takes any."""
 
 
 def sanitise(name: str) -> str:
@@ -271,6 +273,22 @@ class System:
                 if isinstance(value, Reference):
                     found.setdefault(value.variable, []).append(BoundPort(automaton, port))
         return {name: tuple(ports) for name, ports in found.items()}
+
+    def variable_type(self, variable: str) -> str:
+        """The name of a blackboard variable's type: that of the first port that has a definite one (spec/02 §3.5)."""
+        types = (bound.port.type for bound in self.blackboard.get(variable, ()))
+        return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
+
+    def any_type(self, automaton: Automaton) -> str:
+        """The name of the type that those ports of a node hold that take any, the ports of `Switch` (spec/02 §7.2).
+
+        It is that of the first blackboard variable that one of them is bound to; string if none is.
+        """
+        for port in automaton.outline.ports:
+            value = automaton.port(port.key)
+            if port.type == ANY_TYPE and isinstance(value, Reference):
+                return self.variable_type(value.variable)
+        return "string"
 
 
 # ---------------------------------------------------- nodes of BehaviorTree.CPP

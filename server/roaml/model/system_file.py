@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
@@ -82,6 +82,30 @@ class Parameters:
     tick_if_not_running: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """Parameters that replace those of a system file, where they are given; see `Parameters`."""
+
+    max_time: int | None = None
+    max_array_size: int | None = None
+
+    def applied(self, parameters: Parameters) -> Parameters:
+        max_time = parameters.max_time if self.max_time is None else self.max_time
+        size = parameters.max_array_size if self.max_array_size is None else self.max_array_size
+        return replace(parameters, max_time=max_time, max_array_size=size)
+
+
+NO_OVERRIDES = Overrides()
+
+
+def duration(text: str) -> int | None:
+    """Nanoseconds of a text such as `100 s` or `250ms`; None if it is none."""
+    number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
+    unit = text.strip().removeprefix(number)
+    value = _integer(number.strip())
+    return value * NANOSECONDS[unit] if value and unit in NANOSECONDS else None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SystemFile:
     """One system file. `older` tells that it has the older root (spec/08, dialect B)."""
@@ -92,7 +116,7 @@ class SystemFile:
     inputs: tuple[Input, ...]
 
 
-def build_system_file(document: Document) -> SystemFile | None:
+def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -> SystemFile | None:
     """The system file in `document`, or None if its root is not one."""
     root = document.root
     if root is None or root.name not in SYSTEM.roots:
@@ -104,7 +128,7 @@ def build_system_file(document: Document) -> SystemFile | None:
         for child in section.elements
         if child.name == "input"
     ]
-    return SystemFile(root, root.name == "convince_mc_tc", _parameters(root), tuple(inputs))
+    return SystemFile(root, root.name == "convince_mc_tc", overrides.applied(_parameters(root)), tuple(inputs))
 
 
 def _parameters(root: Element) -> Parameters:

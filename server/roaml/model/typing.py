@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from roaml.expr.infer import Problem, RandomUsed, infer
-from roaml.expr.tree import Call, Expr, Member, Name, Number, walk
+from roaml.expr.tree import Number, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_initial
@@ -399,14 +399,3 @@ def _leaf(part: Type, path: str) -> Type | None:
             return UNKNOWN if inner == UNKNOWN else None
         type_ = member
     return wrap(type_, bounds)
-
-
-def uses_random(expr: Expr) -> bool:
-    return any(
-        isinstance(node, Call)
-        and isinstance(node.function, Member)
-        and node.function.name == "random"
-        and isinstance(node.function.object, Name)
-        and node.function.object.name == "Math"
-        for node in walk(expr)
-    )

@@ -35,7 +35,15 @@ from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.system import System
-from roaml.model.system_file import Input, ListedFile, SystemFile, build_system_file, wanted_kind
+from roaml.model.system_file import (
+    NO_OVERRIDES,
+    Input,
+    ListedFile,
+    Overrides,
+    SystemFile,
+    build_system_file,
+    wanted_kind,
+)
 from roaml.model.tree import TreeFile, build_tree_file
 from roaml.model.typing import Environment, TypedMachine, type_machine
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
@@ -79,9 +87,18 @@ class Analysis:
         registry: where ROS types are looked up.
         memo: results of earlier moments.
         systems: the paths of the system files that count.
+        overrides: parameters in place of those that stand in system files.
     """
 
-    def __init__(self, files: Files, registry: Registry, memo: Memo, systems: Iterable[str]) -> None:
+    def __init__(
+        self,
+        files: Files,
+        registry: Registry,
+        memo: Memo,
+        systems: Iterable[str],
+        overrides: Overrides = NO_OVERRIDES,
+    ) -> None:
+        self.overrides = overrides
         self.files = files
         self.registry = registry
         self.memo = memo
@@ -128,7 +145,7 @@ class Analysis:
         return self._of_document("tree", path, build_tree_file)
 
     def system_file(self, path: str) -> SystemFile | None:
-        return self._of_document("system file", path, build_system_file)
+        return self._of_document("system file", path, lambda document: build_system_file(document, self.overrides))
 
     def struct_declarations(self, path: str) -> tuple[StructDeclaration, ...]:
         """The structs that a file declares, in XML or in JSON."""

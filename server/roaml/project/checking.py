@@ -82,6 +82,16 @@ class Checker:
         ]
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
 
+    def errors(self, system: str) -> tuple[Diagnostic, ...]:
+        """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting
+        and no comment makes a model translatable."""
+        return tuple(
+            self._diagnostic(path, finding, _own_severity(finding))
+            for path in self.analysis.files_of(system)
+            for finding in sorted(self.findings(path, system), key=lambda finding: finding.span)
+            if _own_severity(finding) is Severity.ERROR
+        )
+
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
         """What the rules find in a file, seen as a part of one system or alone."""
         source = self.analysis.source(path)
@@ -110,10 +120,9 @@ class Checker:
 
     def _publish(self, path: str, finding: Finding) -> Diagnostic:
         severity = self.settings.severities.get(finding.code)
-        if severity is None:
-            severity = finding.severity
-        if severity is None:
-            severity = BY_CODE[finding.code].severity if finding.code in BY_CODE else Severity.ERROR
+        return self._diagnostic(path, finding, _own_severity(finding) if severity is None else severity)
+
+    def _diagnostic(self, path: str, finding: Finding, severity: Severity) -> Diagnostic:
         related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
         return Diagnostic(
             path, finding.code, severity, finding.span, finding.message, finding.fixes, related, finding.tags
@@ -124,6 +133,12 @@ class Checker:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _own_severity(finding: Finding) -> Severity:
+    if finding.severity is not None:
+        return finding.severity
+    return BY_CODE[finding.code].severity if finding.code in BY_CODE else Severity.ERROR
 
 
 def _is_xml(kind: FileKind) -> bool:
@@ -228,11 +243,14 @@ class _Run:
         match self.kind:
             case FileKind.PROPERTIES:
                 _, findings = self.analysis.json(self.path) or (None, ())
-                return FileContext(self.source, findings or self.analysis.properties(self.path)[1])
+                broken = any(finding.code == "json-syntax" for finding in findings)
+                more = () if broken else self.analysis.properties(self.path)[1]
+                return FileContext(self.source, (*findings, *more))
             case FileKind.JSON_STRUCTS:
                 value, findings = self.analysis.json(self.path) or (None, ())
-                more = structs_in_json(value)[1] if value is not None and not findings else ()
-                return FileContext(self.source, (*findings, *more))
+                broken = any(finding.code == "json-syntax" for finding in findings)
+                problems = () if value is None or broken else structs_in_json(value)[1]
+                return FileContext(self.source, (*findings, *problems))
             case FileKind.JANI_MODEL:
                 _, findings = self.analysis.json(self.path) or (None, ())
                 return FileContext(self.source, findings)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
 
 if sys.version_info >= (3, 11):
@@ -35,6 +36,7 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    overrides: parameters in place of those in system files; not read from a configuration.
     """
 
     roots: tuple[str, ...] = ()
@@ -45,6 +47,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    overrides: Overrides = NO_OVERRIDES
 
 
 def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ...]:

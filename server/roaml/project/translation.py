@@ -3,15 +3,22 @@
 
 from __future__ import annotations
 
+from roaml.jani.properties import Property
 from roaml.lower import Program
 from roaml.model.expand import node_at
-from roaml.model.system_file import Parameters
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
 
-def program_of(analysis: Analysis, path: str, parameters: Parameters | None = None) -> Program:
-    """The system file at `path` with all that it names. `parameters` replace those of the file."""
+def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
+    """The properties in the files that a system lists, in their order."""
+    files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.PROPERTIES and f.usable)
+    return tuple(each for file in files for each in analysis.properties(file)[0])
+
+
+def program_of(analysis: Analysis, path: str) -> Program:
+    """The system file at `path`, which must have no errors, with all that it names."""
     system, file = analysis.system(path), analysis.system_file(path)
     assert system is not None
     assert file is not None
@@ -32,5 +39,5 @@ def program_of(analysis: Analysis, path: str, parameters: Parameters | None = No
         analysis.environment(path),
         Location(path, file.element.name_span),
         nodes,
-        parameters or system.parameters,
+        system.parameters,
     )

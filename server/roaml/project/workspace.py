@@ -102,7 +102,8 @@ class Workspace:
             self._listed = tuple(candidates(self.roots, self.settings.exclude))
         new = [path for path in self._open if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
-        analysis = Analysis(files, self._registry.reading(files.text), self._memo, systems)
+        registry = self._registry.reading(files.text)
+        analysis = Analysis(files, registry, self._memo, systems, self.settings.overrides)
         return Snapshot(analysis, Checker(analysis, self.settings), self._listed)
 
     def _new_registry(self) -> Registry:

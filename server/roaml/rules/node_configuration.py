@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import constant
+from roaml.expr.parse import parse
 from roaml.model.expand import Constant, Reference
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.instances import instances
 from roaml.rules.rule import Rule, TreeContext
-
-WHOLE = re.compile(r"\s*([+-]?\d{1,12})(\.0*)?\s*\Z", re.ASCII)
-ANSWER = ("BlackboardCheckInt", "return_on_mismatch")
+from roaml.text import Decoded
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -25,19 +24,17 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if reason:
             yield _finding(node, key, reason)
     for node, automaton in instances(context):
-        if isinstance(automaton.port(ANSWER[1]), Reference) and _is(node, ANSWER[0]):
-            yield _finding(node, ANSWER[1], f"`{ANSWER[1]}` is a constant: 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING)")
+        for attribute in node.type.ports if node.type else ():
+            value = automaton.port(attribute.name)
+            if attribute.port and attribute.port.constant and isinstance(value, Reference):
+                reason = f"`{attribute.name}` is read once, at the start: it is a constant, no blackboard variable"
+                yield _finding(node, attribute.name, reason)
 
 
 def _finding(node: TreeNode, key: str, reason: str) -> Finding:
     setting = node.element.get(key)
     assert node.plugin is not None
     return RULE.at(setting.value_span if setting else node.plugin.span, reason)
-
-
-def _is(node: TreeNode, name: str) -> bool:
-    """Whether a node is the one of BehaviorTree.CPP that is called so."""
-    return node.type is not None and node.plugin is not None and node.plugin.value == name
 
 
 def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
@@ -65,16 +62,20 @@ def _reason(node: TreeNode, key: str, number: int, *, in_system: bool) -> str:
                 return f"a threshold lies between 1 and the number of children, here {count}; this is {number}"
         case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
             return f"`{key}` is -1 (for ever), 0 or more; this is {number}"
-        case name if name == ANSWER and number not in (1, 2, 3):
+        case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):
             return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}"
-        case ("ParallelAll", "max_failures") if number < -1:
-            return f"`max_failures` is -1 (all), 0 or more; this is {number}"
+        case ("ParallelAll", "max_failures") if number > count > 0:
+            return f"`max_failures` is at most the number of children, here {count}; this is {number}"
     return ""
 
 
 def _number(text: str) -> int | None:
-    match = WHOLE.match(text)
-    return int(match[1]) if match else None
+    """The integer that a constant stands for, if it is one."""
+    tree, findings = parse(Decoded(text.strip(), 0))
+    value = None if findings else constant(tree)
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else None
+    return value
 
 
 RULE = Rule("node-configuration", Severity.ERROR, "A node is set up so that it can never answer.", tree=check)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
@@ -13,6 +13,7 @@ from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, fits, is_kind, is_number
 from roaml.model.expand import Constant
 from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.system import ANY_TYPE
 from roaml.model.tree import PortModel, PortSetting, TreeNode, is_variable_name, looks_like_reference, nodes
 from roaml.rules.instances import instances
 from roaml.rules.rule import Rule, TreeContext, did_you_mean
@@ -43,6 +44,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if plugin is not None and model.kind != "SubTree":
                 yield from _default(port, plugin, path)
     yield from _given_by_subtrees(context)
+    yield from _of_any_type(context)
 
 
 def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
@@ -101,6 +103,28 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
             if problem is not None:
                 message = f"the subtree is given `{value.text}` for `{setting.variable}`, but {problem.message}"
                 yield RULE.at(setting.value.span, message, severity=problem.severity)
+
+
+def _of_any_type(context: TreeContext) -> Iterator[Finding]:
+    """What a `Switch` compares is of one type, that of the first variable in it (spec/02 §7.2)."""
+    for node, automaton in instances(context):
+        assert context.system is not None
+        wanted = context.system.any_type(automaton)
+        for port in automaton.outline.ports:
+            value = automaton.port(port.key)
+            if port.type != ANY_TYPE or value is None:
+                continue
+            setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
+            assert setting is not None
+            if isinstance(value, Constant):
+                problem = problem_of(value.text.strip(), replace(port, type=wanted))
+                if problem is not None and not looks_like_reference(value.text):
+                    yield RULE.at(setting.span, problem.message, severity=problem.severity)
+                continue
+            given = context.system.variable_type(value.variable)
+            if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
+                message = f"`{port.key}` is compared with values of type `{wanted}`; `{value.variable}` is `{given}`"
+                yield RULE.at(setting.span, message)
 
 
 @dataclass(frozen=True, slots=True)

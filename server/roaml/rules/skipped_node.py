@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.tree import nodes
+from roaml.model.tree import blackboard_variable, nodes
 from roaml.rules.rule import Rule, TreeContext
 
 
@@ -17,8 +17,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for node in nodes(tree):
             if node.plugin is not None and node.plugin.value == "RunOnce":
                 skip = node.element.get("then_skip")
-                if skip is None or skip.value.strip() == "true":
-                    message = "after its first run the node counts as SUCCESS here; BehaviorTree.CPP skips it"
+                variable = blackboard_variable(skip.value) if skip else None
+                if skip is None or variable is not None or skip.value.strip() == "true":
+                    when = f" if `{variable}` is true" if variable else ""
+                    message = f"after its first run the node counts as SUCCESS here{when}; BehaviorTree.CPP skips it"
                     yield RULE.at(node.plugin.span, message)
 
 

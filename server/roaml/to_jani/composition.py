@@ -51,16 +51,17 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
         buffers: event -> index of its automaton.
     """
     waited_for = {name: index for name, index in buffers.items() if table[name].receivers}
+    # Made once: every timer waits for all of them.
+    calm = {name: (index, CLOCK_ENABLE) for name, index in waited_for.items()}
     syncs: list[Sync] = []
     for event in table.values():
         if event.name == CLOCK_STEP:
-            calm = [(i, CLOCK_ENABLE) for name, i in waited_for.items() if name != BLACKBOARD_REQUEST]
-            syncs += [_sync(CLOCK_ACTION, [(clock, CLOCK_ACTION), *calm]) for clock in event.receivers]
+            others = [each for name, each in calm.items() if name != BLACKBOARD_REQUEST]
+            syncs += [_sync(CLOCK_ACTION, [(clock, CLOCK_ACTION), *others]) for clock in event.receivers]
         elif is_timer(event.name):
-            calm = [(i, CLOCK_ENABLE) for i in waited_for.values()]
             ticked = [(i, on_receive(event.name)) for i in event.receivers]
             for clock in event.senders:
-                syncs.append(_sync(on_receive(event.name), [(clock, on_send(event.name)), *ticked, *calm]))
+                syncs.append(_sync(on_receive(event.name), [(clock, on_send(event.name)), *ticked, *calm.values()]))
         elif event.name in buffers:
             syncs += _communication(event, buffers)
     known = {action for event in table.values() for action in (on_send(event.name), on_receive(event.name))}

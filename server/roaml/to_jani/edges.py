@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from roaml.expr.transform import map_children
-from roaml.expr.tree import Call, Expr, Member, Number, children
+from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
@@ -257,16 +257,12 @@ def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Ex
 # --------------------------------------------------------------- random numbers
 
 
-def _is_draw(expr: Expr) -> bool:
-    return isinstance(expr, Call) and isinstance(expr.function, Member) and expr.function.name == "random"
-
-
 def _count_draws(expr: Expr) -> int:
-    return 1 if _is_draw(expr) else sum(map(_count_draws, children(expr)))
+    return sum(map(is_draw, walk(expr)))
 
 
 def _with_numbers(expr: Expr, numbers: Iterator[int]) -> Expr:
     """`expr` with each `Math.random()` replaced by the next number, in hundredths."""
-    if _is_draw(expr):
+    if is_draw(expr):
         return Number(expr.span, next(numbers) / DRAWS, True)
     return map_children(expr, lambda part: _with_numbers(part, numbers))

@@ -12,9 +12,10 @@ from roaml.views.graph import Graph, Kind, Node
 
 @dataclass(frozen=True, slots=True)
 class Notation:
-    """A language of diagrams: its name, the extension of its files, and how to write it."""
+    """A language of diagrams: its name for programs and for people, the extension of its files, how to write it."""
 
     name: str
+    title: str
     extension: str
     render: Callable[[Graph], str]
 
@@ -127,8 +128,8 @@ def _lines(lines: Iterable[str]) -> str:
 NOTATIONS = {
     notation.name: notation
     for notation in (
-        Notation("dot", "dot", dot),
-        Notation("mermaid", "mmd", mermaid),
-        Notation("plantuml", "puml", plantuml),
+        Notation("dot", "Graphviz DOT", "dot", dot),
+        Notation("mermaid", "Mermaid", "mmd", mermaid),
+        Notation("plantuml", "PlantUML", "puml", plantuml),
     )
 }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 SPACE = " \t\r\n"
@@ -12,18 +13,41 @@ _START = (
     "\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
 _LOCAL_NAME = f"[{_START}][{_START}.0-9\u00b7\u0300-\u036f\u203f\u2040-]*"
-_ASCII_LOCAL_NAME = "[A-Z_a-z][A-Z_a-z.0-9-]*"
-NAME = f"{_LOCAL_NAME}(?::{_LOCAL_NAME})?"
-"""A pattern: a name, with or without a prefix. It takes many milliseconds to compile."""
+
+
+_ASCII_LOCAL_NAME = r"[A-Za-z_][A-Za-z_.0-9-]*"
 ASCII_NAME = f"{_ASCII_LOCAL_NAME}(?::{_ASCII_LOCAL_NAME})?"
-"""The same for names in ASCII, quick to compile."""
+"""A pattern: a name of ASCII characters, with or without a prefix. Unlike one for Unicode it is compiled at once."""
+
+
+class _Pattern:
+    """Tries ASCII first. The pattern for all of Unicode is compiled when first needed: most models do without, and
+    every start of the tool would pay for it."""
+
+    def __init__(self, form: str) -> None:
+        self._ascii = re.compile(form.format(_ASCII_LOCAL_NAME))
+        self._all = functools.cache(lambda: re.compile(form.format(_LOCAL_NAME)))
+
+    def match(self, text: str) -> re.Match[str] | None:
+        return self._ascii.match(text) or (None if text.isascii() else self._all().match(text))
+
+
+_NAME = _Pattern(r"{0}(?::{0})?\Z")
+_LOCAL = _Pattern(r"{0}\Z")
+_LEADING = _Pattern(rf"{{0}}(?=[{SPACE}]|\Z)")
 
 
 def is_name(text: str) -> bool:
     """Whether `text` is a name, with or without a prefix."""
-    return all(map(is_local_name, text.split(":", 1)))
+    return _NAME.match(text) is not None
 
 
 def is_local_name(text: str) -> bool:
     """Whether `text` is a name without prefix."""
-    return re.fullmatch(_ASCII_LOCAL_NAME if text.isascii() else _LOCAL_NAME, text) is not None
+    return _LOCAL.match(text) is not None
+
+
+def leading_local_name(text: str) -> str:
+    """The name without prefix, up to white space, that `text` begins with; "" if there is none."""
+    match = _LEADING.match(text)
+    return match[0] if match else ""

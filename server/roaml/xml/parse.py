@@ -11,14 +11,13 @@
 from __future__ import annotations
 
 import codecs
-import functools
 import re
 from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
 from roaml.text import Span, TextEdit
 from roaml.xml.escapes import PREDEFINED, REFERENCE, is_character, unescape
-from roaml.xml.names import ASCII_NAME, NAME, SPACE, is_local_name, is_name
+from roaml.xml.names import ASCII_NAME, SPACE, is_name, leading_local_name
 from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 MAX_DEPTH = 100
@@ -29,20 +28,11 @@ MAX_FINDINGS = 100
 
 _MAX_SKIPPED_DEPTH = 10_000
 
+# A tag without mistakes, in ASCII names. (Others take the way of all other tags, which is slower.)
 _SPACE = f"[{SPACE}]"
-
-
-def _sound_tag(name: str) -> re.Pattern[str]:
-    """A start tag without mistakes, whose names match the pattern `name`."""
-    return re.compile(f"<({name})((?:{_SPACE}+{name}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>")
-
-
-@functools.cache
-def _sound_tag_in_any_script() -> re.Pattern[str]:
-    return _sound_tag(NAME)
-
-
-_SOUND_TAG = _sound_tag(ASCII_NAME)
+_SOUND_TAG = re.compile(
+    f"<({ASCII_NAME})((?:{_SPACE}+{ASCII_NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>"
+)
 _SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
 # Any other tag: what was meant for a name, for white space, for a value.
@@ -81,7 +71,6 @@ def parse(text: str) -> Document:
 class _Parser:
     def __init__(self, text: str) -> None:
         self.text = text
-        self.is_ascii = text.isascii()
         self.findings: list[Finding] = []
         self.nodes: list[Node] = []
         self.stack: list[Element] = []
@@ -128,10 +117,7 @@ class _Parser:
                 return self.document_type(at)
         elif following == "?":
             return self.instruction(at)
-        sound = _SOUND_TAG.match(text, at)
-        if sound is None and not self.is_ascii:
-            sound = _sound_tag_in_any_script().match(text, at)
-        if sound is not None:
+        if sound := _SOUND_TAG.match(text, at):
             return self.sound_tag(sound)
         match = _TAG_OPEN.match(text, at)
         if match is None:
@@ -545,8 +531,8 @@ class _Parser:
 
     def check_instruction(self, span: Span) -> None:
         content = self.text[span.start + 2 : span.end - 2]
-        name = re.split(_SPACE, content, maxsplit=1)[0]
-        if not is_local_name(name):
+        name = leading_local_name(content)
+        if not name:
             self.report(span, "a processing instruction begins with a name")
         elif name == "xml" and span.start > 0:
             self.report(span, "the XML declaration must be the very first thing in the file")

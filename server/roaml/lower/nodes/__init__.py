@@ -12,7 +12,6 @@ import importlib.resources
 from fractions import Fraction
 
 from roaml.language import BEHAVIOR_TREE
-from roaml.lower.context import any_type
 from roaml.lower.nodes.switch import switch
 from roaml.lower.program import Program
 from roaml.model.build_machine import build_machine
@@ -20,7 +19,8 @@ from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT, Automaton
 from roaml.xml import parse
 
-_ALIASES = {"SequenceStar": "SequenceWithMemory"}
+_ALIASES = {"RetryUntilSuccesful": "RetryUntilSuccessful", "SequenceStar": "SequenceWithMemory"}
+"""Names of version 3."""
 _SWITCHES = {f"Switch{cases}": cases for cases in range(2, 7)}
 _MILLISECONDS_PER_SECOND = 1000
 
@@ -29,9 +29,11 @@ def builtin_machine(automaton: Automaton, program: Program) -> Machine:
     """The machine that a node of BehaviorTree.CPP is translated as."""
     name = automaton.outline.name
     if name in _SWITCHES:
-        return _parsed(switch(name, _SWITCHES[name], str(any_type(automaton, program))))
-    slots = str(_children(automaton) + 1)
-    return _parsed(_resource(_ALIASES.get(name, name)).replace("SLOTS", slots))
+        return _parsed(switch(name, _SWITCHES[name], program.system.any_type(automaton)))
+    slots = _children(automaton) + 1
+    none_ended = f"[{', '.join(['false'] * slots)}]"
+    text = _resource(_ALIASES.get(name, name))
+    return _parsed(text.replace("SLOTS", str(slots)).replace("NONE_ENDED", none_ended))
 
 
 def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:

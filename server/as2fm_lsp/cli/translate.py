@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp translate MAIN.xml`: a system as plain SCXML and JANI."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
+from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
+from as2fm_lsp.write import write_file
+from roaml import api
+from roaml.jani.model import Model
+from roaml.jani.writer import write as jani_text
+from roaml.model.system_file import Overrides, duration
+from roaml.project.settings import ament_prefixes, find_settings
+from roaml.scxml.model import Network
+from roaml.scxml.writer import write as scxml_texts
+from roaml.views import NOTATIONS, Notation, machine_graph, network_graph, tree_graph
+
+STANDARD_OUTPUT = "-"
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp translate main.xml                       write main.jani beside main.xml
+  as2fm-lsp translate main.xml -o - --indent 2 | less
+  as2fm-lsp translate main.xml --property tree_success --max-time "20 s"
+  as2fm-lsp translate main.xml --scxml-dir scxml --map main.map.json --dot diagrams
+
+exit status: 0 translated, 1 the system has errors and nothing was written, 2 wrong use, 3 a failure of the tool itself
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    options = parser().parse_args(arguments)
+    overrides = Overrides(options.max_time, options.max_array_size)
+    output = options.output or jani_path(options.main)
+    settings, problems = find_settings(os.path.abspath(options.main))
+    if problems:
+        return _fail(problems[0])
+    settings = replace(settings, ament_prefixes=ament_prefixes())
+    if output == STANDARD_OUTPUT and options.map == STANDARD_OUTPUT:
+        return _fail("the model and the map cannot both go to standard output")
+    with Progress() as progress:
+        try:
+            progress.stage("reading")
+            system = api.load(options.main, options.ros_path, settings, overrides=overrides)
+            for path in (output, options.map):
+                if path is not None:
+                    keep_off(path, system)
+            progress.stage("translating")
+            network = api.to_scxml(system)
+            model = api.to_jani(system, options.property or None)
+            progress.stage("writing")
+            _write(options, output, system, network, model)
+        except (api.PathError, api.PropertyError, OutputError) as error:
+            return _fail(str(error))
+        except api.ModelError as error:
+            failure: api.ModelError | None = error
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            return _fail(f"{shown_path(error.filename or output)}: {error.strerror or error}")
+        else:
+            failure = None
+    if failure is not None:
+        _report(options.format, failure.result, output)
+        return FOUND
+    if options.format == "json" and STANDARD_OUTPUT not in (output, options.map):
+        print("[]")
+    elif output != STANDARD_OUTPUT:
+        told = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
+        print_text(f"{shown_path(output)}: {summary(model)}\n", stream=told)
+    return CLEAN
+
+
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(
+        prog="as2fm-lsp translate",
+        description="Translate a system to JANI, and to plain SCXML on request.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    result.add_argument("main", metavar="MAIN.xml", help="the system file")
+    result.add_argument(
+        "-o", "--output", metavar="FILE", help="the JANI file; MAIN.jani if not given, - for standard output"
+    )
+    result.add_argument("--indent", type=_count, metavar="N", help="lay the JANI file out for people")
+    result.add_argument("--map", metavar="FILE", help="write where every automaton, edge and variable comes from")
+    result.add_argument("--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton")
+    for notation in NOTATIONS.values():
+        help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
+        result.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
+    result.add_argument(
+        "--property", action="append", default=[], metavar="NAME", help="put only this property into the JANI file"
+    )
+    result.add_argument("--max-array-size", type=_size, metavar="N", help="in place of that in MAIN.xml")
+    result.add_argument("--max-time", type=_time, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
+    result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
+    result.add_argument("--format", default="text", choices=("text", "json"), help="how errors are written")
+    return result
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if not 0 <= value <= 16:
+        raise argparse.ArgumentTypeError("a number of spaces from 0 to 16 is expected")
+    return value
+
+
+def _size(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("an array has room for at least one element")
+    return value
+
+
+def _time(text: str) -> int:
+    value = duration(text)
+    if value is None:
+        raise argparse.ArgumentTypeError("a time is written as a whole number and s, ms, us or ns, such as '100 s'")
+    return value
+
+
+def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, network: Network, model: Model) -> None:
+    """Write what was asked for; the JANI file comes last, so that a failure leaves it as it was."""
+    if options.scxml_dir is not None:
+        _write_folder(options.scxml_dir, ((f"{name}.scxml", text) for name, text in scxml_texts(network)))
+    for notation in NOTATIONS.values():
+        folder = getattr(options, notation.name)
+        if folder is not None:
+            _write_folder(folder, _diagrams(system, model, notation))
+    if options.map is not None:
+        text = json.dumps(api.source_map(system, model), ensure_ascii=False, indent=1) + "\n"
+        _write_text(options.map, [text])
+    _write_text(output, (*jani_text(model, options.indent), "\n"))
+
+
+def _diagrams(system: api.LoadedSystem, model: Model, notation: Notation) -> Iterator[tuple[str, str]]:
+    """File name and text of each diagram."""
+    linked = system.analysis.system(system.path)
+    assert linked is not None
+    for path, outline in (*linked.nodes, *linked.plugins):
+        machine = system.analysis.machine(path)
+        assert machine is not None
+        for number, graph in enumerate(machine_graph(machine)):
+            suffix = f"-{number}" if number else ""
+            yield f"machine-{outline.name}{suffix}.{notation.extension}", notation.render(graph)
+    if linked.instances:
+        yield f"tree.{notation.extension}", notation.render(tree_graph(linked))
+    title = os.path.basename(system.path)
+    yield f"network.{notation.extension}", notation.render(network_graph(model, title))
+
+
+def _write_folder(folder: str, files: Iterable[tuple[str, str]]) -> None:
+    os.makedirs(folder, exist_ok=True)
+    for name, text in files:
+        write_file(os.path.join(folder, name), text)
+
+
+def _write_text(path: str, chunks: Iterable[str]) -> None:
+    if path != STANDARD_OUTPUT:
+        write_file(path, chunks)
+        return
+    for chunk in chunks:
+        print_text(chunk, encoding="utf-8")
+
+
+def _report(format_: str, result: api.CheckResult, output: str) -> None:
+    """The errors, as `--check` writes them: for people where they look, for programs on standard output."""
+    entries = [entry(diagnostic, result.source, shown_path) for diagnostic in result.diagnostics]
+    report = Report(entries, len(result.files), color=takes_color(sys.stderr))
+    if format_ == "json":
+        print_text(FORMATS["json"](report), "utf-8")
+    else:
+        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print(f"as2fm-lsp: {shown_path(output)} was not written", file=sys.stderr)
+
+
+def _fail(message: str) -> int:
+    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    return USAGE

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the command line and the server do alike when they translate a system."""
+
+from __future__ import annotations
+
+import os
+
+from roaml import api
+from roaml.jani.model import Model
+
+
+class OutputError(ValueError):
+    """The file to be written belongs to the system; the message says so."""
+
+
+def jani_path(system: str) -> str:
+    """Where the JANI file of a system goes, if nothing else is said: beside the system file."""
+    return os.path.splitext(system)[0] + ".jani"
+
+
+def keep_off(path: str, system: api.LoadedSystem) -> None:
+    """
+    Raises:
+        OutputError: `path` is one of the files that the system is made of.
+    """
+    if os.path.realpath(path) in {os.path.realpath(file) for file in system.files}:
+        raise OutputError(f"{path} belongs to the system; the translation must go to another file")
+
+
+def summary(model: Model) -> str:
+    """The size of a model in words."""
+    edges = sum(len(automaton.edges) for automaton in model.automata)
+    counts = (
+        (len(model.automata), "automaton", "automata"),
+        (edges, "edge", "edges"),
+        (len(model.variables), "global variable", "global variables"),
+        (len(model.properties), "property", "properties"),
+    )
+    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From the parts of a JANI model back to the lines that they exist for."""
+
+from __future__ import annotations
+
+import os
+from typing import TypedDict
+
+from roaml.jani.model import Model, Variable
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+
+class Place(TypedDict):
+    """A place in a file: `file` relative to the system file's folder with `/`, line and column from 1, the column in
+    code points."""
+
+    file: str
+    line: int
+    column: int
+
+
+class VariablePlace(Place):
+    name: str
+
+
+class EdgePlace(Place):
+    """An edge; `action` is null where JANI has none."""
+
+    location: str
+    action: str | None
+
+
+class AutomatonPlaces(Place):
+    """An automaton with what is in it, in the order of the JANI file."""
+
+    name: str
+    variables: list[VariablePlace]
+    edges: list[EdgePlace]
+
+
+class SourceMap(TypedDict):
+    """All global variables and all automata, in the order of the JANI file."""
+
+    version: int
+    system: str
+    variables: list[VariablePlace]
+    automata: list[AutomatonPlaces]
+
+
+def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
+    """Where everything in a translated model comes from.
+
+    Args:
+        model: as translated from the system, every part with its origin.
+        analysis: what it was translated from.
+        system: path of the system file.
+    """
+    folder = os.path.dirname(system)
+
+    def place(origin: Location | None) -> Place:
+        assert origin is not None
+        source = analysis.source(origin.path)
+        assert source is not None
+        start = source.lines.position(origin.span.start)
+        file = os.path.relpath(origin.path, folder).replace(os.sep, "/")
+        return {"file": file, "line": start.line + 1, "column": start.column + 1}
+
+    def variables(found: tuple[Variable, ...]) -> list[VariablePlace]:
+        return [{"name": variable.name, **place(variable.origin)} for variable in found]
+
+    automata: list[AutomatonPlaces] = [
+        {
+            "name": automaton.name,
+            **place(automaton.origin),
+            "variables": variables(automaton.variables),
+            "edges": [
+                {"location": edge.source, "action": edge.action, **place(edge.origin)} for edge in automaton.edges
+            ],
+        }
+        for automaton in model.automata
+    ]
+    return {
+        "version": 1,
+        "system": os.path.basename(system),
+        "variables": variables(model.variables),
+        "automata": automata,
+    }

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""jani-type: see jani_type.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.types import Scalar, Type, unwrap
+from roaml.jani.infer import Scope
+from roaml.jani.notes import TYPE
+from roaml.jani.typecheck import check_property
+from roaml.jani.types import BOOL, INT, REAL, ArrayType, UnknownType
+from roaml.jani.types import Type as JaniType
+from roaml.rules.rule import PropertiesContext, Rule
+
+
+def check(context: PropertiesContext) -> Iterator[Finding]:
+    if context.system is None or not context.system.complete or context.variables is None:
+        return
+    scope = Scope({variable.name: _jani_type(variable.type) for variable in context.variables.values()})
+    for property_ in context.properties:
+        yield from (finding for finding in check_property(property_, scope) if finding.code == TYPE)
+
+
+_KINDS = {"bool": BOOL, "int": INT, "real": REAL}
+
+
+def _jani_type(type_: Type) -> JaniType:
+    element, bounds = unwrap(type_)
+    found: JaniType = _KINDS.get(element.kind, UnknownType()) if isinstance(element, Scalar) else UnknownType()
+    for _ in bounds:
+        found = ArrayType(found)
+    return found
+
+
+RULE = Rule(
+    TYPE,
+    Severity.ERROR,
+    "In a property, an operator stands between values that it is not made for.",
+    properties=check,
+)

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp translate MAIN.xml`"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from command import Command
+from lxml import etree
+
+import as2fm_lsp.cli.progress
+import as2fm_lsp.cli.translate
+from roaml.jani.reader import read_model
+from roaml.json import parse
+from roaml.language.resources import schema_path
+
+SCXML = "{http://www.w3.org/2005/07/scxml}"
+
+
+@pytest.fixture
+def robot(command: Command, tmp_path: Path) -> Path:
+    """A small system, the working directory of the command."""
+    command("init", ".")
+    return tmp_path
+
+
+def test_writes_beside_the_system_file(command: Command, robot: Path) -> None:
+    done = command("translate", "main.xml")
+    assert (done.status, done.err) == (0, "")
+    text = (robot / "main.jani").read_text(encoding="utf-8")
+    value, findings = parse(text)
+    model, notes = read_model(value)
+    assert (findings, notes) == ((), ())
+    assert model is not None
+    edges = sum(len(automaton.edges) for automaton in model.automata)
+    assert done.out == (
+        f"main.jani: {len(model.automata)} automata, {edges} edges, {len(model.variables)} global variables, "
+        f"{len(model.properties)} properties\n"
+    )
+    assert text.count("\n") == 1
+
+
+def test_standard_output(command: Command, robot: Path) -> None:
+    command("translate", "main.xml")
+    done = command("translate", "main.xml", "-o", "-")
+    assert (done.status, done.err) == (0, "")
+    assert done.out == (robot / "main.jani").read_text(encoding="utf-8")
+
+
+def test_layout_for_people(command: Command, robot: Path) -> None:
+    compact = command("translate", "main.xml", "-o", "-").out
+    wide = command("translate", "main.xml", "-o", "-", "--indent", "2").out
+    assert json.loads(wide) == json.loads(compact)
+    assert wide.splitlines()[:2] == ["{", '  "jani-version": 1,']
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_errors_are_those_of_the_check(command: Command, robot: Path, form: str) -> None:
+    battery = robot / "nodes" / "battery.ascxml"
+    battery.write_text(battery.read_text().replace('location="level"', 'location="lewel"'))
+    (robot / "main.jani").write_text("mine")
+    checked = command("--check", "main.xml", "--format", form, "--severity", "error")
+    done = command("translate", "main.xml", "--format", form, "--scxml-dir", "scxml", "--map", "map.json")
+    assert done.status == 1
+    if form == "json":
+        assert (done.out, done.err) == (checked.out, "")
+        assert done.codes == ["undeclared-variable"] * 2
+    else:
+        assert (done.out, done.err) == ("", f"{checked.out}as2fm-lsp: main.jani was not written\n")
+    assert (robot / "main.jani").read_text() == "mine"
+    assert not (robot / "scxml").exists()
+    assert not (robot / "map.json").exists()
+
+
+def test_what_is_kept_quiet_is_an_error_still(command: Command, robot: Path) -> None:
+    battery = robot / "nodes" / "battery.ascxml"
+    battery.write_text(battery.read_text().replace('location="level"', 'location="lewel"'))
+    (robot / "as2fm.toml").write_text('ignore = ["undeclared-variable"]')
+    assert command("--check", "main.xml").status == 0
+    done = command("translate", "main.xml", "--format", "json")
+    assert (done.status, set(done.codes)) == (1, {"undeclared-variable"})
+
+
+def test_warnings_do_not_matter(command: Command, robot: Path) -> None:
+    main = robot / "main.xml"
+    main.write_text(main.read_text().replace("roaml>", "convince_mc_tc>").replace("parameters>", "mc_parameters>"))
+    (robot / "as2fm.toml").write_text('severity = { deprecated-spelling = "error" }')
+    assert command("--check", "main.xml").status == 1
+    assert command("translate", "main.xml").status == 0
+
+
+def test_properties_by_name(command: Command, robot: Path) -> None:
+    names = [p["name"] for p in json.loads(command("translate", "main.xml", "-o", "-").out)["properties"]]
+    assert len(names) == 2
+    one = json.loads(command("translate", "main.xml", "-o", "-", "--property", names[1]).out)
+    assert [p["name"] for p in one["properties"]] == names[1:]
+    done = command("translate", "main.xml", "--property", "none_such")
+    assert (done.status, done.out) == (2, "")
+    assert f"there is no property none_such; the system has: {', '.join(names)}" in done.err
+
+
+def test_parameters(command: Command, robot: Path) -> None:
+    def clock_end(*options: str) -> int:
+        text = command("translate", "main.xml", "-o", "-", *options).out
+        assert text, options
+        numbers = set()
+
+        def visit(value: object) -> None:
+            if isinstance(value, dict):
+                if value.get("op") in ("<", "≤", "≥", ">") and isinstance(value.get("right"), int):
+                    numbers.add(value["right"])
+                for each in value.values():
+                    visit(each)
+            elif isinstance(value, list):
+                for each in value:
+                    visit(each)
+
+        clock = next(a for a in json.loads(text)["automata"] if a["name"] == "autogenerated_global_timer")
+        visit(clock)
+        return max(numbers)
+
+    ends = [clock_end("--max-time", time) for time in ("20 s", "10s", "1000ms")]
+    assert ends[0] == 2 * ends[1] == 20 * ends[2]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--max-time", "5"), "a time is written as a whole number and s, ms, us or ns"),
+        (("--max-time", "0 s"), "a time is written as"),
+        (("--max-array-size", "0"), "at least one element"),
+        (("--indent", "-1"), "from 0 to 16"),
+        (("--output", "-", "--map", "-"), "cannot both go to standard output"),
+        (("--output", "nodes/battery.ascxml"), "belongs to the system"),
+        (("--map", "./tree.xml"), "belongs to the system"),
+        (("--output", "nowhere/x.jani"), "nowhere/x.jani: No such file or directory"),
+        (("--scxml-dir", "main.xml"), "main.xml: File exists"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_wrong_use(command: Command, robot: Path, options: tuple[str, ...], message: str) -> None:
+    before = {path: path.read_bytes() for path in robot.rglob("*") if path.is_file()}
+    done = command("translate", "main.xml", *options)
+    assert done.status == 2
+    assert message in done.err
+    assert {path: path.read_bytes() for path in robot.rglob("*") if path.is_file()} == before
+
+
+def test_no_system_file(command: Command, robot: Path) -> None:
+    for path, message in (("nothing.xml", "there is no such file"), ("tree.xml", "this is no system file")):
+        done = command("translate", path)
+        assert done.status == 2
+        assert message in done.err
+
+
+def test_a_property_file_of_the_default_name_is_kept(command: Command, robot: Path) -> None:
+    (robot / "properties.jani").rename(robot / "main.jani")
+    main = robot / "main.xml"
+    main.write_text(main.read_text().replace("properties.jani", "main.jani"))
+    before = (robot / "main.jani").read_bytes()
+    done = command("translate", "main.xml")
+    assert done.status == 2
+    assert "main.jani belongs to the system; the translation must go to another file" in done.err
+    assert (robot / "main.jani").read_bytes() == before
+
+
+def test_a_failure_while_writing_leaves_the_old_file(
+    command: Command, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (robot / "main.jani").write_text("old")
+
+    def failing(*_: object) -> object:
+        yield "{"
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(as2fm_lsp.cli.translate, "jani_text", failing)
+    done = command("translate", "main.xml")
+    assert (done.status, done.err) == (2, "as2fm-lsp: main.jani: No space left on device\n")
+    assert (robot / "main.jani").read_text() == "old"
+    assert not list(robot.glob(".as2fm-*"))
+
+
+def test_map(command: Command, robot: Path) -> None:
+    """Every automaton, edge and variable of the JANI file has a place in a file of the system."""
+    done = command("translate", "main.xml", "--map", "map.json")
+    assert done.status == 0
+    model = json.loads((robot / "main.jani").read_text())
+    places = json.loads((robot / "map.json").read_text())
+    assert (places["version"], places["system"]) == (1, "main.xml")
+    assert [v["name"] for v in places["variables"]] == [v["name"] for v in model["variables"]]
+    assert [a["name"] for a in places["automata"]] == [a["name"] for a in model["automata"]]
+    everything = [*places["variables"], *places["automata"]]
+    for automaton, mapped in zip(model["automata"], places["automata"], strict=True):
+        assert [v["name"] for v in mapped["variables"]] == [v["name"] for v in automaton.get("variables", ())]
+        edges = [(e["location"], e.get("action")) for e in automaton["edges"]]
+        assert [(e["location"], e["action"]) for e in mapped["edges"]] == edges
+        everything += [*mapped["variables"], *mapped["edges"]]
+    for place in everything:
+        lines = (robot / place["file"]).read_text().splitlines()
+        assert lines[place["line"] - 1][place["column"] - 1 :], place
+    level = next(a for a in places["automata"] if a["name"] == "Battery")["variables"][0]
+    text = (robot / level["file"]).read_text().splitlines()[level["line"] - 1][level["column"] - 1 :]
+    assert level["name"] == "level"
+    assert text.startswith('<data id="level"')
+
+
+def test_plain_scxml(command: Command, robot: Path) -> None:
+    done = command("translate", "main.xml", "--scxml-dir", "deep/scxml")
+    assert done.status == 0
+    schema = etree.XMLSchema(etree.parse(str(schema_path("scxml.xsd"))))
+    files = sorted((robot / "deep/scxml").iterdir())
+    assert "Battery.scxml" in {path.name for path in files}
+    for path in files:
+        root = etree.parse(str(path)).getroot()
+        assert root.tag == f"{SCXML}scxml"
+        assert root.get("name") == path.stem
+        for element in root.iter(etree.Element):
+            element.tag = etree.QName(element).localname
+        assert schema.validate(root), schema.error_log
+
+
+@pytest.mark.parametrize(("name", "extension"), [("dot", "dot"), ("mermaid", "mmd"), ("plantuml", "puml")])
+def test_diagrams(command: Command, robot: Path, name: str, extension: str) -> None:
+    assert command("translate", "main.xml", f"--{name}", "views").status == 0
+    names = {path.name for path in (robot / "views").iterdir()}
+    assert {f"{stem}.{extension}" for stem in ("tree", "network", "machine-Battery")} <= names
+    assert all(n.endswith(f".{extension}") for n in names)
+
+
+def test_closed_pipe(robot: Path) -> None:
+    line = f"{sys.executable} -m as2fm_lsp translate main.xml -o - | head -c 10"
+    done = subprocess.run(["sh", "-c", line], cwd=robot, capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ('{"jani-ver', "")
+
+
+def test_same_bytes_whatever_the_hashes(robot: Path) -> None:
+    found = set()
+    for seed in ("0", "1", "2"):
+        command = [sys.executable, "-m", "as2fm_lsp", "translate", "main.xml", "-o", "-"]
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        found.add(subprocess.run(command, cwd=robot, env=environment, capture_output=True, check=True).stdout)
+    assert len(found) == 1
+
+
+def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stages are told once patience is over, and wiped away at the end; a pipe is told nothing."""
+    leader, follower = pty.openpty()
+    monkeypatch.setattr(as2fm_lsp.cli.progress, "PATIENCE", 0.0)
+    with os.fdopen(follower, "w") as terminal:
+        monkeypatch.setattr(sys, "stderr", terminal)
+        with as2fm_lsp.cli.progress.Progress() as progress:
+            progress.stage("reading")
+            progress.shown.wait(10)
+            progress.stage("translating")
+    said = b""
+    with contextlib.suppress(OSError):  # as the end of what a terminal holds is told
+        while chunk := os.read(leader, 1000):
+            said += chunk
+    os.close(leader)
+    assert "\r\x1b[Kreading …\r\x1b[Ktranslating …\r\x1b[K".encode().endswith(said[-20:])
+    assert "translating …".encode() in said
+
+
+def test_no_progress_elsewhere(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(as2fm_lsp.cli.progress, "PATIENCE", 0.0)
+    with as2fm_lsp.cli.progress.Progress() as progress:
+        progress.stage("reading")
+    assert capsys.readouterr().err == ""

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `as2fm.translateToJani`, with the code lens and the code action that call it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from client import Client, connect, start_raw
+from lsprotocol import types
+
+import clock
+from as2fm_lsp.cli.main import run
+
+COMMAND = "as2fm.translateToJani"
+
+
+async def translate(client: Client, *arguments: str) -> object:
+    return await client.workspace_execute_command_async(types.ExecuteCommandParams(COMMAND, list(arguments)))
+
+
+def told(client: Client) -> list[tuple[types.MessageType, str]]:
+    return [(message.type, message.message) for message in client.messages]
+
+
+async def test_same_as_the_command_line(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    run(["translate", str(tmp_path / "main.xml"), "-o", str(tmp_path / "expected.jani")])
+    async with connect(tmp_path) as client:
+        answer = await translate(client, (tmp_path / "main.xml").as_uri())
+        written = tmp_path / "main.jani"
+        assert written.read_bytes() == (tmp_path / "expected.jani").read_bytes()
+        size = "4 automata, 14 edges, 5 global variables, 1 property"
+        assert answer == {"uri": written.as_uri(), "summary": size}
+        assert told(client) == [(types.MessageType.Info, f"Wrote main.jani: {size}.")]
+
+
+async def test_what_stands_in_the_editor_is_translated(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    main, output = (tmp_path / "main.xml").as_uri(), tmp_path / "elsewhere.jani"
+    async with connect(tmp_path) as client:
+        await translate(client, main, output.as_uri())
+        saved = output.read_text()
+        client.open(tmp_path / "clock.ascxml", clock.CLOCK.replace("% 10", "% 7"))
+        await translate(client, main, output.as_uri())
+        modulo = '"op":"%","left":{"op":"+","left":"count","right":1},"right":'
+        assert output.read_text() == saved.replace(f"{modulo}10", f"{modulo}7") != saved
+        client.close(tmp_path / "clock.ascxml")
+        await translate(client, main, output.as_uri())
+        assert output.read_text() == saved
+        assert not (tmp_path / "main.jani").exists()
+
+
+async def test_errors_are_told_and_nothing_is_written(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    main = tmp_path / "main.xml"
+    async with connect(tmp_path) as client:
+        assert await translate(client, main.as_uri()) is None
+        assert await translate(client, (tmp_path / "clock.ascxml").as_uri()) is None
+        assert await translate(client, (tmp_path / "none.xml").as_uri()) is None
+        client.open(tmp_path / "clock.ascxml", clock.CLOCK)
+        assert await translate(client, main.as_uri(), (tmp_path / "properties.jani").as_uri()) is None
+        assert await translate(client, main.as_uri(), (tmp_path / "no/folder/x.jani").as_uri()) is None
+        texts = [text for kind, text in told(client) if kind is types.MessageType.Error]
+    expected = (
+        "main.xml has 1 error and was not translated.",
+        "clock.ascxml: this is no system file",
+        "none.xml: this is no system file",
+        "properties.jani belongs to the system; the translation must go to another file",
+        "x.jani cannot be written: No such file or directory",
+    )
+    assert len(texts) == len(expected)
+    assert all(text.endswith(end) for text, end in zip(texts, expected, strict=True))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["clock.ascxml", "main.xml", "properties.jani"]
+
+
+async def test_progress(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    capabilities = types.ClientCapabilities(window=types.WindowClientCapabilities(work_done_progress=True))
+    async with connect(tmp_path, capabilities=capabilities) as client:
+        await translate(client, (tmp_path / "main.xml").as_uri())
+        (reports,) = client.progress_reports.values()
+    begin, end = reports
+    assert isinstance(begin, types.WorkDoneProgressBegin)
+    assert begin.title == "Translating main.xml"
+    assert isinstance(end, types.WorkDoneProgressEnd)
+
+
+async def test_lens(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    main = (tmp_path / "main.xml").as_uri()
+    async with connect(tmp_path) as client:
+        params = types.CodeLensParams(types.TextDocumentIdentifier(main))
+        (lens,) = await client.text_document_code_lens_async(params) or ()
+        assert lens.command == types.Command("Translate to JANI", COMMAND, arguments=(main,))
+        assert lens.range == types.Range(types.Position(0, 1), types.Position(0, 6))
+        params = types.CodeLensParams(types.TextDocumentIdentifier((tmp_path / "clock.ascxml").as_uri()))
+        assert not await client.text_document_code_lens_async(params)
+
+
+async def test_actions(tmp_path: Path) -> None:
+    """Asked as bytes: the library of the client takes a code action with a command for the command itself."""
+    clock.write(tmp_path)
+    main = (tmp_path / "main.xml").as_uri()
+    folders = [{"uri": tmp_path.as_uri(), "name": "robot"}]
+    server = await start_raw()
+    server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
+    server.tell("initialized", {})
+    asked = [(name, kind) for name in ("main.xml", "clock.ascxml") for kind in ("source", "quickfix")]
+    start = {"line": 0, "character": 0}
+    for number, (name, kind) in enumerate(asked):
+        params = {
+            "textDocument": {"uri": (tmp_path / name).as_uri()},
+            "range": {"start": start, "end": start},
+            "context": {"diagnostics": [], "only": [kind]},
+        }
+        server.tell("textDocument/codeAction", params, 10 + number)
+    server.tell("shutdown", id_=2)
+    server.tell("exit")
+    _, messages, _ = await server.end()
+    answers = {message["id"]: message["result"] for message in messages if "result" in message}
+
+    def action(title: str) -> dict[str, object]:
+        return {"title": title, "kind": "source", "command": {"title": title, "command": COMMAND, "arguments": [main]}}
+
+    found = {asking: answers[10 + number] for number, asking in enumerate(asked)}
+    assert found == {
+        ("main.xml", "source"): [action("Translate to JANI")],
+        ("main.xml", "quickfix"): [],
+        ("clock.ascxml", "source"): [action("Translate main.xml to JANI")],
+        ("clock.ascxml", "quickfix"): [],
+    }
+
+
+@pytest.mark.parametrize("arguments", [(), (1,), ({},), ("untitled:1",)], ids=str)
+async def test_odd_arguments(tmp_path: Path, arguments: tuple[object, ...]) -> None:
+    clock.write(tmp_path)
+    async with connect(tmp_path) as client:
+        params = types.ExecuteCommandParams(COMMAND, list(arguments))
+        assert await client.workspace_execute_command_async(params) is None
+        assert await translate(client, (tmp_path / "main.xml").as_uri()) is not None

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the README shows works: its files make a system, its commands print what it says, its programs run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+
+README = Path(__file__).resolve().parents[1] / "README.md"
+_FILE = re.compile(r"^\*\*`(\S+)`\*\*\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_TRANSLATE = re.compile(r"^\$ as2fm-lsp (translate main\.xml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def test_the_battery_monitor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = README.read_text(encoding="utf-8")
+    files = dict(_FILE.findall(text))
+    assert set(files) == {"battery.ascxml", "monitor.ascxml", "main.xml", "properties.jani"}
+    for name, content in files.items():
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    assert run(["--check", "main.xml", "--warnings-as-errors"]) == 0
+    capsys.readouterr()
+    ((command, printed),) = _TRANSLATE.findall(text)
+    assert run(command.split()) == 0
+    assert capsys.readouterr().out == printed
+    checking, translating = _PROGRAM.findall(text)
+    exec(checking, {})
+    assert float(capsys.readouterr().out) == pytest.approx(0.75)
+    names: dict[str, str] = {}
+    exec(translating, names)
+    assert f"{names['text']}\n" == (tmp_path / "main.jani").read_text(encoding="utf-8")
+
+
+def test_links_lead_somewhere() -> None:
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[\w-]+)?\)", README.read_text(encoding="utf-8")):
+        assert (README.parent / target).exists(), target

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The translation of every conformance model has the reference's names, types, properties and sizes."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import conformance
+from roaml import api
+from roaml.jani.reader import read_model
+from roaml.jani.typecheck import check_model
+from roaml.jani.writer import write
+from roaml.json import parse
+
+Shape = dict[str, object]
+
+
+def shape(jani: Any) -> Shape:
+    """What counts. The variables of an automaton go without names: those of built-in tree nodes are our own."""
+    return {
+        "variables": named(jani["variables"], "type"),
+        "properties": named(jani["properties"], "expression"),
+        "automata": sorted(
+            (a["name"], len(a["locations"]), len(a["edges"]), sorted(str(v["type"]) for v in a.get("variables", ())))
+            for a in jani["automata"]
+        ),
+        "syncs": len(jani["system"]["syncs"]),
+    }
+
+
+def named(items: Iterable[Any], key: str) -> list[str]:
+    return sorted(f"{item['name']} {json.dumps(item[key], sort_keys=True)}" for item in items)
+
+
+def reference(path: Path) -> Path:
+    folder = path.relative_to(conformance.ROOT / "models").parts[0]
+    return conformance.ROOT / "reference" / f"{folder}.{path.stem}.jani.gz"
+
+
+TRANSLATED = [path for path in conformance.systems() if reference(path).exists()]
+
+
+def load(path: Path) -> api.LoadedSystem:
+    return api.load(str(path), [str(conformance.INTERFACES)])
+
+
+def test_there_are_references() -> None:
+    assert TRANSLATED
+
+
+@pytest.mark.parametrize("path", TRANSLATED, ids=conformance.label)
+def test_shape(path: Path) -> None:
+    ours = json.loads("".join(write(api.to_jani(load(path)))))
+    assert shape(ours) == shape(json.loads(gzip.decompress(reference(path).read_bytes())))
+
+
+@pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
+def test_sound_and_read_back(path: Path) -> None:
+    model = api.to_jani(load(path))
+    assert check_model(model) == ()
+    text = "".join(write(model))
+    again, findings = read_model(parse(text)[0])
+    assert findings == ()
+    assert again is not None
+    assert "".join(write(again)) == text
+
+
+@pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
+def test_what_the_checker_takes_for_global_variables(path: Path) -> None:
+    """The table by which properties are checked is that of the translation."""
+    system = load(path)
+    names = {variable.name for variable in api.to_jani(system).variables}
+    assert set(system.analysis.globals(system.path)) == names
