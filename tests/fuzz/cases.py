@@ -72,10 +72,13 @@ def make(seed: int) -> Case:
 def run(case: Case, timed: bool = True) -> list[Failure]:
     """What must hold and does not; `timed` counts the time, too."""
     with _Crashes() as crashes:
+        failures: list[Failure] = []
         try:
-            failures = [f for f in _check(case, case.texts) if timed or f.kind != _SLOW]
+            for failure in _check(case, case.texts):
+                if timed or failure.kind != _SLOW:
+                    failures.append(failure)
         except Exception as error:  # the very thing that is looked for
-            failures = [Failure(_place(error), traceback.format_exc())]
+            failures.append(Failure(_place(error), traceback.format_exc()))
     return [
         *failures,
         *(Failure(_place(error), "".join(traceback.format_exception(error))) for error in crashes.errors),

@@ -54,4 +54,4 @@ def test_crashes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     broken = Rule("missing-attribute", Severity.ERROR, "", file=crash)  # type: ignore[arg-type]
     monkeypatch.setattr(checking, "RULES", (broken,))
     kinds = {failure.kind.partition(" at ")[0] for failure in run(make(0), timed=False)}
-    assert kinds == {"internal-error", "RuntimeError"}
+    assert kinds >= {"internal-error", "RuntimeError"}

@@ -27,6 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             client = clients.setdefault((declaration.kind, declaration.interface.value), declaration)
             if client is not declaration:
                 yield _same_client(declaration, declaration.interface, client)
+    yield from _same_threads(context)
 
 
 def _same_handle(context: MachineContext, declaration: Declaration, handle: Name, before: Declaration) -> Finding:
@@ -61,6 +62,18 @@ def _same_client(declaration: Declaration, interface: Name, before: Declaration)
     assert before.handle is not None
     message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
+
+
+def _same_threads(context: MachineContext) -> Iterator[Finding]:
+    """Two declarations would make two threads of each number (spec/01 §10.3)."""
+    known: dict[str, Name] = {}
+    for thread in context.machine.threads:
+        if thread.server is None:
+            continue
+        before = known.setdefault(thread.server.value, thread.server)
+        if before is not thread.server:
+            message = f"the threads of `{thread.server.value}` are declared already; `n_threads` tells their number"
+            yield RULE.at(thread.server.span, message, related=(Related(before.span, "declared first here"),))
 
 
 RULE = Rule("duplicate-handle", Severity.ERROR, "Two declarations have the same name.", machine=check)
