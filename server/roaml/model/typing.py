@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from roaml.expr.infer import Problem, RandomUsed, infer
-from roaml.expr.tree import Expr, Number, is_draw, walk
+from roaml.expr.tree import Number, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_initial
@@ -126,7 +126,7 @@ def type_machine(
     for value in without_events.values if without_events else ():
         handler = value.place.handler
         if handler is not None and handler.trigger != "event":
-            typer.known.setdefault(handler, []).append(value)
+            typer.taken_over.setdefault(handler, []).append(value)
     for chart in machine.charts:
         typer.chart(chart)
     return TypedMachine(tuple(typer.values), typer.variables)
@@ -214,7 +214,7 @@ class _Typer:
     environment: Environment
     values: list[TypedValue] = field(default_factory=list)
     variables: dict[str, dict[str, Type]] = field(default_factory=dict)
-    known: dict[Handler, list[TypedValue]] = field(default_factory=dict)
+    taken_over: dict[Handler, list[TypedValue]] = field(default_factory=dict)
 
     def chart(self, chart: Chart) -> None:
         variables: dict[str, Type] = {}
@@ -255,8 +255,8 @@ class _Typer:
     def handler(self, handler: Handler, chart: Chart, state: State, variables: Mapping[str, Type], late: bool) -> None:
         if not handler.effective:
             return
-        if handler in self.known:
-            self.values += self.known[handler]
+        if handler in self.taken_over:
+            self.values += self.taken_over[handler]
             return
         if handler.cond is not None:
             known = bindings(handler, "cond", self.machine, self.environment)
@@ -399,7 +399,3 @@ def _leaf(part: Type, path: str) -> Type | None:
             return UNKNOWN if inner == UNKNOWN else None
         type_ = member
     return wrap(type_, bounds)
-
-
-def uses_random(expr: Expr) -> bool:
-    return any(map(is_draw, walk(expr)))
