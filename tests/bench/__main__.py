@@ -7,10 +7,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, translate
+from bench import check, storm, translate
 from bench.report import Benchmark, machine, table
 
-BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS, **translate.BENCHMARKS}
+BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS, **translate.BENCHMARKS, **storm.BENCHMARKS}
 
 
 def main() -> int:
