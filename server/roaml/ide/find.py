@@ -7,7 +7,7 @@ ties together is one `Thing`: whoever renames one of its places must rename them
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -75,7 +75,7 @@ def thing_at(analysis: Analysis, path: str, offset: int) -> Thing | None:
     return thing(analysis, (each.symbol for each in found)) if found else None
 
 
-def thing(analysis: Analysis, symbols: Iterator[Symbol]) -> Thing:
+def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
     """All uses of some symbols, and of the symbols that share a place with one of them."""
     seen = dict.fromkeys(symbols)
     todo = list(seen)

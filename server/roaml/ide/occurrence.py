@@ -27,7 +27,7 @@ HANDLES = frozenset(
     attribute.defines
     for name in HL_SCXML.groups["Declaration"]
     for attribute in HL_SCXML.elements[name].attributes.values()
-    if attribute.defines
+    if attribute.defines and attribute.defines != "port"
 )
 """The kinds of symbols that declarations of ROS interfaces and timers define."""
 
