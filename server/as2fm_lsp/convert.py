@@ -16,7 +16,7 @@ from pygls import uris
 
 import roaml.rules
 from roaml.diagnostics import Diagnostic, Severity, Tag
-from roaml.text import Position, SourceFile, Span, TextEdit
+from roaml.text import Location, Position, SourceFile, Span, TextEdit
 
 SOURCE = "as2fm"
 
@@ -124,6 +124,9 @@ class Converter:
             tags=[_TAGS[tag] for tag in diagnostic.tags] or None,
             related_information=related or None,
         )
+
+    def location(self, source: SourceFile, location: Location) -> types.Location:
+        return types.Location(self.uri(location.path), self.range(source, location.span))
 
     def edit(self, source: SourceFile, edit: TextEdit) -> types.TextEdit:
         return types.TextEdit(self.range(source, edit.span), edit.new_text)

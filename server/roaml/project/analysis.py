@@ -392,9 +392,9 @@ class Analysis:
         linked = self.system(system) if system else None
         return self.typed(path, system, self.structs(system), linked.event_data if linked else {})
 
-    def environment(self, system: str) -> Environment:
-        """What the machines of a system can name."""
-        linked = self.system(system)
+    def environment(self, system: str | None) -> Environment:
+        """What the machines of a system can name; a machine alone can name ROS types."""
+        linked = self.system(system) if system else None
         return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {})
 
     def globals(self, system: str) -> Mapping[str, GlobalVariable]:

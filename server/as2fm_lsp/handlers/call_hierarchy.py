@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Who sends to whom, as a call hierarchy: machines, events and interfaces, trees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.symbols import symbol_kind
+from roaml.diagnostics import Symbol
+from roaml.ide import calls
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+Ask = Callable[[Analysis, Symbol], tuple[calls.Call, ...]]
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    def convert(analysis: Analysis, item: calls.Item) -> types.CallHierarchyItem:
+        source, symbol = analysis.source(item.path), item.symbol
+        assert source is not None
+        return types.CallHierarchyItem(
+            symbol.name,
+            symbol_kind(symbol.kind),
+            session.convert.uri(item.path),
+            session.convert.range(source, item.span),
+            session.convert.range(source, item.name_span),
+            detail=symbol.kind,
+            data=[symbol.path, symbol.kind, symbol.name, symbol.scope],
+        )
+
+    def ranges(analysis: Analysis, path: str, spans: tuple[Span, ...]) -> list[types.Range]:
+        source = analysis.source(path)
+        return [session.convert.range(source, span) for span in spans] if source else []
+
+    def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.Call, ...]]:
+        """The calls of an item that was given to the client before."""
+        analysis = session.moment().snapshot(session.convert.path(item.uri)).analysis
+        data = item.data
+        if not isinstance(data, (list, tuple)) or len(data) != 4:
+            return analysis, ()
+        return analysis, question(analysis, Symbol(*map(str, data)))
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
+    def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:
+        path = session.convert.path(params.text_document.uri)
+        analysis = session.moment().snapshot(path).analysis
+        source = analysis.source(path)
+        if source is None:
+            return []
+        items = calls.items_at(analysis, path, session.convert.offset(source, params.position))
+        return [convert(analysis, item) for item in items]
+
+    @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
+    def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
+        analysis, found = ask(params.item, calls.incoming)
+        return [
+            types.CallHierarchyIncomingCall(convert(analysis, call.item), ranges(analysis, call.item.path, call.places))
+            for call in found
+        ]
+
+    @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
+    def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
+        analysis, found = ask(params.item, calls.outgoing)
+        path = session.convert.path(params.item.uri)
+        return [
+            types.CallHierarchyOutgoingCall(convert(analysis, call.item), ranges(analysis, path, call.places))
+            for call in found
+        ]

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a name to its definition, declaration, type, implementation and uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from roaml.ide import navigate
+from roaml.ide.occurrence import Access
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_HIGHLIGHTS = {
+    Access.TEXT: types.DocumentHighlightKind.Text,
+    Access.READ: types.DocumentHighlightKind.Read,
+    Access.WRITE: types.DocumentHighlightKind.Write,
+}
+
+Find = Callable[[Analysis, str, int], Iterable[Location]]
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    def locations(
+        document: types.TextDocumentIdentifier, position: types.Position, find: Find
+    ) -> list[types.Location]:
+        """What `find` says about a place."""
+        path = session.convert.path(document.uri)
+        analysis = session.moment().snapshot(path).analysis
+        source = analysis.source(path)
+        if source is None:
+            return []
+        found = find(analysis, path, session.convert.offset(source, position))
+        targets = ((analysis.source(each.path), each) for each in found)
+        return [session.convert.location(target, each) for target, each in targets if target is not None]
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    def definition(params: types.DefinitionParams) -> list[types.Location]:
+        return locations(params.text_document, params.position, navigate.definition)
+
+    @server.feature(types.TEXT_DOCUMENT_DECLARATION)
+    def declaration(params: types.DeclarationParams) -> list[types.Location]:
+        return locations(params.text_document, params.position, navigate.declaration)
+
+    @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
+    def type_definition(params: types.TypeDefinitionParams) -> list[types.Location]:
+        return locations(params.text_document, params.position, navigate.type_definition)
+
+    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
+    def implementation(params: types.ImplementationParams) -> list[types.Location]:
+        return locations(params.text_document, params.position, navigate.implementation)
+
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    def references(params: types.ReferenceParams) -> list[types.Location]:
+        def find(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
+            with_declaration = params.context.include_declaration
+            return navigate.references(analysis, path, offset, with_declaration=with_declaration)
+
+        return locations(params.text_document, params.position, find)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    def document_highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
+        path = session.convert.path(params.text_document.uri)
+        analysis = session.moment().snapshot(path).analysis
+        source = analysis.source(path)
+        if source is None:
+            return []
+        found = navigate.highlights(analysis, path, session.convert.offset(source, params.position))
+        return [
+            types.DocumentHighlight(session.convert.range(source, each.span), _HIGHLIGHTS[each.access])
+            for each in found
+        ]

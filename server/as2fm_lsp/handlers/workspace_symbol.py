@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`workspace/symbol`: named things in all files, looked up by a part of their name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.symbols import symbol_kind
+from roaml.ide.search import search
+from roaml.text import Location
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+MOST = 1000
+"""More than anybody reads; the user types another letter."""
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    def workspace_symbol(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        moment = session.moment()
+        found: list[types.WorkspaceSymbol] = []
+        for path in moment.files():
+            analysis = moment.snapshot(path).analysis
+            source = analysis.source(path)
+            for each in search(analysis, (path,), params.query) if source else ():
+                assert source is not None
+                place = session.convert.location(source, Location(path, each.span))
+                kind = symbol_kind(each.symbol.kind)
+                found.append(
+                    types.WorkspaceSymbol(place, each.symbol.name, kind, container_name=each.container or None)
+                )
+            if len(found) >= MOST:
+                break
+        return found[:MOST]

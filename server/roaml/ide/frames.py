@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executed tree with the places of all that is written in it: which text a blackboard variable or a port's constant
+comes from.
+
+Follows `roaml.model.expand`, which works without places, step by step; a test holds the two against each other.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from roaml.diagnostics import Symbol
+from roaml.ide.occurrence import Form, tree_node
+from roaml.model.expand import ROOT_NUMBER, main_tree, tree_file_outline
+from roaml.model.syntax import Name
+from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
+from roaml.project.analysis import Analysis
+
+AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
+_MAX_INSTANCES = 10_000
+
+Piece = tuple[str, Symbol | None, Form]
+"""A part of a name that the translation makes: its text and what that comes from, if anything."""
+
+TreeKey = tuple[str, str]
+"""File and ID of a tree."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A value of a port, written in the file `path`."""
+
+    path: str
+    value: Name
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One instance of a tree.
+
+    Attributes:
+        prefix: of the full names of its variables.
+        settings: what the attributes of the subtree node, and defaults, say.
+        outer: the instance around it.
+        names: the variables that the tree's text mentions.
+    """
+
+    path: str
+    tree: Tree
+    prefix: tuple[Piece, ...]
+    settings: Mapping[str, Setting]
+    autoremap: bool
+    outer: Frame | None
+    names: frozenset[str]
+
+    @property
+    def key(self) -> TreeKey:
+        return self.path, self.tree.id.value if self.tree.id else ""
+
+    def knows(self, name: str) -> bool:
+        if name in self.names or name in self.settings:
+            return True
+        return self.autoremap and self.outer is not None and self.outer.knows(name)
+
+    def is_shared(self, name: str) -> bool:
+        """Whether `name` is the same variable as the one called so outside."""
+        if self.outer is None or name.startswith(("@", "_")):
+            return name in self.settings and self.settings[name].value.value.strip() == "{=}"
+        if name in self.settings:
+            return self.settings[name].value.value.strip() == "{=}"
+        return self.autoremap and self.outer.knows(name)
+
+
+class Trees:
+    """The tree files of a system, the executed one first.
+
+    Args:
+        paths: of the files.
+        owner: the system file, or the tree file if it is looked at alone.
+    """
+
+    def __init__(self, analysis: Analysis, paths: tuple[str, ...], owner: str) -> None:
+        found = ((path, analysis.tree(path)) for path in paths)
+        self.files: dict[str, TreeFile] = {path: file for path, file in found if file is not None}
+        self.owner = owner
+        self.trees: dict[str, tuple[str, Tree]] = {}
+        for path, file in self.files.items():
+            for tree in file.trees:
+                self.trees.setdefault(tree.id.value if tree.id else "", (path, tree))
+
+    @cached_property
+    def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
+        """Of each plugin and subtree, what its ports hold where a tree does not set them."""
+        found: dict[str, dict[str, Setting]] = {}
+        for path, file in self.files.items():
+            for model in file.models:
+                for port in model.ports:
+                    default = port.element.get("default")
+                    if model.id and port.name and default is not None:
+                        setting = Setting(path, Name(default.value, default.value_span))
+                        found.setdefault(model.id.value, {}).setdefault(port.name.value, setting)
+        return found
+
+    @cached_property
+    def main(self) -> tuple[str, Tree] | None:
+        main = main_tree(tuple(tree_file_outline(path, file) for path, file in self.files.items()))
+        if isinstance(main, tuple):
+            return None
+        for tree in self.files[main.path].trees:
+            if (tree.id.value if tree.id else "") == main.id:
+                return main.path, tree
+        return None
+
+    @cached_property
+    def _walked(self) -> tuple[tuple[tuple[Frame, TreeNode], ...], tuple[Frame, ...]]:
+        walk = _Walk(self)
+        if self.main is not None:
+            walk.run(*self.main)
+        return tuple(walk.nodes), tuple(walk.frames)
+
+    @property
+    def nodes(self) -> Mapping[int, tuple[Frame, TreeNode]]:
+        """The executed nodes by number."""
+        return dict(enumerate(self._walked[0], ROOT_NUMBER))
+
+    @property
+    def frames(self) -> tuple[Frame, ...]:
+        return self._walked[1]
+
+    # ------------------------------------------------------------- variables
+
+    def variable(self, path: str, tree: str, name: str) -> Symbol:
+        """The blackboard variable that `{name}` means in a tree. Variables that always share their name are one."""
+        if name.startswith("@"):
+            name = name[1:]
+            if self.main is not None:
+                path, tree = self.main[0], self.main[1].id.value if self.main[1].id else ""
+        path, tree = self._root((path, tree, name))[:2]
+        return Symbol(path, "blackboard", name, tree)
+
+    def _root(self, key: tuple[str, str, str]) -> tuple[str, str, str]:
+        while (above := self._shared.get(key, key)) != key:
+            key = above
+        return key
+
+    @cached_property
+    def _shared(self) -> Mapping[tuple[str, str, str], tuple[str, str, str]]:
+        """Union-find: a variable -> one that it is the same as, by `{=}` or automatic remapping."""
+        above: dict[tuple[str, str, str], tuple[str, str, str]] = {}
+
+        def root(key: tuple[str, str, str]) -> tuple[str, str, str]:
+            while above.get(key, key) != key:
+                key = above[key]
+            return key
+
+        for frame in self.frames:
+            for name in frame.names:
+                inner = frame
+                while inner.outer is not None and inner.is_shared(name):
+                    one, other = sorted((root((*inner.key, name)), root((*inner.outer.key, name))))
+                    above[other] = one
+                    inner = inner.outer
+        return above
+
+    @cached_property
+    def full_names(self) -> Mapping[str, tuple[Piece, ...]]:
+        """The full name of each variable in the translation -> what it is made of."""
+        found: dict[str, tuple[Piece, ...]] = {}
+        for frame in self.frames:
+            for name in frame.names:
+                if not name.startswith("@") and name not in frame.settings and not frame.is_shared(name):
+                    pieces = (*frame.prefix, (name, self.variable(*frame.key, name), Form.AS_IS))
+                    found.setdefault("".join(piece[0] for piece in pieces), pieces)
+                elif name.startswith("@"):
+                    found.setdefault(name[1:], ((name[1:], self.variable(*frame.key, name), Form.AS_IS),))
+        return found
+
+    def constant(self, number: int, key: str) -> Setting | None:
+        """The text that gives the port `key` of a node a constant."""
+        frame, node = self.nodes.get(number, (None, None))
+        if frame is None or node is None:
+            return None
+        setting = self.setting(frame.path, node, key)
+        outer: Frame | None = frame
+        while setting is not None and outer is not None:
+            variable = blackboard_variable(setting.value.value)
+            if variable is None:
+                return setting
+            name = key if variable == "=" else variable
+            while outer is not None and name not in outer.settings:
+                outer = outer.outer if outer.is_shared(name) else None
+            if outer is None:
+                return None
+            setting, key, outer = outer.settings[name], name, outer.outer
+        return None if setting is None or blackboard_variable(setting.value.value) is not None else setting
+
+    def setting(self, path: str, node: TreeNode, key: str) -> Setting | None:
+        for port in node.ports:
+            if port.key.value == key:
+                return Setting(path, port.value)
+        return self.defaults.get(node.plugin.value if node.plugin else "", {}).get(key)
+
+
+def names_in(tree: Tree) -> Iterator[str]:
+    """The variables that the nodes of a tree refer to."""
+    for node in nodes(tree):
+        for attribute in node.element.attributes:
+            variable = blackboard_variable(attribute.value)
+            if variable is not None:
+                yield attribute.name if variable == "=" and node.is_subtree else variable
+
+
+class _Walk:
+    def __init__(self, trees: Trees) -> None:
+        self.trees = trees
+        self.nodes: list[tuple[Frame, TreeNode]] = []
+        self.frames: list[Frame] = []
+        self.prefixes: set[str] = set()
+
+    def run(self, path: str, main: Tree) -> None:
+        frame = Frame(path, main, (), {}, False, None, self.names(main))
+        self.frames.append(frame)
+        positions = {id(node): position for position, node in enumerate(nodes(main))}
+        if main.roots:
+            self.place(main.roots[0], frame, (frame.key[1],), positions)
+
+    def names(self, tree: Tree) -> frozenset[str]:
+        """With those that a tree refers to through defaults."""
+        found = set(names_in(tree))
+        for node in nodes(tree):
+            plugin = node.plugin.value if node.plugin else ""
+            for key, setting in self.trees.defaults.get(plugin, {}).items():
+                variable = blackboard_variable(setting.value.value)
+                if variable is not None and node.element.get(key) is None:
+                    found.add(key if variable == "=" else variable)
+        return frozenset(found)
+
+    def place(self, node: TreeNode, frame: Frame, inside: tuple[str, ...], positions: Mapping[int, int]) -> None:
+        if node.is_subtree:
+            path, tree = self.trees.trees.get(node.plugin.value if node.plugin else "", ("", None))
+            if tree is None or not tree.roots or (tree.id.value if tree.id else "") in inside:
+                return
+            inner = self.enter(node, path, tree, frame, positions[id(node)])
+            own = {id(each): position for position, each in enumerate(nodes(tree))}
+            self.place(tree.roots[0], inner, (*inside, inner.key[1]), own)
+            return
+        if len(self.nodes) >= _MAX_INSTANCES:
+            return
+        self.nodes.append((frame, node))
+        for child in node.children:
+            self.place(child, frame, inside, positions)
+
+    def enter(self, node: TreeNode, path: str, tree: Tree, frame: Frame, position: int) -> Frame:
+        assert node.plugin is not None
+        if node.name is not None:
+            source, written = tree_node(*frame.key, position, node.name.value), node.name.value
+        else:
+            source, written = Symbol(self.trees.owner, "tree", node.plugin.value), node.plugin.value
+        word = re.sub(r"\W", "_", written, flags=re.ASCII)
+        lead = "" if word[:1].isalpha() or word[:1] == "_" else "_"
+        above, count, suffix = "".join(piece[0] for piece in frame.prefix), 1, ""
+        while f"{above}{lead}{word}{suffix}__" in self.prefixes:
+            count += 1
+            suffix = f"_{count}"
+        self.prefixes.add(f"{above}{lead}{word}{suffix}__")
+        prefix: tuple[Piece, ...] = (
+            *frame.prefix,
+            (lead, None, Form.AS_IS),
+            (word, source, Form.WORD),
+            (f"{suffix}__", None, Form.AS_IS),
+        )
+        settings = dict(self.trees.defaults.get(node.plugin.value, {}))
+        settings |= {port.key.value: Setting(frame.path, port.value) for port in node.ports}
+        settings = {name: value for name, value in settings.items() if not name.startswith("_")}
+        values = (attribute for name in AUTOREMAP if (attribute := node.element.get(name)))
+        autoremap = any(attribute.value in ("true", "1") for attribute in values)
+        inner = Frame(path, tree, prefix, settings, autoremap, frame, self.names(tree))
+        self.frames.append(inner)
+        return inner

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Navigation over standard input and output, in a buffer that was not saved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from client import Client, connect
+from ide_models import ROBOT, load
+from lsprotocol import types
+
+from fixture import split_files
+
+
+def place(path: Path, text: str, piece: str) -> tuple[types.TextDocumentIdentifier, types.Position]:
+    """The document and the position of the caret in a piece of its text."""
+    before, _, after = piece.partition("|")
+    at = text.index(before + after) + len(before)
+    line = text.count("\n", 0, at)
+    return types.TextDocumentIdentifier(path.as_uri()), types.Position(line, at - text.rfind("\n", 0, at) - 1)
+
+
+def lines(found: object) -> list[tuple[str, int]]:
+    assert isinstance(found, (list, tuple))
+    return [(each.uri.rpartition("/")[2], each.range.start.line + 1) for each in found]
+
+
+async def ask(client: Client, machine: Path, text: str) -> None:
+    at = place(machine, text, 'event="g|o" target')
+    assert lines(await client.text_document_definition_async(types.DefinitionParams(*at))) == [("a.ascxml", 6)]
+    assert lines(await client.text_document_declaration_async(types.DeclarationParams(*at))) == [("a.ascxml", 6)]
+    assert lines(await client.text_document_implementation_async(types.ImplementationParams(*at))) == [("a.ascxml", 7)]
+    context = types.ReferenceContext(include_declaration=False)
+    found = await client.text_document_references_async(types.ReferenceParams(context, *at))
+    assert lines(found) == [("a.ascxml", 7), ("properties.jani", 1), ("properties.jani", 2)]
+    shown = await client.text_document_document_highlight_async(types.DocumentHighlightParams(*at))
+    assert [each.kind for each in shown or ()] == [types.DocumentHighlightKind.Write, types.DocumentHighlightKind.Read]
+    typed = place(machine, text, "_msg.da|ta")
+    (field,) = lines(await client.text_document_definition_async(types.DefinitionParams(*typed)))
+    assert field[0] == "Int32.msg"
+    typed = place(machine, text, 'name="in|put"')
+    found = await client.text_document_type_definition_async(types.TypeDefinitionParams(*typed))
+    assert lines(found) == [("Int32.msg", 1)]
+
+
+async def test_navigation(tmp_path: Path) -> None:
+    load(tmp_path, split_files(ROBOT))
+    machine = tmp_path / "a.ascxml"
+    text = "<!-- 🤖 -->\n" + machine.read_text(encoding="utf-8")
+    async with connect(tmp_path) as client:
+        client.open(machine, text)
+        await ask(client, machine, text)
+        symbols = await client.workspace_symbol_async(types.WorkspaceSymbolParams("walk"))
+        assert [(each.name, each.kind) for each in symbols or ()] == [("Walk", types.SymbolKind.Class)]
+
+
+async def test_calls(tmp_path: Path) -> None:
+    load(tmp_path, split_files(ROBOT))
+    machine = tmp_path / "a.ascxml"
+    text = machine.read_text(encoding="utf-8")
+    async with connect(tmp_path) as client:
+        at = place(machine, text, 'name="in|put"')
+        items = await client.text_document_prepare_call_hierarchy_async(types.CallHierarchyPrepareParams(*at))
+        (topic,) = items or ()
+        assert (topic.name, topic.detail) == ("a__b", "topic")
+        senders = await client.call_hierarchy_incoming_calls_async(types.CallHierarchyIncomingCallsParams(topic))
+        assert [(call.from_.name, len(call.from_ranges)) for call in senders or ()] == [("Walk", 1)]
+        receivers = await client.call_hierarchy_outgoing_calls_async(types.CallHierarchyOutgoingCallsParams(topic))
+        assert [call.to.name for call in receivers or ()] == ["A"]
