@@ -24,6 +24,7 @@ examples:
   as2fm-lsp --check . --warnings-as-errors --baseline .as2fm-baseline.json
   as2fm-lsp --explain late-event-data     what a rule means
   as2fm-lsp init my_robot                 write a small working system
+  as2fm-lsp format models --check         lay files out, or tell which ones are not
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
   as2fm-lsp translate main.xml            write main.jani; translate --help tells more
   as2fm-lsp                               language server on standard input and output
@@ -61,6 +62,10 @@ def _dispatch(arguments: Sequence[str]) -> int:
         from as2fm_lsp.cli import init  # noqa: PLC0415 - each command imports only what it needs
 
         return init.run(arguments[1:])
+    if command == "format":
+        from as2fm_lsp.cli import format  # noqa: A004, PLC0415
+
+        return format.run(arguments[1:])
     if command == "migrate":
         from as2fm_lsp.cli import migrate  # noqa: PLC0415
 

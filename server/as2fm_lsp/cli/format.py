@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp format PATH...`: lay files out."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import io
+import os
+import sys
+from collections.abc import Iterator, Sequence
+
+from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.write import write_file
+from roaml.ide.format import can_format, format_edits, is_ours
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.discover import candidates
+from roaml.project.files import Problem
+from roaml.project.settings import Settings, find_settings
+from roaml.project.workspace import Workspace
+from roaml.text import SourceFile, apply_edits
+
+
+def run(arguments: Sequence[str]) -> int:
+    options = parser().parse_args(arguments)
+    settings, problems = find_settings(os.path.abspath(options.paths[0]))
+    if problems:
+        return _fail(problems[0])
+    analysis = Workspace((), settings).snapshot().analysis
+    for path in options.paths:
+        if not os.path.isdir(path) and (problem := _problem(analysis, os.path.abspath(path))):
+            return _fail(f"{path}: {problem}")
+    status = CLEAN
+    for path in dict.fromkeys(_files(analysis, options.paths, settings)):
+        source = analysis.source(path)
+        if source is None:
+            continue
+        if source.undecodable is not None or not can_format(analysis, path):
+            print(f"as2fm-lsp: {shown_path(path)}: not well-formed, so it stays as it is", file=sys.stderr)
+            status = FOUND
+            continue
+        text = apply_edits(source.text, format_edits(analysis, path))
+        if text == source.text:
+            continue
+        if options.check or options.diff:
+            status = FOUND
+        if options.diff:
+            print_text("".join(_diff(source, text)))
+        elif options.check:
+            print_text(f"{shown_path(path)}\n")
+        else:
+            try:
+                write_file(path, source.encode(text))
+            except OSError as error:
+                return _fail(f"{shown_path(path)}: {error.strerror or error}")
+            print_text(f"formatted {shown_path(path)}\n")
+    return status
+
+
+def parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="as2fm-lsp format",
+        description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
+        "space is changed, so never what a file means.",
+        epilog="exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not "
+        "well-formed, 2 wrong use",
+    )
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
+    mode = parser.add_mutually_exclusive_group()
+    mode.add_argument("--check", action="store_true", help="name the files that would change and write nothing")
+    mode.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    return parser
+
+
+def _problem(analysis: Analysis, path: str) -> str:
+    """Why a file that was named cannot be formatted."""
+    found = analysis.files.read(path)
+    if isinstance(found, Problem):
+        return found.value
+    return "" if is_ours(analysis, path) else "it is neither a model nor a property file"
+
+
+def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
+    """The files that are named, and those in folders; JANI models there are written by tools and stay as they are."""
+    for path in map(os.path.abspath, paths):
+        if not os.path.isdir(path):
+            yield path
+            continue
+        for each in candidates((path,), settings.exclude):
+            if is_ours(analysis, each) and analysis.kind(each) is not FileKind.JANI_MODEL:
+                yield each
+
+
+def _diff(source: SourceFile, text: str) -> Iterator[str]:
+    name = shown_path(source.path)
+    before, after = (list(io.StringIO(each, newline="\n")) for each in (source.text, text))
+    for line in difflib.unified_diff(before, after, name, name):
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def _fail(message: str) -> int:
+    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    return USAGE

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/formatting` and `rangeFormatting`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import asked
+from roaml.ide.format import format_edits
+from roaml.ide.layout import Layout
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_WIDEST = 16
+
+
+def register(server: Server) -> None:
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        return _edits(server, params.text_document, params.options, None)
+
+    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
+        return _edits(server, params.text_document, params.options, params.range)
+
+
+def layout_of(options: types.FormattingOptions) -> Layout:
+    """The layout that a client asks for; what it may not mean is moved to the nearest that it may."""
+    return Layout(width=min(max(options.tab_size, 1), _WIDEST), tabs=not options.insert_spaces)
+
+
+def _edits(
+    server: Server,
+    document: types.TextDocumentIdentifier,
+    options: types.FormattingOptions,
+    range_: types.Range | None,
+) -> list[types.TextEdit]:
+    file = asked(server, document)
+    if file is None:
+        return []
+    within = None if range_ is None else file.span(range_)
+    found = format_edits(file.analysis, file.path, layout_of(options), within)
+    return [file.convert.edit(file.source, edit) for edit in found]

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an editor shows of a file's structure: folding, growing selections, outline, links to other files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import Asked, asked
+from roaml.ide.folding import FoldKind, folds
+from roaml.ide.links import links
+from roaml.ide.selection import selections
+from roaml.ide.symbols import DocumentSymbol, SymbolKind, document_symbols
+from roaml.text import Span
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_FOLDS = {FoldKind.BLOCK: types.FoldingRangeKind.Region, FoldKind.COMMENT: types.FoldingRangeKind.Comment}
+
+_KINDS = {
+    SymbolKind.MACHINE: types.SymbolKind.Class,
+    SymbolKind.DATAMODEL: types.SymbolKind.Namespace,
+    SymbolKind.VARIABLE: types.SymbolKind.Variable,
+    SymbolKind.PORT: types.SymbolKind.Property,
+    SymbolKind.ROS: types.SymbolKind.Interface,
+    SymbolKind.STATE: types.SymbolKind.Object,
+    SymbolKind.TRANSITION: types.SymbolKind.Event,
+    SymbolKind.THREAD: types.SymbolKind.Module,
+    SymbolKind.TREE: types.SymbolKind.Class,
+    SymbolKind.CONTROL: types.SymbolKind.Operator,
+    SymbolKind.LEAF: types.SymbolKind.Function,
+    SymbolKind.SYSTEM: types.SymbolKind.Package,
+    SymbolKind.SECTION: types.SymbolKind.Namespace,
+    SymbolKind.INPUT: types.SymbolKind.File,
+    SymbolKind.STRUCT: types.SymbolKind.Struct,
+    SymbolKind.MEMBER: types.SymbolKind.Field,
+    SymbolKind.PROPERTY: types.SymbolKind.Boolean,
+}
+
+
+def register(server: Server) -> None:
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def folding_range(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        file = asked(server, params.text_document)
+        found = folds(file.analysis, file.path) if file else ()
+        return [types.FoldingRange(fold.first, fold.last, kind=_FOLDS[fold.kind]) for fold in found]
+
+    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    def selection_range(params: types.SelectionRangeParams) -> list[types.SelectionRange]:
+        file = asked(server, params.text_document)
+        if file is None:
+            return []
+        offsets = [file.offset(position) for position in params.positions]
+        return [_selection(file, selections(file.analysis, file.path, offset)) for offset in offsets]
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    def document_symbol(
+        params: types.DocumentSymbolParams,
+    ) -> list[types.DocumentSymbol] | list[types.SymbolInformation]:
+        file = asked(server, params.text_document)
+        if file is None:
+            return []
+        found = document_symbols(file.analysis, file.path)
+        if _takes_nested_symbols(server):
+            return [_symbol(file, symbol) for symbol in found]
+        return list(_flat(file, found))
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    def document_link(params: types.DocumentLinkParams) -> list[types.DocumentLink]:
+        file = asked(server, params.text_document)
+        if file is None:
+            return []
+        found = links(file.analysis, file.path)
+        return [types.DocumentLink(file.range(link.span), file.convert.uri(link.target)) for link in found]
+
+
+def _selection(file: Asked, spans: Sequence[Span]) -> types.SelectionRange:
+    selection: types.SelectionRange | None = None
+    for span in reversed(spans):
+        selection = types.SelectionRange(file.range(span), selection)
+    assert selection is not None, "the whole text is around every offset"
+    return selection
+
+
+def _symbol(file: Asked, symbol: DocumentSymbol) -> types.DocumentSymbol:
+    return types.DocumentSymbol(
+        symbol.name,
+        _KINDS[symbol.kind],
+        file.range(symbol.span),
+        file.range(symbol.name_span),
+        detail=symbol.detail or None,
+        children=[_symbol(file, child) for child in symbol.children],
+    )
+
+
+def _flat(
+    file: Asked, symbols: Sequence[DocumentSymbol], container: str | None = None
+) -> Sequence[types.SymbolInformation]:
+    """For clients that know no outline."""
+    found: list[types.SymbolInformation] = []
+    for symbol in symbols:
+        place = types.Location(file.convert.uri(file.path), file.range(symbol.span))
+        found.append(types.SymbolInformation(place, symbol.name, _KINDS[symbol.kind], container_name=container))
+        found += _flat(file, symbol.children, symbol.name)
+    return found
+
+
+def _takes_nested_symbols(server: Server) -> bool:
+    capabilities = server.client_capabilities.text_document
+    symbol = capabilities.document_symbol if capabilities else None
+    return bool(symbol and symbol.hierarchical_document_symbol_support)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/linkedEditingRange` and `textDocument/onTypeFormatting`: both tags of an element are kept alike."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import asked
+from roaml.ide.closing import TRIGGERS, close_tag
+from roaml.ide.linked import NAME_PATTERN, linked_names
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+
+def register(server: Server) -> None:
+    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+    def linked_editing_range(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
+        file = asked(server, params.text_document)
+        if file is None:
+            return None
+        names = linked_names(file.analysis, file.path, file.offset(params.position))
+        return types.LinkedEditingRanges([file.range(name) for name in names], NAME_PATTERN) if names else None
+
+    first, *more = TRIGGERS
+
+    @server.feature(
+        types.TEXT_DOCUMENT_ON_TYPE_FORMATTING,
+        types.DocumentOnTypeFormattingOptions(first, more_trigger_character=more),
+    )
+    def on_type_formatting(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
+        file = asked(server, params.text_document)
+        edit = close_tag(file.analysis, file.path, file.offset(params.position)) if file else None
+        return [file.convert.edit(file.source, edit)] if file and edit else []

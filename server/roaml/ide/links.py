@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Paths in a file that lead to another file: `src` in a system file, `path` of an `<include>` in a tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.files import Problem
+from roaml.text import Span
+
+
+class Link(NamedTuple):
+    """The path at `span` means the file `target`, which is there."""
+
+    span: Span
+    target: str
+
+
+def links(analysis: Analysis, path: str) -> tuple[Link, ...]:
+    """The links in a file, in the order of the text."""
+    return tuple(link for link in _named(analysis, path) if _is_file(analysis, link.target))
+
+
+def _named(analysis: Analysis, path: str) -> Iterator[Link]:
+    kind = analysis.kind(path)
+    if kind is FileKind.SYSTEM:
+        for listed in analysis.listed(path):
+            if listed.input.src is not None:
+                yield Link(listed.input.src.span, listed.path)
+    elif kind is FileKind.TREE and (tree := analysis.tree(path)):
+        for include in tree.includes:
+            if include.path is not None and include.package is None:
+                yield Link(include.path.span, analysis.include_path(path, include.path.value))
+
+
+def _is_file(analysis: Analysis, path: str) -> bool:
+    return analysis.files.read(path) not in (Problem.MISSING, Problem.FOLDER, Problem.SPECIAL)

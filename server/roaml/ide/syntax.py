@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A file as XML with its grammar, and where expressions stand in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import Expression, expression_in, expression_of, text_span
+from roaml.project.analysis import Analysis
+from roaml.xml import Document, Element
+
+GRAMMARS = {
+    FileKind.MACHINE: HL_SCXML,
+    FileKind.SYSTEM: SYSTEM,
+    FileKind.TREE: BEHAVIOR_TREE,
+    FileKind.STRUCTS: STRUCTS,
+}
+
+_EXPRESSIONS = ("expression", "location")
+
+
+class XmlFile(NamedTuple):
+    document: Document
+    grammar: Grammar
+
+
+class Typed(NamedTuple):
+    """An element with what the grammar says of it; None if it knows nothing of such an element."""
+
+    element: Element
+    type: ElementType | None
+
+
+def xml_file(analysis: Analysis, path: str) -> XmlFile | None:
+    """A file in one of our XML languages; None if it is none."""
+    grammar = GRAMMARS.get(analysis.kind(path))
+    document = analysis.document(path) if grammar else None
+    return None if grammar is None or document is None else XmlFile(document, grammar)
+
+
+def walk(file: XmlFile) -> Iterator[Typed]:
+    """All elements in document order."""
+    stack = [_typed(file.grammar, None, each) for each in _roots(file.document)][::-1]
+    while stack:
+        each = stack.pop()
+        yield each
+        stack += [_typed(file.grammar, each.type, child) for child in reversed(each.element.elements)]
+
+
+def path_at(file: XmlFile, offset: int) -> list[Typed]:
+    """The elements around an offset, outermost first."""
+    found: list[Typed] = []
+    for element in file.document.path_at(offset):
+        found.append(_typed(file.grammar, found[-1].type if found else None, element))
+    return found
+
+
+def expressions(document: Document, each: Typed) -> Iterator[Expression]:
+    """The expressions in the attributes and in the text of an element, in the order of the text."""
+    element, type_ = each
+    if type_ is None:
+        return
+    for attribute in element.attributes:
+        known = type_.attributes.get(attribute.name)
+        if known is not None and known.value in _EXPRESSIONS and (found := expression_of(document, attribute)):
+            yield found
+    if type_.value in _EXPRESSIONS and (span := text_span(element)):
+        yield expression_in(document, span)
+
+
+def _roots(document: Document) -> list[Element]:
+    return [node for node in document.nodes if isinstance(node, Element)]
+
+
+def _typed(grammar: Grammar, parent: ElementType | None, element: Element) -> Typed:
+    """What is known of an element in its parent, or at least of elements with its name."""
+    known = grammar.child(parent, element.name) if parent else None
+    return Typed(element, known or grammar.find(element.name))
