@@ -9,6 +9,7 @@ from client import Client, connect
 from ide_models import ROBOT, load
 from lsprotocol import types
 
+import clock
 from fixture import split_files
 
 
@@ -67,3 +68,15 @@ async def test_calls(tmp_path: Path) -> None:
         assert [(call.from_.name, len(call.from_ranges)) for call in senders or ()] == [("Walk", 1)]
         receivers = await client.call_hierarchy_outgoing_calls_async(types.CallHierarchyOutgoingCallsParams(topic))
         assert [call.to.name for call in receivers or ()] == ["A"]
+
+
+async def test_hover(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    document = types.TextDocumentIdentifier((tmp_path / "clock.ascxml").as_uri())
+    async with connect(tmp_path) as client:
+        found = await client.text_document_hover_async(types.HoverParams(document, types.Position(2, 19)))
+        assert found is not None
+        assert isinstance(found.contents, types.MarkupContent)
+        assert "count : uint8" in found.contents.value
+        assert found.range == types.Range(types.Position(2, 18), types.Position(2, 23))
+        assert await client.text_document_hover_async(types.HoverParams(document, types.Position(1, 0))) is None

@@ -61,18 +61,18 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    result = argparse.ArgumentParser(
         prog="as2fm-lsp format",
         description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
         "space is changed, so never what a file means.",
         epilog="exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not "
         "well-formed, 2 wrong use",
     )
-    parser.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
-    mode = parser.add_mutually_exclusive_group()
+    result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
+    mode = result.add_mutually_exclusive_group()
     mode.add_argument("--check", action="store_true", help="name the files that would change and write nothing")
     mode.add_argument("--diff", action="store_true", help="show what would change and write nothing")
-    return parser
+    return result
 
 
 def _problem(analysis: Analysis, path: str) -> str:

@@ -9,6 +9,7 @@ from as2fm_lsp.handlers import (
     call_hierarchy,
     code_action,
     formatting,
+    hover,
     navigate,
     structure,
     tags,
@@ -20,7 +21,20 @@ if TYPE_CHECKING:
     from as2fm_lsp.server import Server
 
 
+_FEATURES = (
+    call_hierarchy,
+    code_action,
+    formatting,
+    hover,
+    navigate,
+    structure,
+    tags,
+    translate,
+    workspace_symbol,
+)
+
+
 def register(server: Server) -> None:
     """Make all features known to the server."""
-    for module in (call_hierarchy, code_action, formatting, navigate, structure, tags, translate, workspace_symbol):
+    for module in _FEATURES:
         module.register(server)
