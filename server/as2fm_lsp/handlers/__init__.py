@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from as2fm_lsp.handlers import code_action, formatting, structure, tags, translate
+from as2fm_lsp.handlers import code_action, formatting, semantic_tokens, structure, tags, translate
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -13,5 +13,5 @@ if TYPE_CHECKING:
 
 def register(server: Server) -> None:
     """Make all features known to the server."""
-    for module in (code_action, formatting, structure, tags, translate):
+    for module in (code_action, formatting, semantic_tokens, structure, tags, translate):
         module.register(server)
