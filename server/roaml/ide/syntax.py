@@ -19,7 +19,7 @@ GRAMMARS = {
     FileKind.STRUCTS: STRUCTS,
 }
 
-_EXPRESSIONS = ("expression", "location")
+_EXPRESSIONS = ("expression", "location", "constant")
 
 
 class XmlFile(NamedTuple):

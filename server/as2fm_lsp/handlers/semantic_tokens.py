@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/semanticTokens`: whole files, what has changed since the last answer, ranges."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import Asked, asked
+from roaml.ide.tokens import Modifier, Token, TokenKind, semantic_tokens
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_TYPES = {
+    TokenKind.STRUCTURE_TAG: types.SemanticTokenTypes.Keyword,
+    TokenKind.STATE_TAG: types.SemanticTokenTypes.Class,
+    TokenKind.TRANSITION_TAG: types.SemanticTokenTypes.Event,
+    TokenKind.ROS_TAG: types.SemanticTokenTypes.Interface,
+    TokenKind.BT_TAG: types.SemanticTokenTypes.Macro,
+    TokenKind.CONTROL_TAG: types.SemanticTokenTypes.Keyword,
+    TokenKind.DECORATOR_TAG: types.SemanticTokenTypes.Decorator,
+    TokenKind.LEAF_TAG: types.SemanticTokenTypes.Function,
+    TokenKind.SUBTREE_TAG: types.SemanticTokenTypes.Namespace,
+    TokenKind.ATTRIBUTE: types.SemanticTokenTypes.Property,
+    TokenKind.STATE: types.SemanticTokenTypes.Class,
+    TokenKind.EVENT: types.SemanticTokenTypes.Event,
+    TokenKind.HANDLE: types.SemanticTokenTypes.Interface,
+    TokenKind.PORT: types.SemanticTokenTypes.Parameter,
+    TokenKind.MEMBER: types.SemanticTokenTypes.Property,
+    TokenKind.PLUGIN: types.SemanticTokenTypes.Function,
+    TokenKind.TREE: types.SemanticTokenTypes.Namespace,
+    TokenKind.TYPE: types.SemanticTokenTypes.Type,
+    TokenKind.VARIABLE: types.SemanticTokenTypes.Variable,
+    TokenKind.EVENT_VARIABLE: types.SemanticTokenTypes.Parameter,
+    TokenKind.CONSTANT: types.SemanticTokenTypes.EnumMember,
+    TokenKind.LIBRARY: types.SemanticTokenTypes.Namespace,
+    TokenKind.FUNCTION: types.SemanticTokenTypes.Function,
+    TokenKind.NUMBER: types.SemanticTokenTypes.Number,
+    TokenKind.STRING: types.SemanticTokenTypes.String,
+    TokenKind.LITERAL: types.SemanticTokenTypes.Keyword,
+    TokenKind.OPERATOR: types.SemanticTokenTypes.Operator,
+}
+_MODIFIERS = {
+    Modifier.DECLARATION: types.SemanticTokenModifiers.Declaration,
+    Modifier.DEPRECATED: types.SemanticTokenModifiers.Deprecated,
+}
+LEGEND = types.SemanticTokensLegend(
+    [str(type_.value) for type_ in dict.fromkeys(_TYPES.values())],
+    [str(modifier.value) for modifier in _MODIFIERS.values()],
+)
+_TYPE_NUMBERS = {kind: LEGEND.token_types.index(type_.value) for kind, type_ in _TYPES.items()}
+_BITS = {modifier: 1 << number for number, modifier in enumerate(_MODIFIERS)}
+
+_REMEMBERED = 64
+"""Files whose last answer is kept, to tell what has changed since."""
+
+
+def register(server: Server) -> None:
+    last: OrderedDict[str, types.SemanticTokens] = OrderedDict()
+    answers = 0
+
+    def answer(file: Asked) -> types.SemanticTokens:
+        nonlocal answers
+        answers += 1
+        found = types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path)), str(answers))
+        last[file.path] = found
+        last.move_to_end(file.path)
+        if len(last) > _REMEMBERED:
+            last.popitem(last=False)
+        return found
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
+    def full(params: types.SemanticTokensParams) -> types.SemanticTokens:
+        file = asked(server, params.text_document)
+        return answer(file) if file else types.SemanticTokens([])
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA)
+    def delta(params: types.SemanticTokensDeltaParams) -> types.SemanticTokens | types.SemanticTokensDelta:
+        file = asked(server, params.text_document)
+        if file is None:
+            return types.SemanticTokens([])
+        before = last.get(file.path)
+        after = answer(file)
+        if before is None or before.result_id != params.previous_result_id:
+            return after
+        return types.SemanticTokensDelta(changes(before.data, after.data), after.result_id)
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE)
+    def range_(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
+        file = asked(server, params.text_document)
+        if file is None:
+            return types.SemanticTokens([])
+        return types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path, file.span(params.range))))
+
+
+def encoded(file: Asked, tokens: Iterable[Token]) -> list[int]:
+    """Five numbers for each token, its place relative to the one before."""
+    data: list[int] = []
+    line = character = 0
+    for token in tokens:
+        place = file.range(token.span)
+        start = place.start
+        if start.line != line:
+            character = 0
+        data += (
+            start.line - line,
+            start.character - character,
+            place.end.character - start.character,
+            _TYPE_NUMBERS[token.kind],
+            sum(_BITS[modifier] for modifier in token.modifiers),
+        )
+        line, character = start.line, start.character
+    return data
+
+
+def changes(before: Sequence[int], after: Sequence[int]) -> list[types.SemanticTokensEdit]:
+    """What makes `after` of `before`: one stretch at most."""
+    least = min(len(before), len(after))
+    head = next((i for i in range(least) if before[i] != after[i]), least)
+    least -= head
+    tail = next((i for i in range(least) if before[-1 - i] != after[-1 - i]), least)
+    if head == len(before) == len(after):
+        return []
+    stretch = list(after[head : len(after) - tail])
+    return [types.SemanticTokensEdit(head, len(before) - tail - head, stretch)]

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the words of a file are, for coloring: tags by their role, attribute names, names in values, and expressions.
+
+- Tokens do not overlap, and none goes over the end of a line.
+- Known by syntax and grammar alone: what a name in an expression refers to is not looked up.
+"""
+
+from __future__ import annotations
+
+import enum
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import NamedTuple
+
+from roaml.expr import parse as expr
+from roaml.ide.json_tree import values
+from roaml.ide.syntax import Typed, XmlFile, expressions, walk, xml_file
+from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, Member
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, AttributeType
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import Expression, name_of
+from roaml.model.tree import blackboard_variable
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+from roaml.xml import Attribute
+
+
+class TokenKind(enum.Enum):
+    STRUCTURE_TAG = "tag of a part"
+    STATE_TAG = "tag of a state"
+    TRANSITION_TAG = "tag of a transition"
+    ROS_TAG = "tag of something of ROS"
+    BT_TAG = "tag of the tree protocol"
+    CONTROL_TAG = "tag of a control node"
+    DECORATOR_TAG = "tag of a decorator"
+    LEAF_TAG = "tag of an action, condition or plugin"
+    SUBTREE_TAG = "tag of a subtree"
+    ATTRIBUTE = "attribute or key"
+    STATE = "state"
+    EVENT = "event"
+    HANDLE = "ROS interface or timer"
+    PORT = "port"
+    MEMBER = "field, struct member or parameter"
+    PLUGIN = "plugin"
+    TREE = "tree, machine"
+    TYPE = "type"
+    VARIABLE = "variable"
+    EVENT_VARIABLE = "event variable"
+    CONSTANT = "name of a constant value"
+    LIBRARY = "library of functions"
+    FUNCTION = "function"
+    NUMBER = "number"
+    STRING = "string"
+    LITERAL = "literal word"
+    OPERATOR = "operator"
+
+
+class Modifier(enum.Enum):
+    DECLARATION = "names something new"
+    DEPRECATED = "an older spelling"
+
+
+class Token(NamedTuple):
+    span: Span
+    kind: TokenKind
+    modifiers: frozenset[Modifier] = frozenset()
+
+
+def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -> tuple[Token, ...]:
+    """The tokens of a file, or those that touch a part of it, in the order of the text."""
+    source = analysis.source(path)
+    if source is None:
+        return ()
+    if (file := xml_file(analysis, path)) is not None:
+        found = _xml(file)
+    elif analysis.kind(path) is FileKind.PROPERTIES and (json := analysis.json(path)) is not None:
+        found = (token for value in values(json[0]) for token in _json(value))
+    else:
+        return ()
+    if within is not None:
+        found = (token for token in found if token.span.start <= within.end and within.start <= token.span.end)
+    return tuple(_on_lines(source.text, sorted(found, key=lambda token: token.span)))
+
+
+_LINE = re.compile(r"[^\r\n]+")
+
+
+def _on_lines(text: str, tokens: Iterable[Token]) -> Iterator[Token]:
+    """Tokens cut at line ends, without those that begin inside others."""
+    done = 0
+    for token in tokens:
+        if token.span.start >= done:
+            for line in _LINE.finditer(text, *token.span):
+                yield token._replace(span=Span(*line.span()))
+            done = max(done, token.span.end)
+
+
+# ------------------------------------------------------------------------- XML
+
+
+def _xml(file: XmlFile) -> Iterator[Token]:
+    for each in walk(file):
+        kind = _tag_kind(file, each)
+        element, type_ = each
+        if kind is not None:
+            modifiers = _modifiers(deprecated=bool(type_ and type_.use))
+            yield Token(element.name_span, kind, modifiers)
+            if element.close_name_span is not None:
+                yield Token(element.close_name_span, kind, modifiers)
+        for attribute in element.attributes:
+            known = type_.attributes.get(attribute.name) if type_ else None
+            yield Token(attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use)))
+            yield from _value(file, attribute, known)
+        for expression in expressions(file.document, each):
+            yield from expression_tokens(expression)
+
+
+def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:
+    """What a tag is; None for what nobody knows. In trees a tag that nobody knows names a plugin."""
+    element, type_ = each
+    if file.grammar is BEHAVIOR_TREE:
+        return _NODES.get(type_.node, TokenKind.STRUCTURE_TAG) if type_ else TokenKind.LEAF_TAG
+    if type_ is None:
+        return None
+    if any(attribute.defines == "state" for attribute in type_.attributes.values()):
+        return TokenKind.STATE_TAG
+    if element.name.startswith("ros_"):
+        return TokenKind.ROS_TAG
+    if element.name.startswith("bt_") and file.grammar is HL_SCXML:
+        return TokenKind.BT_TAG
+    return TokenKind.TRANSITION_TAG if type_.receives else TokenKind.STRUCTURE_TAG
+
+
+_NODES = {
+    "control": TokenKind.CONTROL_TAG,
+    "decorator": TokenKind.DECORATOR_TAG,
+    "action": TokenKind.LEAF_TAG,
+    "condition": TokenKind.LEAF_TAG,
+    "subtree": TokenKind.SUBTREE_TAG,
+}
+
+_SYMBOLS = {
+    "state": TokenKind.STATE,
+    "event": TokenKind.EVENT,
+    "port": TokenKind.PORT,
+    "variable": TokenKind.VARIABLE,
+    "plugin": TokenKind.PLUGIN,
+    "tree": TokenKind.TREE,
+    "machine": TokenKind.TREE,
+    "struct": TokenKind.TYPE,
+    **dict.fromkeys(("field", "member", "parameter"), TokenKind.MEMBER),
+    **dict.fromkeys(("publisher", "subscriber", "timer"), TokenKind.HANDLE),
+    **dict.fromkeys(("service-client", "service-server", "action-client", "action-server"), TokenKind.HANDLE),
+}
+_VALUES = {
+    "type": TokenKind.TYPE,
+    "ros-type": TokenKind.TYPE,
+    "number": TokenKind.NUMBER,
+    "child-index": TokenKind.NUMBER,
+    "status": TokenKind.CONSTANT,
+}
+
+
+def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> Iterator[Token]:
+    """The token that the value of an attribute is as a whole; expressions are none."""
+    name = name_of(attribute)
+    if name is None:
+        return
+    if file.grammar is BEHAVIOR_TREE and blackboard_variable(name.value) is not None:
+        yield Token(name.span, TokenKind.VARIABLE)
+    elif known is not None:
+        symbol = known.defines or next(iter(known.refers), "")
+        kind = _SYMBOLS.get(symbol) or _VALUES.get(known.value)
+        if kind is not None:
+            yield Token(name.span, kind, _modifiers(declaration=bool(known.defines)))
+
+
+def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozenset[Modifier]:
+    found = ((Modifier.DECLARATION, declaration), (Modifier.DEPRECATED, deprecated))
+    return frozenset(modifier for modifier, holds in found if holds)
+
+
+# ----------------------------------------------------------------- expressions
+
+
+def expression_tokens(expression: Expression) -> Iterator[Token]:
+    """The tokens of an expression; brackets, points and commas are none."""
+    tokens = expr.tokens(expression.source)
+    for i, token in enumerate(tokens):
+        before = tokens[i - 1].text if i else ""
+        after = tokens[i + 1].text if i + 1 < len(tokens) else ""
+        kind = _word(token.text, before, after) if token.kind == "name" else _OTHERS.get(token.kind)
+        if kind is not None and not (kind is TokenKind.OPERATOR and token.text in _PUNCTUATION):
+            yield Token(expression.source.span(token.start, token.end), kind)
+
+
+_OTHERS = {
+    "number": TokenKind.NUMBER,
+    "string": TokenKind.STRING,
+    "template": TokenKind.STRING,
+    "punctuator": TokenKind.OPERATOR,
+}
+_PUNCTUATION = frozenset("()[]{},.;")
+_LITERALS = frozenset(("true", "false", "null", "undefined"))
+
+
+def _word(word: str, before: str, after: str) -> TokenKind:
+    if after == "(":
+        return TokenKind.FUNCTION
+    if before == ".":
+        return TokenKind.MEMBER
+    if word == "Math":
+        return TokenKind.LIBRARY
+    if word in _LITERALS:
+        return TokenKind.LITERAL
+    return TokenKind.EVENT_VARIABLE if word in _event_variables() else TokenKind.VARIABLE
+
+
+@cache
+def _event_variables() -> frozenset[str]:
+    return frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
+
+
+# ------------------------------------------------------------------------ JSON
+
+
+_OPERATOR_KEYS = ("op", "fun")
+_PLAIN_KEYS = ("name", "comment")
+
+
+def _json(value: object) -> Iterator[Token]:
+    """The tokens of one value, those inside of it left out; what a string is, its key tells."""
+    if isinstance(value, JsonObject):
+        for member in value.members:
+            yield Token(member.key_span, TokenKind.ATTRIBUTE)
+            if isinstance(member.value, JsonString):
+                yield _string(member, member.value)
+    elif isinstance(value, JsonNumber):
+        yield Token(value.span, TokenKind.NUMBER)
+    elif isinstance(value, JsonBool):
+        yield Token(value.span, TokenKind.LITERAL)
+
+
+def _string(member: Member, value: JsonString) -> Token:
+    """In a property a string is a variable, but for those that are operators or meant for people."""
+    if member.key in _OPERATOR_KEYS:
+        return Token(value.span, TokenKind.OPERATOR)
+    return Token(value.span, TokenKind.STRING if member.key in _PLAIN_KEYS else TokenKind.VARIABLE)

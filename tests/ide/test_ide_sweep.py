@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every feature of syntax, asked at many places of damaged models: no failure, and no place outside of the text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from random import Random
+
+import pytest
+
+from fuzz.cases import make
+from roaml import api
+from roaml.ide.closing import close_tag
+from roaml.ide.folding import folds
+from roaml.ide.format import format_edits
+from roaml.ide.linked import linked_names
+from roaml.ide.links import links
+from roaml.ide.selection import selections
+from roaml.ide.symbols import DocumentSymbol, document_symbols
+from roaml.ide.tokens import semantic_tokens
+from roaml.project.settings import Settings
+from roaml.text import Span
+
+
+@pytest.mark.parametrize("first", range(0, 100, 10))
+def test_damaged_models(first: int) -> None:
+    for seed in range(first, first + 10):
+        case = make(seed)
+        result = api.check([case.main], case.model.ros_paths, Settings(), case.texts)
+        analysis, random = result.snapshot.analysis, Random(seed)
+        for path in result.files:
+            text = result.source(path).text
+            within(text, (token.span for token in semantic_tokens(analysis, path)))
+            within(text, (link.span for link in links(analysis, path)))
+            within(text, (edit.span for edit in format_edits(analysis, path)))
+            within(text, spans_of(document_symbols(analysis, path)))
+            lines = result.source(path).lines.line_count
+            assert all(0 <= fold.first < fold.last < lines for fold in folds(analysis, path))
+            for offset in {0, len(text), *(random.randint(0, len(text)) for _ in range(10))}:
+                around = selections(analysis, path, offset)
+                within(text, around)
+                assert all(span.contains(offset) for span in around)
+                assert all(o.start <= i.start and i.end <= o.end for i, o in pairwise(around))
+                within(text, linked_names(analysis, path, offset))
+                edit = close_tag(analysis, path, offset)
+                assert edit is None or edit.span == (offset, offset)
+                format_edits(analysis, path, within=Span(offset, min(len(text), offset + 50)))
+
+
+def within(text: str, spans: Iterable[Span]) -> None:
+    assert all(0 <= span.start <= span.end <= len(text) for span in spans)
+
+
+def spans_of(symbols: Iterable[DocumentSymbol]) -> Iterable[Span]:
+    for symbol in symbols:
+        assert symbol.name
+        assert symbol.span.start <= symbol.name_span.start <= symbol.name_span.end <= symbol.span.end
+        yield symbol.span
+        yield from spans_of(symbol.children)
