@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from as2fm_lsp.handlers import call_hierarchy, code_action, navigate, translate, workspace_symbol
+from as2fm_lsp.handlers import call_hierarchy, code_action, navigate, rename, translate, workspace_symbol
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -13,5 +13,5 @@ if TYPE_CHECKING:
 
 def register(server: Server) -> None:
     """Make all features known to the server."""
-    for module in (call_hierarchy, code_action, navigate, translate, workspace_symbol):
+    for module in (call_hierarchy, code_action, navigate, rename, translate, workspace_symbol):
         module.register(server)

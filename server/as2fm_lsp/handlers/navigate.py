@@ -28,9 +28,7 @@ Find = Callable[[Analysis, str, int], Iterable[Location]]
 def register(server: Server) -> None:
     session = server.session
 
-    def locations(
-        document: types.TextDocumentIdentifier, position: types.Position, find: Find
-    ) -> list[types.Location]:
+    def locations(document: types.TextDocumentIdentifier, position: types.Position, find: Find) -> list[types.Location]:
         """What `find` says about a place."""
         path = session.convert.path(document.uri)
         analysis = session.moment().snapshot(path).analysis
