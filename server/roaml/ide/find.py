@@ -82,7 +82,7 @@ def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
     found: dict[tuple[str, Span], Use] = {}
     while todo:
         symbol = todo.pop(0)
-        for path, uses_ in _where(analysis, symbol):
+        for path, uses_ in where(analysis, symbol):
             for occurrence in uses_.by_symbol.get(symbol, ()):
                 place = (path, occurrence.span)
                 # Of several at one place the definition says most, then that of what was asked about.
@@ -101,7 +101,7 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
             yield occurrence.symbol
 
 
-def _where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
+def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
     """The files that can name a symbol, as they are in the systems that matter."""
     if symbol.kind in _IN_ONE_FILE:
         for system in systems_of(analysis, symbol.path):

@@ -165,6 +165,25 @@ class Trees:
                     inner = inner.outer
         return above
 
+    def is_taken(self, symbol: Symbol, new: str) -> bool:
+        """Whether a variable, if it were called `new`, would be taken for another that is called so."""
+        for path, file in self.files.items():
+            for tree in file.trees:
+                key = path, tree.id.value if tree.id else ""
+                if self.variable(*key, symbol.name) == symbol and new in names_in(tree):
+                    return True
+        for frame in self.frames:
+            own = self.variable(*frame.key, symbol.name) == symbol and symbol.name in frame.names
+            if own and (new in frame.names or new in frame.settings):
+                return True
+            if frame.outer is None or not frame.autoremap or new in frame.settings:
+                continue
+            outside = self.variable(*frame.outer.key, symbol.name) == symbol and frame.outer.knows(symbol.name)
+            free = own and symbol.name not in frame.settings
+            if (free and frame.outer.knows(new)) or (outside and new in frame.names):
+                return True
+        return False
+
     @cached_property
     def full_names(self) -> Mapping[str, tuple[Piece, ...]]:
         """The full name of each variable in the translation -> what it is made of."""

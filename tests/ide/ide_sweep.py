@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renames each thing of a system to a fresh name and holds the system against what it was.
+
+The findings are the same but for the name, the translation is the same but for the name, and renaming back restores
+the text.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml import api
+from roaml.ide.find import Thing, systems_of, thing
+from roaml.ide.occurrences import uses
+from roaml.ide.rename import Refusal, Renaming, prepare, rename
+from roaml.jani.writer import write
+from roaml.model.system import safe_name, sanitise
+from roaml.project.settings import Settings
+from roaml.project.workspace import Snapshot
+from roaml.text import TextEdit, apply_edits
+
+FRESH = "zqfresh"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A thing of a system, and a place at which it can be renamed."""
+
+    thing: Thing
+    path: str
+    offset: int
+
+    @property
+    def name(self) -> str:
+        symbol = self.thing.symbols[0]
+        return " ".join(filter(None, (symbol.kind, symbol.name, symbol.scope)))
+
+
+class System:
+    """A system as it is on the disk.
+
+    Args:
+        main: path of the system file.
+        ros_paths: folders with ROS packages.
+    """
+
+    def __init__(self, main: str, ros_paths: tuple[str, ...] = ()) -> None:
+        self.main = main
+        self.ros_paths = ros_paths
+        self.texts: dict[str, str] = {}
+        result = self.check({})
+        self.texts = {path: result.source(path).text for path in result.files}
+        self.files = result.files
+        self.snapshot: Snapshot = result.snapshot
+        self.findings = self._findings(result, "", "")
+        self.jani = self._jani({})
+
+    def check(self, texts: Mapping[str, str]) -> api.CheckResult:
+        return api.check([self.main], self.ros_paths, Settings(), texts)
+
+    def cases(self) -> Iterator[Case]:
+        """Each thing that can be renamed, once, at the first of its places."""
+        analysis, done = self.snapshot.analysis, set()
+        for path in self.files:
+            for system in systems_of(analysis, path):
+                for each in uses(analysis, path, system).all:
+                    if each.symbol in done:
+                        continue
+                    found = thing(analysis, (each.symbol,))
+                    done.update(found.symbols)
+                    if not isinstance(prepare(analysis, path, each.span.start), Refusal):
+                        yield Case(found, path, each.span.start)
+
+    def failures(self, case: Case) -> Iterator[str]:
+        """What a rename, and renaming back, do not keep."""
+        renaming = rename(self.snapshot.analysis, case.path, case.offset, FRESH)
+        if not isinstance(renaming, Renaming):
+            yield f"refused: {renaming.reason}"
+            return
+        changed = {path: apply_edits(self.texts[path], edits) for path, edits in renaming.edits.items()}
+        for path, edits in renaming.edits.items():
+            yield from (f"{path}: odd edit {edit}" for edit in edits if edit.span.start >= edit.span.end)
+        result = self.check(changed)
+        symbol = case.thing.symbols[0]
+        gone, came = _differences(self.findings, self._findings(result, FRESH, symbol.name, renaming.edits))
+        if gone or came:
+            yield f"findings: {gone} became {came}"
+        jani = self._jani(changed)
+        spellings = {symbol.name, sanitise(symbol.name), safe_name(symbol.name), symbol.name.replace(".", "__")}
+        spellings.add(re.sub(r"\W", "_", symbol.name, flags=re.ASCII))
+        if self.jani is not None and not any(_same(self.jani, jani, spelling) for spelling in spellings):
+            yield "the translation differs"
+        yield from self._back(case, renaming, result.snapshot, changed)
+
+    def _back(self, case: Case, renaming: Renaming, snapshot: Snapshot, changed: dict[str, str]) -> Iterator[str]:
+        offset = _moved(case.offset, renaming.edits[case.path])
+        # What the user sees at the place is what the name is to be again.
+        first = next(
+            use for use in case.thing.uses if use.path == case.path and use.occurrence.span.start == case.offset
+        )
+        old = self.texts[case.path][first.occurrence.span.start : first.occurrence.span.end]
+        back = rename(snapshot.analysis, case.path, offset, old)
+        if not isinstance(back, Renaming):
+            yield f"cannot be renamed back to {old}: {back.reason}"
+            return
+        restored = {path: apply_edits(changed.get(path, self.texts[path]), edits) for path, edits in back.edits.items()}
+        for path, text in {**changed, **restored}.items():
+            if text != self.texts[path]:
+                yield f"{path} is not restored"
+
+    def _findings(
+        self, result: api.CheckResult, new: str, old: str, edits: Mapping[str, tuple[TextEdit, ...]] | None = None
+    ) -> list[tuple[str, ...]]:
+        found = []
+        for each in result.diagnostics:
+            line = result.source(each.path).lines.position(each.span.start).line
+            message = each.message.replace(new, old) if new else each.message
+            found.append((each.path, str(line), each.code, each.severity.label, message))
+        return sorted(found)
+
+    def _jani(self, texts: Mapping[str, str]) -> str | None:
+        try:
+            return "".join(write(api.to_jani(api.load(self.main, self.ros_paths, Settings(), texts))))
+        except api.ModelError:
+            return None
+
+
+def _differences(before: list[tuple[str, ...]], after: list[tuple[str, ...]]) -> tuple[list[str], list[str]]:
+    gone = [" ".join(each[1:]) for each in before if each not in after]
+    return gone, [" ".join(each[1:]) for each in after if each not in before]
+
+
+def _same(before: str, after: str | None, old: str) -> bool:
+    """Whether two translations are the same but for a name and what is ordered by names."""
+    return after is not None and _canonical(after.replace(FRESH, old)) == _canonical(before)
+
+
+def _canonical(jani: str) -> object:
+    """Actions that are called alike in several automata are listed once; a rename may tell them apart."""
+    model = json.loads(jani)
+    model["actions"] = list({action["name"]: action for action in model["actions"]}.values())
+    return _unordered(model)
+
+
+def _unordered(value: object) -> object:
+    """A value of JSON, the lists in it sorted."""
+    if isinstance(value, dict):
+        return {key: _unordered(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return sorted(map(_unordered, value), key=repr)
+    return value
+
+
+def _moved(offset: int, edits: tuple[TextEdit, ...]) -> int:
+    """Where an offset is after the edits before it."""
+    before = (edit for edit in edits if edit.span.start < offset)
+    return offset + sum(len(edit.new_text) - (edit.span.end - edit.span.start) for edit in before)

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rename: what is edited, what is refused, and that nothing but the name changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from ide_models import ROBOT, load, system_file
+from ide_sweep import System
+from test_ide_navigate import caret
+
+from fixture import split_files
+from roaml.ide.rename import Prepared, Refusal, Renaming, prepare, rename
+from roaml.text import apply_edits
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# file, a piece with a caret, the new name, then the pieces that stand in the files afterwards
+EDITS = """
+a.ascxml  version="1.0" initial="|s"  t  a.ascxml: initial="t"  a.ascxml: id="t"  plugin.ascxml: id="s"
+a.ascxml  id="|p" type  q  a.ascxml: id="q"  a.ascxml: expr="q"  a.ascxml: "q.x"
+a.ascxml  event="|go"><param  went  a.ascxml: event="went" target  properties.jani: "went__to
+a.ascxml  name="|to"  by  a.ascxml: data.by.x  properties.jani: "go__by__x"
+a.ascxml  topic="/|a/b"  /c/d  a.ascxml: "/c/d"  tree.xml: " /c/d "  properties.jani: topic_c__d_msg
+types.xml  id="|x"  z  a.ascxml: {'z': 1.0}  a.ascxml: "p.z" expr="_event.data.to.z"  properties.jani: __to__z
+types.xml  id="|Pose"  Place  a.ascxml: type="Place"
+tree.xml  <|Walk goal  Go  plugin.ascxml: name="Go"  tree.xml: <Go goal  tree.xml: ID="Go"
+tree.xml  ID="|Sub" t  Low  tree.xml: ID="Low" t  tree.xml: ID="Low">  properties.jani: get__Low__own
+tree.xml  out="{|own}"  mine  tree.xml: "{mine}"  properties.jani: get__Sub__mine
+tree.xml  Walk |goal=  end  plugin.ascxml: key="end" type  plugin.ascxml: key="end"/>  tree.xml: end="{g}"
+properties.jani  set_|g__v  h  tree.xml: goal="{h}" out="{h}"  tree.xml: g="{h}"  properties.jani: set_h__v
+"""
+
+REFUSALS = """
+a.ascxml         _msg.|data              x         `data` is defined by ROS
+a.ascxml         std_msgs/|Int32         x         is defined by ROS
+tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
+a.ascxml         |transition             x         no name stands here
+a.ascxml         id="|p" type            n         there is a variable `n` already
+a.ascxml         id="|p" type            p         it is called `p` already
+a.ascxml         id="|p" type            _msg      what received data are called
+a.ascxml         id="|p" type            a b       cannot name a variable
+a.ascxml         id="|p" type            var       word of ECMAScript
+a.ascxml         id="|p" type            a__b      divides the parts of names
+a.ascxml         event="|go" target      topic_x   the translation calls its own events so
+types.xml        id="|Pose"              int32     cannot name a struct
+tree.xml         <|Walk                  Sequence  is a name of BehaviorTree.CPP
+tree.xml         <|Walk                  A         there is a state machine `A` already
+tree.xml         ID="|Sub"               Main      there is a behavior tree `Main` already
+tree.xml         {|own}"                 g         there is a blackboard variable `g` already
+plugin.ascxml    key="|goal"             out       there is a port `out` already
+plugin.ascxml    key="|goal"             ID        cannot name a port
+a.ascxml         topic="/|a/b"           /c        there is a topic `c` already
+a.ascxml         topic="/|a/b"           c d       cannot name a topic
+"""
+
+
+def edit_rows() -> list[tuple[str, str, str, list[str]]]:
+    rows = (line.split("  ") for line in EDITS.strip().splitlines())
+    return [(file, piece, new, expected) for file, piece, new, *expected in rows]
+
+
+@pytest.mark.parametrize(("file", "piece", "new", "expected"), edit_rows())
+def test_edits(file: str, piece: str, new: str, expected: list[str], tmp_path: Path) -> None:
+    files = split_files(ROBOT)
+    analysis = load(tmp_path, files)
+    found = rename(analysis, *caret(tmp_path, file, piece), new)
+    assert isinstance(found, Renaming), found
+    texts = {name: apply_edits(text, found.edits.get(str(tmp_path / name), ())) for name, text in files.items()}
+    for name, text in (each.split(": ", 1) for each in expected):
+        assert text in texts[name], texts[name]
+
+
+@pytest.mark.parametrize("row", REFUSALS.strip().splitlines())
+def test_refusals(row: str, tmp_path: Path) -> None:
+    file, piece, new, reason = (row[:17].strip(), row[17:41].strip(), row[41:51].strip(), row[51:])
+    analysis = load(tmp_path, split_files(ROBOT))
+    found = rename(analysis, *caret(tmp_path, file, piece), new)
+    assert isinstance(found, Refusal)
+    assert reason in found.reason
+
+
+def test_prepared(tmp_path: Path) -> None:
+    analysis = load(tmp_path, split_files(ROBOT))
+    path, offset = caret(tmp_path, "a.ascxml", 'topic="/a|/b"')
+    found = prepare(analysis, path, offset)
+    assert isinstance(found, Prepared)
+    assert (found.name, found.span.start) == ("a/b", offset - 1)
+
+
+def test_a_file_of_two_systems(tmp_path: Path) -> None:
+    """An event that two systems have, tied together by a file that both list."""
+    machine = """<ascxml name="{0}" version="1.0" initial="s">
+<state id="s"><onentry><send event="{1}"/></onentry><transition event="{2}" target="s"/></state></ascxml>"""
+    files = {
+        "one.xml": system_file("node_models node-ascxml a.ascxml", "node_models node-ascxml shared.ascxml"),
+        "two.xml": system_file("node_models node-ascxml b.ascxml", "node_models node-ascxml shared.ascxml"),
+        "a.ascxml": machine.format("A", "e", "e"),
+        "b.ascxml": machine.format("B", "e", "taken"),
+        "shared.ascxml": machine.format("S", "e", "e"),
+        "other.ascxml": machine.format("O", "e", "e"),
+    }
+    analysis = load(tmp_path, files)
+    place = caret(tmp_path, "a.ascxml", 'event="|e"')
+    found = rename(analysis, *place, "f")
+    assert isinstance(found, Renaming)
+    assert {Path(path).name: len(edits) for path, edits in found.edits.items()} == {
+        "a.ascxml": 2,
+        "b.ascxml": 1,
+        "shared.ascxml": 2,
+    }
+    assert isinstance(rename(analysis, *place, "taken"), Refusal)
+
+
+def test_an_interface_that_is_its_own_handle(tmp_path: Path) -> None:
+    text = """<ascxml name="A" version="1.0" initial="s">
+<ros_topic_subscriber topic="/x" type="std_msgs/Empty"/><ros_topic_publisher name="y" topic="z" type="std_msgs/Empty"/>
+<state id="s"><ros_topic_callback name="/x" target="s"><ros_topic_publish name="y"/></ros_topic_callback></state>
+</ascxml>"""
+    analysis = load(tmp_path, {"a.ascxml": text})
+    place = caret(tmp_path, "a.ascxml", 'callback name="/|x"')
+    found = rename(analysis, *place, "w")
+    assert isinstance(found, Renaming)
+    assert apply_edits(text, found.edits[place[0]]) == text.replace("/x", "/w")
+    assert isinstance(rename(analysis, *place, "y"), Refusal)
+    assert isinstance(rename(analysis, *place, "z"), Refusal)
+    assert isinstance(rename(analysis, *caret(tmp_path, "a.ascxml", 'publish name="|y"'), "/x"), Refusal)
+
+
+@pytest.mark.parametrize("main", sorted((ROOT / "examples").glob("*/main.xml")), ids=lambda main: main.parent.name)
+def test_examples(main: Path) -> None:
+    system = System(str(main))
+    for case in system.cases():
+        assert list(system.failures(case)) == [], case.name
+
+
+def test_all_of_a_small_robot(tmp_path: Path) -> None:
+    load(tmp_path, split_files(ROBOT))
+    system = System(str(tmp_path / "main.xml"))
+    cases = list(system.cases())
+    assert len(cases) > 20
+    for case in cases:
+        assert list(system.failures(case)) == [], case.name
