@@ -149,12 +149,16 @@ CORNERS = (
   </ros_service_client>
   <state id="s">
     <bt_tick target="w">
-      <ros_service_send_request name="calc"><field name="a" expr="1"/><field name="b" expr="2"/></ros_service_send_request>
+      <ros_service_send_request name="calc">
+        <field name="a" expr="1"/><field name="b" expr="2"/>
+      </ros_service_send_request>
     </bt_tick>
     <bt_halt target="s"><bt_return_halted/></bt_halt>
   </state>
   <state id="w">
-    <ros_service_handle_response name="calc" target="s"><bt_return_status status="SUCCESS"/></ros_service_handle_response>
+    <ros_service_handle_response name="calc" target="s">
+      <bt_return_status status="SUCCESS"/>
+    </ros_service_handle_response>
   </state>
 </ascxml>
 -- server.ascxml --

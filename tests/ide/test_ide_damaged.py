@@ -7,9 +7,9 @@ import random
 from pathlib import Path
 
 import pytest
+from ide_models import CORNERS, load
 
 from fixture import split_files
-from ide_models import CORNERS, load
 from roaml.ide import calls, navigate
 from roaml.ide.rename import Renaming, prepare, rename
 from roaml.project.analysis import Analysis
