@@ -109,3 +109,104 @@ ROBOT = (
   {"op": "+", "left": "bt_blackboard_get__Sub__own", "right": "bt_blackboard_set_g__value"}}}}}]}
 """
 )
+
+
+CORNERS = (
+    "-- main.xml --\n"
+    + system_file(
+        "data_declarations json shape.json",
+        "behavior_tree bt.cpp-xml tree.xml",
+        "behavior_tree bt-plugin-ascxml put.ascxml",
+        "behavior_tree bt-plugin-ascxml ask.ascxml",
+        "node_models node-ascxml server.ascxml",
+        "properties jani properties.jani",
+    )
+    + """
+-- shape.json --
+{"type": "object", "title": "Shape", "properties": {
+  "at": {"type": "object", "properties": {"x": {"type": "number"}}},
+  "ends": {"type": "array", "items": {"$ref": "#/$defs/End"}}},
+ "$defs": {"End": {"type": "object", "properties": {"k": {"type": "integer"}}}}}
+-- put.ascxml --
+<ascxml name="Put" version="1.0" initial="s">
+  <bt_declare_port_in key="value" type="int32"/>
+  <bt_declare_port_out key="to" type="int32"/>
+  <datamodel><data id="n" type="int32" expr="0"/></datamodel>
+  <state id="s">
+    <bt_tick target="s">
+      <assign location="n"><expr><bt_get_input key="value"/></expr></assign>
+      <bt_set_output key="to" expr="n"/>
+      <bt_return_status status="SUCCESS"/>
+    </bt_tick>
+    <bt_halt target="s"><bt_return_halted/></bt_halt>
+  </state>
+</ascxml>
+-- ask.ascxml --
+<ascxml name="Ask" version="1.0" initial="s">
+  <bt_declare_port_in key="which" type="string"/>
+  <ros_service_client name="calc" type="example_interfaces/AddTwoInts">
+    <service_name><bt_get_input key="which"/></service_name>
+  </ros_service_client>
+  <state id="s">
+    <bt_tick target="w">
+      <ros_service_send_request name="calc">
+        <field name="a" expr="1"/><field name="b" expr="2"/>
+      </ros_service_send_request>
+    </bt_tick>
+    <bt_halt target="s"><bt_return_halted/></bt_halt>
+  </state>
+  <state id="w">
+    <ros_service_handle_response name="calc" target="s">
+      <bt_return_status status="SUCCESS"/>
+    </ros_service_handle_response>
+  </state>
+</ascxml>
+-- server.ascxml --
+<ascxml name="Server" version="1.0" initial="idle">
+  <datamodel>
+    <!-- the sum, TYPE sum:int64 -->
+    <data id="sum" expr="0"/>
+    <data id="shape" type="Shape" expr="{'at': {'x': 1.0}, 'ends': [{'k': 1}]}"/>
+  </datamodel>
+  <ros_service_server service_name="/calc" type="example_interfaces/AddTwoInts"/>
+  <state id="idle">
+    <ros_service_handle_request name="/calc" target="idle">
+      <assign location="sum" expr="_req.a + _req.b"/>
+      <assign location="shape.ends[0].k" expr="shape.ends[0].k + 1"/>
+      <if cond="sum &lt; 3 &amp;&amp; shape.at.x &gt; 0.5">
+        <send event="small.sum"><param name="of" expr="shape"/><param name="n" expr="sum"/></send>
+      </if>
+      <ros_service_send_response name="/calc"><field name="sum" expr="sum"/></ros_service_send_response>
+    </ros_service_handle_request>
+    <transition event="small.sum" cond="_event.data.of.at.x &gt; 0.0 &amp;&amp; _event.data.n &gt; 0" target="idle"/>
+  </state>
+</ascxml>
+-- tree.xml --
+<root BTCPP_format="4" main_tree_to_execute="Main">
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Put value="1" to="{v}"/>
+      <SubTree ID="Auto" _autoremap="true"/>
+      <SubTree ID="Same" v="{=}" service="/calc"/>
+      <SubTree ID="Same" name="again" v="{v}" service="/calc"/>
+      <SubTree ID="Same" name="third" v="{w}" service="/calc"/>
+    </Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="Auto"><Sequence><Put to="{own}"/><Put value="{own}" to="{v}"/></Sequence></BehaviorTree>
+  <BehaviorTree ID="Same">
+    <Sequence><Put value="{v}" to="{inner}"/><Put value="{inner}" to="{v}"/><Ask which="{service}"/></Sequence>
+  </BehaviorTree>
+  <TreeNodesModel>
+    <Action ID="Put"><input_port name="value" default="{own}"/><output_port name="to"/></Action>
+    <Action ID="Ask"><input_port name="which"/></Action>
+    <SubTree ID="Same"><input_port name="v"/></SubTree>
+  </TreeNodesModel>
+</root>
+-- properties.jani --
+{"properties": [{"name": "p", "expression": {"op": "filter", "fun": "values", "states": {"op": "initial"}, "values":
+  {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "∧", "left": "srv_calc_response.valid", "right": {"op": "∧",
+  "left": {"op": ">", "left": "srv_calc_req_client_BT_plugin_1016_Ask__ros_fields__a", "right": 0}, "right": {"op": "∧",
+  "left": {"op": ">", "left": "small.sum__of__at__x", "right": 0}, "right":
+  {"op": ">", "left": "bt_blackboard_get__again__inner", "right": "bt_blackboard_set_v__value"}}}}}}}}]}
+"""
+)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from ide_models import ROBOT, load, system_file
+from ide_models import CORNERS, ROBOT, load, system_file
 from ide_sweep import System
 from test_ide_navigate import caret
 
@@ -135,8 +135,9 @@ def test_examples(main: Path) -> None:
         assert list(system.failures(case)) == [], case.name
 
 
-def test_all_of_a_small_robot(tmp_path: Path) -> None:
-    load(tmp_path, split_files(ROBOT))
+@pytest.mark.parametrize("robot", [ROBOT, CORNERS], ids=["robot", "corners"])
+def test_all_of_a_small_system(robot: str, tmp_path: Path) -> None:
+    load(tmp_path, split_files(robot))
     system = System(str(tmp_path / "main.xml"))
     cases = list(system.cases())
     assert len(cases) > 20
