@@ -6,11 +6,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from as2fm_lsp.handlers import (
+    about,
     call_hierarchy,
     code_action,
     formatting,
     hover,
+    migrate,
     navigate,
+    pictures,
+    plain_scxml,
     rename,
     semantic_tokens,
     structure,
@@ -24,11 +28,15 @@ if TYPE_CHECKING:
 
 
 _FEATURES = (
+    about,
     call_hierarchy,
     code_action,
     formatting,
     hover,
+    migrate,
     navigate,
+    pictures,
+    plain_scxml,
     rename,
     semantic_tokens,
     structure,

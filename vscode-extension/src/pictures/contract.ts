@@ -17,33 +17,39 @@ export interface Place {
     readonly range: { readonly start: Position; readonly end: Position };
 }
 
-export type NodeKind =
-    | "state"
-    | "thread"
-    | "control"
-    | "decorator"
-    | "action"
-    | "condition"
-    | "variable"
-    | "node"
-    | "plugin"
-    | "topic"
-    | "service"
-    | "action-interface";
+export const NODE_KINDS = [
+    "state",
+    "thread",
+    "control",
+    "decorator",
+    "action",
+    "condition",
+    "variable",
+    "node",
+    "plugin",
+    "topic",
+    "service",
+    "action-interface",
+] as const;
 
-export type EdgeKind =
-    | "eventless"
-    | "event"
-    | "ros"
-    | "bt"
-    | "child"
-    | "reads"
-    | "writes"
-    | "publishes"
-    | "subscribes"
-    | "serves"
-    | "calls"
-    | "sends";
+export type NodeKind = (typeof NODE_KINDS)[number];
+
+export const EDGE_KINDS = [
+    "eventless",
+    "event",
+    "ros",
+    "bt",
+    "child",
+    "reads",
+    "writes",
+    "publishes",
+    "subscribes",
+    "serves",
+    "calls",
+    "sends",
+] as const;
+
+export type EdgeKind = (typeof EDGE_KINDS)[number];
 
 /** `parent` is the id of the node that it is drawn inside of, "" if none. */
 export interface PictureNode {
