@@ -18,6 +18,7 @@ OLD_MAIN = """\
     <node_models><input type="ros-scxml" src="clock.scxml" /></node_models>
 </convince_mc_tc>
 """
+SPARE = '<input type="bt-plugin-ascxml" src="plugins/spare.ascxml" />'
 OLD_CLOCK = clock.CLOCK.replace("<ascxml", "<scxml").replace("</ascxml", "</scxml")
 
 
@@ -116,8 +117,10 @@ async def test_plain_scxml_of_plugins(tmp_path: Path) -> None:
     (plain,) = await asked(tmp_path, "as2fm/plainScxml", "plugins/charge.ascxml")
     assert plain["text"].count("<scxml ") == 1
     assert 'name="BT_plugin_1003_Charge"' in plain["text"]
-    tree.write_text(tree.read_text().replace('<Charge /><Charge name="again" />', "<AlwaysFailure />"))
-    (unused,) = await asked(tmp_path, "as2fm/plainScxml", "plugins/charge.ascxml")
+    charge, main = (tmp_path / "plugins/charge.ascxml").read_text(), tmp_path / "main.xml"
+    (tmp_path / "plugins/spare.ascxml").write_text(charge.replace('name="Charge"', 'name="Spare"'))
+    main.write_text(main.read_text().replace("</behavior_tree>", f"{SPARE}</behavior_tree>"))
+    (unused,) = await asked(tmp_path, "as2fm/plainScxml", "plugins/spare.ascxml")
     assert unused["problem"] == "The behavior tree does not use this plugin."
 
 

@@ -17,9 +17,15 @@ export class Window {
         const { page } = this;
         await page.keyboard.press("Control+P");
         await page.locator(".quick-input-widget input").fill(name);
-        await page.locator(`.quick-input-list [aria-label*="${path.basename(name)}"]`).first().waitFor();
+        await page
+            .locator(`.quick-input-list [aria-label*="${path.basename(name)}"]`)
+            .first()
+            .waitFor();
         await page.keyboard.press("Enter");
-        await page.locator(`.tab.active[data-resource-name="${path.basename(name)}"]`).first().waitFor();
+        await page
+            .locator(`.tab.active[data-resource-name="${path.basename(name)}"]`)
+            .first()
+            .waitFor();
         await this.editor.locator(".view-line").first().waitFor();
     }
 
@@ -63,7 +69,11 @@ export class Window {
 
     /** The editor with the focus, else the first. */
     get editor(): Locator {
-        return this.page.locator(".editor-group-container.active .monaco-editor[role='code'], .editor-group-container.active .monaco-editor").first();
+        return this.page
+            .locator(
+                ".editor-group-container.active .monaco-editor[role='code'], .editor-group-container.active .monaco-editor",
+            )
+            .first();
     }
 
     get squiggles(): Locator {
@@ -78,6 +88,41 @@ export class Window {
         return this.page.locator(".notification-list-item", { hasText: text });
     }
 
+    /** Until the language server runs. */
+    async running(): Promise<void> {
+        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 120_000 });
+    }
+
+    /** Until something holds that cannot be seen in the page; what it gives. */
+    async until<T>(get: () => T | Promise<T>): Promise<NonNullable<T>> {
+        const end = Date.now() + PATIENCE;
+        for (;;) {
+            const found = await get();
+            if (found) return found;
+            if (Date.now() > end) throw new Error(`still not: ${get.toString()}`);
+            await this.page.waitForFunction(
+                () =>
+                    new Promise((resolve) =>
+                        requestAnimationFrame(() => {
+                            resolve(true);
+                        }),
+                    ),
+            );
+        }
+    }
+
+    /** The text of the line that the caret of an editor group is in. */
+    async caretLine(group: number): Promise<string> {
+        const editor = this.page.locator(".editor-group-container").nth(group);
+        const caret = await editor.locator(".cursors-layer .cursor").first().boundingBox();
+        const lines = await editor.locator(".view-line").all();
+        for (const line of lines) {
+            const box = await line.boundingBox();
+            if (caret && box && Math.abs(box.y - caret.y) < 3) return plain((await line.textContent()) ?? "");
+        }
+        return "";
+    }
+
     async press(...keys: string[]): Promise<void> {
         for (const key of keys) await this.page.keyboard.press(key);
     }
@@ -90,7 +135,13 @@ export class Window {
     async picture(): Promise<Frame> {
         for (;;) {
             for (const frame of this.page.frames()) {
-                if (await frame.locator("svg.picture").count().catch(() => 0)) return frame;
+                if (
+                    await frame
+                        .locator("svg.picture")
+                        .count()
+                        .catch(() => 0)
+                )
+                    return frame;
             }
             await this.page.waitForEvent("framenavigated", { timeout: 1000 }).catch(() => undefined);
         }
@@ -105,6 +156,13 @@ export class Window {
     async close(): Promise<void> {
         await this.page.context().close();
     }
+}
+
+const PATIENCE = 30_000;
+
+/** Text with the spaces that the editor draws. */
+function plain(text: string): string {
+    return text.replaceAll("\u00a0", " ");
 }
 
 /** Line and column of a text, counted from 1. */

@@ -38,11 +38,20 @@ export class Workbench {
         const home = options.home ?? temporaryFolder("home");
         const environment = { ...process.env, HOME: path.join(home, "user"), ...options.environment };
         fs.mkdirSync(environment.HOME, { recursive: true });
-        const folders = ["--server-data-dir", path.join(home, "data"), "--extensions-dir", path.join(home, "extensions")];
+        const folders = [
+            "--server-data-dir",
+            path.join(home, "data"),
+            "--extensions-dir",
+            path.join(home, "extensions"),
+        ];
         const settings = { ...SETTINGS, ...options.settings };
         write(path.join(home, "data/data/Machine/settings.json"), JSON.stringify(settings));
         if (options.home === undefined) {
-            const install = ["--install-extension", path.join(EXTENSION, "as2fm.vsix"), "--accept-server-license-terms"];
+            const install = [
+                "--install-extension",
+                path.join(EXTENSION, "as2fm.vsix"),
+                "--accept-server-license-terms",
+            ];
             execFileSync(process.execPath, [MAIN, ...install, ...folders], { stdio: "pipe", env: environment });
         }
         for (const each of options.extensions ?? []) {

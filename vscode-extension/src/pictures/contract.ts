@@ -91,6 +91,8 @@ export interface Words {
     readonly savePng: string;
     readonly nothing: string;
     readonly help: string;
+    readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
+    readonly byChance: string;
 }
 
 export type ToView =
