@@ -135,11 +135,10 @@ async def test_migrate(tmp_path: Path) -> None:
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
     (found,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
-    assert (found["files"], found["problem"]) == (2, "")
+    assert (found["files"], found["problem"]) == (["main.xml", "clock.scxml → clock.ascxml"], "")
     changes = found["edit"]["documentChanges"]
-    assert found["edit"]["changeAnnotations"]["migrate"]["needsConfirmation"] is True
     old, new = (tmp_path / "clock.scxml").as_uri(), (tmp_path / "clock.ascxml").as_uri()
-    assert {"kind": "rename", "oldUri": old, "newUri": new, "annotationId": "migrate"} in changes
+    assert {"kind": "rename", "oldUri": old, "newUri": new} in changes
     texts = {each["textDocument"]["uri"]: each["edits"][0]["newText"] for each in changes if "edits" in each}
     assert texts[(tmp_path / "main.xml").as_uri()].startswith("<roaml>")
     assert texts[old].startswith("<ascxml")
@@ -149,7 +148,7 @@ async def test_migrate(tmp_path: Path) -> None:
 async def test_what_cannot_be_migrated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
-    assert current == {"edit": None, "files": 0, "problem": ""}
+    assert current == {"edit": None, "files": [], "problem": ""}
     assert no_system["problem"].endswith("only systems are migrated; name their system file")
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)

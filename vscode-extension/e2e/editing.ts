@@ -10,7 +10,7 @@ export function editing(stage: Stage): void {
     stage.test("the quick fix mends the mistake", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
-        await window.goBehind("nodes/battery.ascxml", 'location="lev');
+        await window.goBehind("nodes/battery.ascxml", 'location="levl');
         await window.press("Control+.");
         const fix = window.page.locator(".action-widget .monaco-list-row", { hasText: "level" }).first();
         await fix.waitFor();
@@ -18,11 +18,24 @@ export function editing(stage: Stage): void {
         await window.press("Enter");
         await window.squiggles.first().waitFor({ state: "detached" });
         await window.save();
-        assert.match(
-            fs.readFileSync(path.join(window.folder, "nodes/battery.ascxml"), "utf8"),
-            /location="level" expr="100"/,
-        );
+        const file = path.join(window.folder, "nodes/battery.ascxml");
+        await window.until(() => fs.readFileSync(file, "utf8").includes('location="level" expr="100"'));
     });
+
+    stage.test(
+        "completion after _msg. lists the fields",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.goBehind("nodes/battery.ascxml", "_msg.data");
+            await window.press(...Array.from(".data", () => "Backspace"));
+            await window.type(".");
+            const list = window.page.locator(".suggest-widget.visible");
+            await list.locator('.monaco-list-row[aria-label^="data"]').waitFor();
+            await window.screenshot("completion");
+        },
+    );
 
     stage.test(
         "hover shows the ROS definition",

@@ -17,7 +17,7 @@ export function life(stage: Stage): void {
         const [after] = servers(stage.workbench.home);
         assert.ok(after !== undefined && after !== before);
         // It knows the open documents again.
-        await window.goBehind("nodes/battery.ascxml", 'location="levl');
+        await window.goBehind("nodes/battery.ascxml", 'location="levle');
         await window.press("Backspace", "Backspace");
         await window.type("el");
         await window.squiggles.first().waitFor({ state: "detached" });

@@ -18,7 +18,7 @@ export function pictures(stage: Stage): void {
             await window.run("AS2FM: Show State Machine");
             const picture = await window.picture();
             assert.deepEqual(await labels(picture), ["driving", "charging"]);
-            assert.equal(await picture.locator(".edge.is-ros").count(), 3);
+            assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
             assert.equal(await picture.locator(".dot").count(), 1);
             await picture.locator('.node[data-label="charging"]').click();
             await window.statusItem("Ln 25, Col 5").waitFor();
@@ -29,7 +29,7 @@ export function pictures(stage: Stage): void {
             // Another machine is drawn as soon as it is looked at, and edits show before they are saved.
             await window.openFile("building.ascxml");
             await picture.locator('.node[data-label="open"]').waitFor();
-            assert.equal(await picture.locator(".edge.chance").count(), 2);
+            assert.equal(await picture.locator(".scene .edge.chance").count(), 2);
             await window.goBehind("nodes/building.ascxml", '<state id="open');
             await window.type("ed");
             await picture.locator('.node[data-label="opened"]').waitFor();
@@ -89,9 +89,10 @@ export function pictures(stage: Stage): void {
             const picture = await window.picture();
             for (const format of ["SVG", "PNG"]) {
                 await picture.getByRole("button", { name: `Save as ${format}` }).click();
-                await window.page.locator(".quick-input-widget", { hasText: "Save As" }).waitFor();
-                await window.press("Enter");
                 const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
+                const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
+                await window.until(async () => (await input.inputValue()) === file);
+                await window.press("Enter");
                 await window.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
             }
             const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");

@@ -70,17 +70,22 @@ export function systems(stage: Stage): void {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Check Workspace");
-        await window.page.locator(".terminal-tab, .terminal-wrapper", { hasText: "" }).first().waitFor();
-        await window.until(async () => (await window.page.locator(".terminal-outer-container").count()) > 0);
+        await window.page.locator(".xterm-rows", { hasText: "8 files checked: 1 error" }).waitFor();
         await window.screenshot("task");
+        // Editor and task find the same, and it is shown once.
+        await window.run("View: Focus Problems");
+        const rows = window.page.locator(".markers-panel .monaco-list-row", { hasText: "there is no variable" });
+        await rows.first().waitFor();
+        assert.equal(await rows.count(), 1);
     });
 
     stage.test("migrating shows what would change, and changes it", oldSystem, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Migrate System");
-        const apply = window.page.getByRole("button", { name: "Apply", exact: true });
+        const apply = window.page.locator(".monaco-dialog-box").getByRole("button", { name: "Migrate", exact: true });
         await apply.waitFor();
+        await window.page.locator(".monaco-dialog-box", { hasText: "clock.scxml → clock.ascxml" }).waitFor();
         await window.screenshot("migrate");
         assert.ok(fs.existsSync(path.join(window.folder, "clock.scxml")));
         await apply.click();

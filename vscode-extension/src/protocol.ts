@@ -39,7 +39,8 @@ export interface PlainScxml {
 
 export interface Migration {
     readonly edit: WorkspaceEdit | null;
-    readonly files: number;
+    /** What changes, one line for each file. */
+    readonly files: readonly string[];
     readonly problem: string;
 }
 

@@ -54,16 +54,14 @@ export class Workbench {
             ];
             execFileSync(process.execPath, [MAIN, ...install, ...folders], { stdio: "pipe", env: environment });
         }
-        for (const each of options.extensions ?? []) {
-            fs.cpSync(each, path.join(home, "extensions", path.basename(each)), { recursive: true });
-        }
+        for (const each of options.extensions ?? []) addExtension(path.join(home, "extensions"), each);
         const port = await freePort();
         const server = spawn(
             process.execPath,
             [
                 MAIN,
                 ...["--host", "127.0.0.1", "--port", String(port), "--without-connection-token"],
-                ...["--accept-server-license-terms", "--telemetry-level", "off"],
+                ...["--accept-server-license-terms", "--telemetry-level", "off", "--force-disable-user-env"],
                 ...folders,
                 ...(options.trustEverything === false ? [] : ["--disable-workspace-trust"]),
             ],
@@ -107,6 +105,7 @@ const SETTINGS = {
     "editor.minimap.enabled": false,
     "files.simpleDialog.enable": true,
     "security.workspace.trust.banner": "never",
+    "terminal.integrated.gpuAcceleration": "off",
 };
 
 const FLAGS = [
@@ -120,12 +119,42 @@ const FLAGS = [
     "--disable-sync",
 ];
 
+/** As an installation would do: the folder, and its entry in the list. */
+function addExtension(extensions: string, folder: string): void {
+    const target = path.join(extensions, path.basename(folder));
+    fs.cpSync(folder, target, { recursive: true });
+    const { name, publisher, version } = JSON.parse(
+        fs.readFileSync(path.join(folder, "package.json"), "utf8"),
+    ) as Manifest;
+    const list = path.join(extensions, "extensions.json");
+    const known = JSON.parse(fs.readFileSync(list, "utf8")) as unknown[];
+    const location = { $mid: 1, path: target, scheme: "file" };
+    known.push({
+        identifier: { id: `${publisher}.${name}` },
+        version,
+        location,
+        relativeLocation: path.basename(folder),
+    });
+    fs.writeFileSync(list, JSON.stringify(known));
+}
+
+interface Manifest {
+    readonly name: string;
+    readonly publisher: string;
+    readonly version: string;
+}
+
+const folders: string[] = [];
+
 /** An empty folder that goes when the tests have ended. */
 export function temporaryFolder(name: string): string {
     const folder = fs.realpathSync(fs.mkdtempSync(path.join(os.tmpdir(), `as2fm-${name}-`)));
-    process.once("exit", () => {
-        fs.rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
-    });
+    if (folders.length === 0) {
+        process.once("exit", () => {
+            for (const each of folders) fs.rmSync(each, { recursive: true, force: true, maxRetries: 3 });
+        });
+    }
+    folders.push(folder);
     return folder;
 }
 

@@ -90,12 +90,26 @@ async function migrateSystem({ server, documents }: Parts): Promise<void> {
         return;
     }
     const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(found.edit ?? undefined);
-    if (!edit || found.files === 0) {
+    if (!edit || found.files.length === 0) {
         void vscode.window.showInformationMessage(vscode.l10n.t("There is nothing to migrate."));
         return;
     }
-    // The edits ask to be confirmed: the editor shows them before anything is changed.
-    if (await vscode.workspace.applyEdit(edit, { isRefactoring: true })) await vscode.workspace.saveAll();
+    const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
+    const question = vscode.l10n.t("Move {0} to the current dialect?", vscode.workspace.asRelativePath(system));
+    const detail = [...found.files, "", vscode.l10n.t("Comments and layout stay; Undo takes it back.")].join("\n");
+    const answer = await vscode.window.showInformationMessage(question, { modal: true, detail }, apply, show);
+    if (answer === show) await showChanges(server, system);
+    if (answer === apply && (await vscode.workspace.applyEdit(edit, { isRefactoring: true }))) {
+        await vscode.workspace.saveAll();
+    }
+}
+
+async function showChanges({ state }: LanguageServer, system: vscode.Uri): Promise<void> {
+    if (state.kind !== "running") return;
+    const { command, args } = state.server;
+    const ended = await thisMachine.run(command, [...args, "migrate", system.fsPath, "--diff"]);
+    const content = ended.out === "" ? ended.err : ended.out;
+    await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "diff", content }));
 }
 
 async function selectInterpreter(): Promise<void> {

@@ -15,8 +15,8 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
     private readonly shown = new Map<string, PlainScxml>();
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
-    /** The editor that was moved by us and whose next selection is not the user's. */
-    private moved: vscode.TextEditor | undefined;
+    /** Where we have put a caret: that this is told to us is not the user's doing. */
+    private moved: { readonly editor: vscode.TextEditor; readonly caret: vscode.Position } | undefined;
 
     constructor(private readonly server: LanguageServer) {
         this.subscriptions = [
@@ -68,11 +68,10 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
         }, PAUSE);
     }
 
-    private follow({ textEditor, kind }: vscode.TextEditorSelectionChangeEvent): void {
-        if (textEditor === this.moved || kind === undefined) {
-            this.moved = undefined;
-            return;
-        }
+    private follow({ textEditor, selections }: vscode.TextEditorSelectionChangeEvent): void {
+        const ours = textEditor === this.moved?.editor && selections[0]?.active.isEqual(this.moved.caret);
+        this.moved = undefined;
+        if (ours) return;
         const { uri } = textEditor.document;
         if (uri.scheme === SCHEME) this.syncBack(textEditor);
         else this.sync(textEditor, previewOf(uri));
@@ -96,7 +95,8 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
     }
 
     private reveal(editor: vscode.TextEditor, range: vscode.Range): void {
-        this.moved = editor;
+        if (editor.selection.active.isEqual(range.start)) return;
+        this.moved = { editor, caret: range.start };
         editor.selection = new vscode.Selection(range.start, range.start);
         editor.revealRange(range, vscode.TextEditorRevealType.InCenterIfOutsideViewport);
     }

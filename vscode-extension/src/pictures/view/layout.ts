@@ -54,6 +54,8 @@ const COMMON: LayoutOptions = {
     "elk.layered.spacing.edgeNodeBetweenLayers": "18",
     "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
     "elk.edgeRouting": "ORTHOGONAL",
+    // What everything begins with comes first.
+    "elk.layered.cycleBreaking.strategy": "DEPTH_FIRST",
 };
 
 const OPTIONS: Record<PictureKind, LayoutOptions> = {

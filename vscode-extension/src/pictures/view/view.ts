@@ -258,7 +258,7 @@ class View {
             button("−", words.zoomOut, () => {
                 this.zoom(1 / ZOOM);
             }),
-            button("⛶", words.fit, () => {
+            button(words.fit, words.fit, () => {
                 this.fit();
             }),
             button("SVG", words.saveSvg, () => this.save("svg")),
