@@ -6,7 +6,7 @@ from __future__ import annotations
 import asyncio
 import os
 import uuid
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, TypedDict
 
@@ -46,7 +46,7 @@ def register(server: Server) -> None:
             arguments: the URI of the system file, and that of the JANI file if it is not to lie beside it.
 
         Returns:
-            null if the system cannot be translated; the user is told why.
+            null if the system cannot be translated, and the user is told why; or if the user has called it off.
         """
         if not 1 <= len(arguments) <= 2 or not all(isinstance(argument, str) for argument in arguments):
             _tell(server, types.MessageType.Error, f"{COMMAND} takes the URI of a system file, and that of the output.")
@@ -54,11 +54,15 @@ def register(server: Server) -> None:
         path, *output = (session.convert.path(str(uri)) for uri in arguments)
         target = output[0] if output else jani_path(path)
         name = os.path.basename(path)
-        async with _progress(server, f"Translating {name}"):
+        async with _progress(server, f"Translating {name}") as go_on:
             try:
                 system = api.loaded(session.moment().snapshot(path), path)
                 keep_off(target, system)
+                if not await go_on():
+                    return None
                 model = api.to_jani(system)
+                if not await go_on():
+                    return None
                 write_file(target, (*jani_text(model), "\n"))
             except api.ModelError as error:
                 count = len(error.result.diagnostics)
@@ -98,18 +102,34 @@ def _tell(server: Server, kind: types.MessageType, text: str) -> None:
     server.window_show_message(types.ShowMessageParams(kind, text))
 
 
+GoOn = Callable[[], Awaitable[bool]]
+"""Lets newer messages be read; whether the user has not called the work off."""
+
+_BREAK = 0.001
+"""Seconds. Reading a message takes several turns of the event loop, and a thread that must be let run."""
+
+
 @asynccontextmanager
-async def _progress(server: Server, title: str) -> AsyncIterator[None]:
-    """Work that the client shows as being done, if it can."""
+async def _progress(server: Server, title: str) -> AsyncIterator[GoOn]:
+    """Work that the client shows as being done, if it can, with a way to call it off."""
     window = server.client_capabilities.window
     if window is None or not window.work_done_progress:
-        yield
+        yield _always
         return
     token = str(uuid.uuid4())
     await server.work_done_progress.create_async(token)
-    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(title))
-    await asyncio.sleep(0)  # let the message out
+    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(title, cancellable=True))
+
+    async def go_on() -> bool:
+        await asyncio.sleep(_BREAK)
+        return not server.work_done_progress.tokens[token].cancelled()
+
+    await go_on()  # let the message out
     try:
-        yield
+        yield go_on
     finally:
         server.work_done_progress.end(token, types.WorkDoneProgressEnd())
+
+
+async def _always() -> bool:
+    return True
