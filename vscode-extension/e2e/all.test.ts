@@ -10,6 +10,7 @@ import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
 import { withoutPython } from "./withoutPython";
+import { walkthrough } from "./walkthrough";
 import { Stage } from "./support/stage";
 
 // One server and one browser for what needs nothing special: it is what takes long to start.
@@ -26,6 +27,9 @@ describe("systems", () => {
 });
 describe("pictures", () => {
     pictures(stage);
+});
+describe("walkthrough and templates", () => {
+    walkthrough(stage);
 });
 describe("life of the server", () => {
     life(stage);

@@ -9,5 +9,11 @@ const here = fileURLToPath(new URL("..", import.meta.url));
 const packagePath = `${here}as2fm.vsix`;
 fs.copyFileSync(`${here}../LICENSE`, `${here}LICENSE`);
 fs.copyFileSync(`${here}../CHANGELOG.md`, `${here}CHANGELOG.md`);
-await createVSIX({ cwd: here, packagePath, dependencies: false, allowMissingRepository: true, skipLicense: false });
+await createVSIX({
+    cwd: here,
+    packagePath,
+    dependencies: false,
+    allowMissingRepository: true,
+    rewriteRelativeLinks: false,
+});
 console.log(`as2fm.vsix: ${(fs.statSync(packagePath).size / 1e6).toFixed(2)} MB`);

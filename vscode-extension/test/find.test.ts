@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PrivateEnvironment } from "../src/server/environment";
-import { findServer, isRecent, type Wishes } from "../src/server/find";
+import { expanded, findServer, isRecent, type Wishes } from "../src/server/find";
 import { FakeMachine, python, server } from "./support/machine";
 
 const NOTHING: Wishes = { server: "", interpreter: "", active: [], trusted: true };
@@ -89,4 +89,11 @@ test("versions", () => {
     assert.ok(isRecent("1.0.0rc1", "0.9"));
     assert.ok(!isRecent("0.9.5", "0.10.0"));
     assert.ok(!isRecent("unknown"));
+});
+
+test("paths as users write them", () => {
+    assert.equal(expanded(" ~/bin/x ", "/home/me", undefined), "/home/me/bin/x");
+    assert.equal(expanded("${workspaceFolder}/.venv/bin/python", "/h", "/ws"), "/ws/.venv/bin/python");
+    assert.equal(expanded("~me/x", "/h", "/ws"), "~me/x");
+    assert.equal(expanded("", "/h", "/ws"), "");
 });

@@ -74,7 +74,11 @@ export class Workbench {
 
     /** The workbench with a folder open. */
     async open(folder: string): Promise<Window> {
-        const context = await this.browser.newContext({ viewport: { width: 1400, height: 850 }, locale: "en-US" });
+        const context = await this.browser.newContext({
+            viewport: { width: 1280, height: 760 },
+            locale: "en-US",
+            reducedMotion: "reduce",
+        });
         await context.grantPermissions(["clipboard-read", "clipboard-write"]);
         const page = await context.newPage();
         await page.goto(`http://127.0.0.1:${this.port}/?folder=${folder}`);
@@ -97,6 +101,7 @@ export class Workbench {
 
 const SETTINGS = {
     "workbench.startupEditor": "none",
+    "workbench.reduceMotion": "on",
     "workbench.tips.enabled": false,
     "workbench.enableExperiments": false,
     "extensions.ignoreRecommendations": true,

@@ -3,13 +3,14 @@
 
 import { createHash } from "node:crypto";
 import * as fs from "node:fs";
-import * as path from "node:path";
+import * as os from "node:os";
+import { join } from "node:path";
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import type { RequestType } from "vscode-languageserver-protocol";
 import type { Translated } from "../protocol";
 import { PrivateEnvironment, type Step } from "../server/environment";
-import { findServer } from "../server/find";
+import { expanded, findServer } from "../server/find";
 import { thisMachine } from "../server/machine";
 import type { Failure, Server } from "../server/server";
 import { Supervisor, type State } from "../server/supervisor";
@@ -32,7 +33,7 @@ export class LanguageServer implements vscode.Disposable {
         private readonly onTranslated: (translated: Translated) => unknown,
     ) {
         const wheel = findWheel(context.extensionPath);
-        const folder = path.join(context.globalStorageUri.fsPath, "environments");
+        const folder = join(context.globalStorageUri.fsPath, "environments");
         this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.id);
         this.supervisor = new Supervisor({
             find: () => this.find(),
@@ -93,16 +94,14 @@ export class LanguageServer implements vscode.Disposable {
     }
 
     private async find(): Promise<Server | Failure> {
-        const settings = vscode.workspace.getConfiguration("as2fm");
         const trusted = vscode.workspace.isTrusted;
-        const server = settings.get<string>("server.path", "").trim();
-        const interpreter = settings.get<string>("interpreter", "").trim();
+        const [server, interpreter] = [path("server.path"), path("interpreter")];
         const active = trusted && server === "" && interpreter === "" ? await activeInterpreters(this.log) : [];
         return findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
     }
 
     private async installWithProgress(onStep: (step: Step) => void): Promise<Server | Failure> {
-        const interpreter = vscode.workspace.getConfiguration("as2fm").get<string>("interpreter", "").trim();
+        const interpreter = path("interpreter");
         const active = vscode.workspace.isTrusted ? await activeInterpreters(this.log) : [];
         const preferred = interpreter === "" ? active : [interpreter];
         const options = { location: vscode.ProgressLocation.Notification, cancellable: true, title: "AS2FM" };
@@ -125,6 +124,12 @@ export class LanguageServer implements vscode.Disposable {
     }
 }
 
+/** A setting that names a program; empty if it is not set. */
+function path(setting: string): string {
+    const written = vscode.workspace.getConfiguration("as2fm").get<string>(setting, "");
+    return expanded(written, os.homedir(), vscode.workspace.workspaceFolders?.[0]?.uri.fsPath);
+}
+
 async function tellRestarted(): Promise<void> {
     const log = vscode.l10n.t("Show Log");
     const text = vscode.l10n.t("The language server ended unexpectedly and was restarted.");
@@ -135,10 +140,10 @@ async function tellRestarted(): Promise<void> {
 
 /** The wheel in the extension, with an id that changes with its content. */
 function findWheel(extension: string): { file: string; id: string } {
-    const folder = path.join(extension, "dist", "wheel");
+    const folder = join(extension, "dist", "wheel");
     const name = fs.readdirSync(folder).find((each) => each.endsWith(".whl"));
     if (name === undefined) throw new Error(`${folder} holds no wheel`);
-    const file = path.join(folder, name);
+    const file = join(folder, name);
     const digest = createHash("sha256").update(fs.readFileSync(file)).digest("hex").slice(0, 12);
     return { file, id: `${name.split("-")[1] ?? "server"}-${digest}` };
 }

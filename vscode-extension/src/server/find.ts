@@ -42,6 +42,12 @@ export async function findServer(
     return (await onPath(machine)) ?? (await environment.server()) ?? { kind: "no-server" };
 }
 
+/** A path as users write it in settings: `~` and `${workspaceFolder}` stand for folders. */
+export function expanded(written: string, home: string, workspace: string | undefined): string {
+    const path = written.trim().replace(/^~(?=[/\\]|$)/, home);
+    return workspace === undefined ? path : path.replaceAll("${workspaceFolder}", workspace);
+}
+
 /** Whether `version` is `oldest` or newer; versions of another form are not known to be. */
 export function isRecent(version: string, oldest = OLDEST_SERVER): boolean {
     const numbers = (text: string) => text.split(/[^0-9]+/, 3).map(Number);

@@ -6,7 +6,7 @@ import type { FromView, Part, Picture, PictureEdge, PictureNode, ToView, Words }
 import { draw, element, markers, type Scene } from "./draw";
 import { pngData, svgText } from "./exporting";
 import { fit, isDirection, neighbour, reveal, search, zoom, type Sight } from "./find";
-import { drawingOf, graphOf, type Drawing } from "./layout";
+import { TITLE_SIZE, drawingOf, graphOf, type Drawing } from "./layout";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
 
@@ -296,7 +296,7 @@ function measure(): (text: string, size: number) => number {
     const { fontFamily } = getComputedStyle(document.body);
     return (text, size) => {
         if (!context) return text.length * size * 0.6;
-        context.font = `${size}px ${fontFamily}`;
+        context.font = `${size === TITLE_SIZE ? "600 " : ""}${size}px ${fontFamily}`;
         return context.measureText(text).width;
     };
 }
