@@ -34,7 +34,7 @@ describe("walkthrough and templates", () => {
 describe("life of the server", () => {
     life(stage);
 });
-describe("harmony with the XML extension", () => {
+describe("harmony with other extensions", () => {
     harmony(stage);
 });
 describe("restricted mode", () => {

@@ -13,7 +13,7 @@ export function walkthrough(stage: Stage): void {
         () => temporaryFolder("empty"),
         async (window) => {
             const { page } = window;
-            await window.run("Help: Open Walkthrough");
+            await window.run("Welcome: Open Walkthrough");
             await page.locator(".quick-input-widget input").fill("Model a robot");
             await page.locator(".quick-input-list", { hasText: "Model a robot with HL-SCXML" }).waitFor();
             await window.press("Enter");

@@ -84,3 +84,14 @@ test("an environment that does not work is not kept", async () => {
     assert.ok("kind" in found && found.kind === "no-packages");
     assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "2").server(), undefined);
 });
+
+test("the environment of an earlier version is known, and stays until the new one is there", async () => {
+    const on = machine({ pip: { status: 1 } });
+    on.files.set("/storage/1/ready.json", JSON.stringify({ version: "0.0.9" }));
+    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "2");
+    assert.equal(await environment.server(), undefined);
+    await environment.install([]);
+    const older = await environment.older();
+    assert.deepEqual([older?.command, older?.version], ["/storage/1/bin/python", "0.0.9"]);
+    assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "1").older(), undefined);
+});

@@ -12,7 +12,7 @@ import type { Translated } from "../protocol";
 import { PrivateEnvironment, type Step } from "../server/environment";
 import { expanded, findServer } from "../server/find";
 import { thisMachine } from "../server/machine";
-import type { Failure, Server } from "../server/server";
+import { isFailure, type Failure, type Server } from "../server/server";
 import { Supervisor, type State } from "../server/supervisor";
 import { connect, type Connection } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
@@ -97,7 +97,19 @@ export class LanguageServer implements vscode.Disposable {
         const trusted = vscode.workspace.isTrusted;
         const [server, interpreter] = [path("server.path"), path("interpreter")];
         const active = trusted && server === "" && interpreter === "" ? await activeInterpreters(this.log) : [];
-        return findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
+        const found = await findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
+        return isFailure(found) && found.kind === "no-server" ? this.renewed(found) : found;
+    }
+
+    /** Who has had the server installed before gets the new one without being asked; the old one, if that fails. */
+    private async renewed(failure: Failure): Promise<Server | Failure> {
+        const older = await this.environment.older();
+        if (older === undefined) return failure;
+        const renewed = await this.installWithProgress(() => undefined);
+        if (!isFailure(renewed)) return renewed;
+        this.log.warn("The server of an earlier version is used: the new one could not be installed.");
+        if ("detail" in renewed) this.log.warn(renewed.detail);
+        return older;
     }
 
     private async installWithProgress(onStep: (step: Step) => void): Promise<Server | Failure> {

@@ -37,11 +37,17 @@ export class PrivateEnvironment {
     ) {}
 
     /** The server in the environment, undefined if that has not been made. */
-    async server(): Promise<Server | undefined> {
-        const mark = await this.machine.read(path.join(this.home, MARK));
-        const version = mark === undefined ? undefined : versionIn(mark);
-        if (version === undefined) return undefined;
-        return { origin: "private", command: this.python, args: ["-I", "-m", "as2fm_lsp"], version };
+    server(): Promise<Server | undefined> {
+        return this.serverIn(this.id);
+    }
+
+    /** The server of an earlier version of the extension: a sign that the user wants one. */
+    async older(): Promise<Server | undefined> {
+        for (const name of await this.machine.list(this.folder)) {
+            const found = name === this.id ? undefined : await this.serverIn(name);
+            if (found !== undefined) return found;
+        }
+        return undefined;
     }
 
     /**
@@ -85,7 +91,17 @@ export class PrivateEnvironment {
         for (const name of await this.machine.list(this.folder)) {
             if (name !== this.id) await this.machine.remove(path.join(this.folder, name));
         }
-        return { origin: "private", command: this.python, args: ["-I", "-m", "as2fm_lsp"], version };
+        return this.asServer(this.id, version);
+    }
+
+    private async serverIn(name: string): Promise<Server | undefined> {
+        const mark = await this.machine.read(path.join(this.folder, name, MARK));
+        const version = mark === undefined ? undefined : versionIn(mark);
+        return version === undefined ? undefined : this.asServer(name, version);
+    }
+
+    private asServer(name: string, version: string): Server {
+        return { origin: "private", command: this.pythonIn(name), args: ["-I", "-m", "as2fm_lsp"], version };
     }
 
     private get home(): string {
@@ -93,9 +109,11 @@ export class PrivateEnvironment {
     }
 
     private get python(): string {
-        return this.machine.windows
-            ? path.join(this.home, "Scripts", "python.exe")
-            : path.join(this.home, "bin", "python");
+        return this.pythonIn(this.id);
+    }
+
+    private pythonIn(name: string): string {
+        return path.join(this.folder, name, ...(this.machine.windows ? ["Scripts", "python.exe"] : ["bin", "python"]));
     }
 }
 
