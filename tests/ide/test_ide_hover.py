@@ -93,7 +93,8 @@ MACHINE = """<ascxml name="M" version="1.0" initial="s">
   <ros_time_rate name="t" rate_hz="20"/>
   <state id="s">
     <transition cond="a.length &gt; 1" target="s">
-      <assign location="b" expr="-Math.pow(b, a[0] % 2) + (b &gt; 1 ? 2 : c)"/>
+      <assign location="d" expr="-Math.pow(b, a[0] % 2) + (b &gt; 1 ? 2 : 7)"/>
+      <assign location="b" expr="Math.abs(b) + 1"/>
       <assign location="c" expr="1 + a[0]"/>
     </transition>
     <bt_child_status id="0" cond="_bt.status == SUCCESS" target="s"/>
@@ -113,9 +114,9 @@ a[0] |% 2  number % number : int or float|The remainder of the division.
 a.l|ength  length : int|How many elements a has now. Assigning a smaller number shortens it, 0 empties it.
 SUCC|ESS  SUCCESS = 1|An answer of a node of the tree.
 _b|t.status  _bt|  status : int8|The answer of the child.
-"|b" t  b : float64|Meant from 0 to 9 · starts as 0.5|Gets -Math.pow(b, a[0] % 2) + (b > 1 ? 2 : c)|Read twice, written once
+"|b" t  b : float64|Meant from 0 to 9 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
 id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · up to 3 elements · starts as []|Read 3 times
-n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Read once, written once
+n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Written once
 target="|done  state done|Not defined|From s on the timer t|Nothing leads away
 """
 
