@@ -12,6 +12,7 @@ from roaml.ide.json_tree import members
 from roaml.ide.markdown import code, paragraphs
 from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.language.property_syntax import Shape, by_operator, shapes
+from roaml.model.system import Automaton, System
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 
@@ -29,11 +30,16 @@ def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, s
         system = analysis.system(each) if each else None
         variable = analysis.globals(each).get(found.value) if each else None
         if system is not None and variable is not None:
-            number = _NODE.match(found.value)
-            node = system.by_instance.get(int(number[1])) if number else None
+            node = node_of(system, found.value)
             about = describe_system.node(system, node) if node else ""
             texts[paragraphs(describe_properties.global_variable(variable), about)] = None
     return (found.content_span, paragraphs(*texts)) if texts else None
+
+
+def node_of(system: System, variable: str) -> Automaton | None:
+    """The node of the tree that a global variable is about."""
+    number = _NODE.match(variable)
+    return system.by_instance.get(int(number[1])) if number else None
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:

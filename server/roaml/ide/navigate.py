@@ -37,6 +37,12 @@ def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ..
     return () if found is None else (*found.definitions, *_ros(analysis, found.symbols))
 
 
+def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """Where a thing is defined first; None if it is nowhere."""
+    found = (*_ros(analysis, (symbol,)), *thing(analysis, (symbol,)).definitions)
+    return found[0] if found else None
+
+
 def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """Like `definition`; for topics, services and actions the declarations of all who take part."""
     found = thing_at(analysis, path, offset)
