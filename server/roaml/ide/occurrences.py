@@ -61,7 +61,7 @@ def _index(found: tuple[Occurrence, ...]) -> Uses:
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
-    kind = _kind(analysis, path, system)
+    kind = kind_in(analysis, path, system)
     assert source is not None
     if kind is FileKind.MACHINE:
         machine = analysis.machine(path)
@@ -101,7 +101,7 @@ def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
 
 
-def _kind(analysis: Analysis, path: str, system: str | None) -> FileKind:
+def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
     """What a file is: by itself, or else as what a system lists it."""
     kind = analysis.kind(path)
     if kind is not FileKind.UNKNOWN or system is None:
