@@ -17,8 +17,8 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
-from roaml.model.system import Automaton, BoundPort, Channel, Endpoint, System, sanitise
-from roaml.model.tree import Tree, nodes
+from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
+from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 
 
@@ -108,14 +108,14 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
     if system is None or found is None:
         return code(f"{symbol.kind} {shown}")
     types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in found.endpoints))
-    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found))
+    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found, system))
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
     """The same in fewer words, for those who take part."""
     found = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind)} {name(written)}"
-    return head if found is None else lines(head, _sides(analysis, symbol, found))
+    return head if found is None else lines(head, _sides(analysis, symbol, found, system))
 
 
 def find_channel(system: System, symbol: Symbol) -> Channel | None:
@@ -123,13 +123,19 @@ def find_channel(system: System, symbol: Symbol) -> Channel | None:
     return channels.get(symbol.name)
 
 
-def _sides(analysis: Analysis, symbol: Symbol, found: Channel) -> str:
+def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -> str:
     given, taken = _VERBS[symbol.kind]
+    sources = "the clock of the system" if is_clock(system, symbol) else _ends(found.sources)
     return lines(
-        f"**{_sentence(given)}** {_ends(found.sources)} · **{taken}** {_ends(found.users)}",
+        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(found.users)}",
         _plain_events(symbol, found),
         _in_properties(global_variables(analysis, symbol)),
     )
+
+
+def is_clock(system: System, symbol: Symbol) -> bool:
+    """Whether a topic is that of the simulated time, which the translation publishes."""
+    return symbol.kind == "topic" and symbol.name == CLOCK_TOPIC and system.has_timer
 
 
 def _ends(endpoints: Iterable[Endpoint]) -> str:
@@ -209,18 +215,24 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
                 size = "one node" if count == 1 else f"{count} nodes"
                 return paragraphs(
                     code(f"tree {symbol.name}"),
-                    lines(_sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol, each)),
+                    lines(_sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol)),
                 )
     return paragraphs(code(f"tree {symbol.name}"), "No tree has this name")
 
 
-def _use(analysis: Analysis, symbol: Symbol, found: Tree) -> str:
-    main = trees_of(analysis, symbol.path, symbol.path if symbol.path in analysis.system_paths else None).main
-    if main is not None and main[1] is found:
+def _use(analysis: Analysis, symbol: Symbol) -> str:
+    if is_main(analysis, symbol):
         return "The tree that is executed"
     uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind == "tree"]
     count = sum(not use.occurrence.defines and analysis.tree(use.path) is not None for use in uses)
     return f"Named {count} times" if count > 1 else "Named once" if count else "Never named"
+
+
+def is_main(analysis: Analysis, symbol: Symbol) -> bool:
+    """Whether a tree is the one that is executed."""
+    system = symbol.path if symbol.path in analysis.system_paths else None
+    main = trees_of(analysis, symbol.path, system).main
+    return main is not None and (main[1].id.value if main[1].id else "") == symbol.name
 
 
 def tree_node(analysis: Analysis, symbol: Symbol) -> str:

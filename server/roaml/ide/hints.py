@@ -52,6 +52,7 @@ class HintKind(enum.Enum):
     """What can be shown or left out. The values are the names of the settings."""
 
     TYPES = "types"
+    PORTS = "ports"
     TOPICS = "topics"
     EVENTS = "events"
     NODES = "nodes"
@@ -296,7 +297,7 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
         owners = [a for a in types.values() if a.path]
         if shown and port.attribute.has_value:
             symbol = Symbol(owners[0].path, "port", port.key.value) if owners else None
-            yield InlayHint(_behind(port.value), HintKind.TYPES, (Part(" : "), Part(" or ".join(shown), symbol)))
+            yield InlayHint(_behind(port.value), HintKind.PORTS, (Part(" : "), Part(" or ".join(shown), symbol)))
 
 
 def _instances(analysis: Analysis, path: str) -> dict[tuple[str, int], list[tuple[System, Automaton]]]:

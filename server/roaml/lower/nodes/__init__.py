@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import importlib.resources
 from fractions import Fraction
+from pathlib import Path
 
 from roaml.language import BEHAVIOR_TREE
 from roaml.lower.nodes.switch import switch
@@ -48,6 +49,12 @@ def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:
         if attribute.port and attribute.port.default:
             found[attribute.name] = attribute.port.default
     return found
+
+
+def node_file(name: str) -> str | None:
+    """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand, or in no file."""
+    file = importlib.resources.files(__name__) / f"{_ALIASES.get(name, name)}.ascxml"
+    return str(file) if name in BEHAVIOR_TREE.elements and isinstance(file, Path) and file.is_file() else None
 
 
 def _children(automaton: Automaton) -> int:
