@@ -3,6 +3,7 @@
 
 A client asks by itself about the document that is edited. What hints and lenses of *other* documents say changes only
 with what files see of each other, and that is the linked systems: as long as they stay the same objects, it is quiet.
+The first time it speaks: the client may have asked before anything was known.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Refresh:
         if not hints and not lenses:
             return
         before, self._known = self._known, self._now()
-        if before is None or before == self._known:
+        if before == self._known:
             return
         if hints:
             self._server.workspace_inlay_hint_refresh(None)

@@ -118,7 +118,7 @@ def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
     plugin = machine if node.path else Symbol("", "plugin", node.outline.name)
     text = describe(analysis, plugin)
     about = describe_system.node(system, node)
-    return Explanation(f"{about}\n\n{text}", definition_of(analysis, machine) if node.path else None)
+    return Explanation(f"{about}\n\n{text}", definition_of(analysis, plugin))
 
 
 def _touches(within: Span, element: Element) -> bool:

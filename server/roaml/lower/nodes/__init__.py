@@ -10,7 +10,6 @@ from __future__ import annotations
 import functools
 import importlib.resources
 from fractions import Fraction
-from pathlib import Path
 
 from roaml.language import BEHAVIOR_TREE
 from roaml.lower.nodes.switch import switch
@@ -52,9 +51,9 @@ def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:
 
 
 def node_file(name: str) -> str | None:
-    """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand, or in no file."""
+    """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand."""
     file = importlib.resources.files(__name__) / f"{_ALIASES.get(name, name)}.ascxml"
-    return str(file) if name in BEHAVIOR_TREE.elements and isinstance(file, Path) and file.is_file() else None
+    return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
 
 
 def _children(automaton: Automaton) -> int:
