@@ -142,6 +142,12 @@ callback  <ros_topic_publish name="twist"><field name="linear.x" expr="1.0"/>‸
 callback  <assign location="count" expr="1"></‸
     assign => assign>
 
+entry  <send event="go">‸</send>
+    all parameters => <param name="speed" expr="$1"/>\\n<param name="to" expr="$2"/>
+    param speed : float
+    param to => <param name="to" expr="$1"/>
+    param => <param name="${1|speed,to|}" expr="$2"/>$0
+
 callback  <if cond="ready"><‸
     /if => /if>
     assign

@@ -16,7 +16,7 @@ from roaml.ide.completion.document import document
 from roaml.ide.completion.documents import documents
 from roaml.ide.completion.elements import elements
 from roaml.ide.completion.item import Completions, Item, ItemKind, Rank, escaped, plain
-from roaml.ide.completion.json_documents import complete_json
+from roaml.ide.completion.json_documents import in_json
 from roaml.ide.completion.place import AttributeName, AttributeValue, Content, EndTag, Place, StartTag, place_at
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.completion.values import in_attribute, in_text
@@ -41,8 +41,11 @@ def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> C
     """
     file = xml_file(snapshot.analysis, path)
     if file is None:
-        json = complete_json(snapshot.analysis, path, offset) if trigger != " " else None
-        return json or _new_document(snapshot, path)
+        json = in_json(snapshot.analysis, path, offset) if trigger != " " else None
+        source = snapshot.analysis.source(path)
+        if json is not None and source is not None:
+            return _shortened(source.text, offset, *json)
+        return _new_document(snapshot, path)
     place = place_at(file, offset)
     if place is None or (trigger == " " and not isinstance(place, AttributeName)):
         return None

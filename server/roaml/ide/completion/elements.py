@@ -9,6 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.fields import fields_to_add, sending
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import plugins, port_list
+from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.completion.values import candidates
@@ -36,8 +37,10 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     parent = parents[-1]
     if parent.type is None:
         return
-    if "field" in parent.type.children and bare:
+    if bare and "field" in parent.type.children:
         yield from fields_to_add(request, parent.element)
+    if bare and "param" in parent.type.children:
+        yield from parameters_to_add(request, Subject(parent.element, parent.type, parents[:-1]))
     if request.file.grammar is BEHAVIOR_TREE and parent.type.any_child is not None:
         yield from _tree_nodes(request, parents, bare=bare)
         return

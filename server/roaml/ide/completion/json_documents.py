@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.completion.item import Completions, Item, ItemKind, Rank, Snippet, escaped
+from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet, escaped
 from roaml.ide.find import systems_of
 from roaml.ide.occurrences import kind_in
 from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
@@ -19,8 +19,8 @@ from roaml.text import Span
 _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCTS}
 
 
-def complete_json(analysis: Analysis, path: str, offset: int) -> Completions | None:
-    """What can be written at a caret; None in files of other kinds, or where nothing is known."""
+def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Item]] | None:
+    """What can be written at a caret, and what it replaces; None in files of other kinds, or where nothing is known."""
     kind = next(kind_in(analysis, path, system) for system in systems_of(analysis, path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
@@ -30,8 +30,7 @@ def complete_json(analysis: Analysis, path: str, offset: int) -> Completions | N
     place = _place(grammar, read[0], source.text, offset)
     if place is None:
         return None
-    items = _keys(place) if place.is_key else _values(analysis, path, place)
-    return Completions(place.span, tuple(sorted(items, key=lambda item: item.rank)))
+    return place.span, list(_keys(place) if place.is_key else _values(analysis, path, place))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.occurrence import HANDLES
 from roaml.ide.occurrences import uses
@@ -31,7 +32,7 @@ def undefined(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
     if kind == "event":
         yield from _events_to_send(request)
     elif kind == "parameter":
-        yield from _parameters(request, subject)
+        yield from parameter_names(request, subject)
     elif kind == "machine":
         yield from _machine_names(request)
     elif kind == "port":
@@ -154,32 +155,6 @@ def _events_to_send(request: Request) -> Iterator[Item]:
 def _event(owner: str, name: str, detail: str, *, sound: bool) -> Item:
     rank = Rank.USUAL if sound else Rank.LATE
     return Item(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, "event", name), rank=rank)
-
-
-def _parameters(request: Request, subject: Subject) -> Iterator[Item]:
-    """Parameters that receivers read or other senders send with the event around the caret."""
-    send = _send_around(request)
-    if send is None or send.event is None:
-        return
-    given = {param.name.value for param in send.params if param.name and param.element is not subject.element}
-    for system in request.systems:
-        event = system.events.get(send.event.value)
-        if event is None:
-            continue
-        types = dict(event.data.members)
-        reads = dict.fromkeys(name for _, received in event.receivers for name in sorted(received.reads))
-        for name in dict.fromkeys((*reads, *types)):
-            if name not in given:
-                detail = str(types[name]) if name in types else "read by a receiver"
-                rank = Rank.BEST if name in reads else Rank.USUAL
-                yield Item(name, ItemKind.MEMBER, detail=detail, rank=rank)
-
-
-def _send_around(request: Request) -> Send | None:
-    for statement in all_statements(request.chart) if request.chart else ():
-        if isinstance(statement, Send) and statement.element.span.start < request.offset <= statement.element.span.end:
-            return statement
-    return None
 
 
 # ----------------------------------------------------------- ROS and the tree
