@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.markup import content
 from roaml.diagnostics import Symbol
+from roaml.ide import markdown
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
 
 if TYPE_CHECKING:
@@ -57,7 +59,8 @@ def register(server: Server) -> None:
             path, *about = item.data
             text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
             if text:
-                item.documentation = types.MarkupContent(types.MarkupKind.Markdown, text)
+                formats = _Client(server).documentation
+                item.documentation = content(text, formats) if formats else markdown.plain(text)
         return item
 
 
@@ -67,6 +70,7 @@ class _Client:
     def __init__(self, server: Server) -> None:
         document = server.client_capabilities.text_document
         asks = document.completion.completion_item if document and document.completion else None
+        self.documentation = asks.documentation_format if asks else None
         self.snippets = bool(asks and asks.snippet_support)
         self.tags = bool(asks and asks.tag_support)
         self.label_details = bool(asks and asks.label_details_support)
