@@ -25,6 +25,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS, Problem
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
@@ -124,9 +125,9 @@ class Checker:
 
     def _diagnostic(self, path: str, finding: Finding, severity: Severity) -> Diagnostic:
         related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
-        return Diagnostic(
-            path, finding.code, severity, finding.span, finding.message, finding.fixes, related, finding.tags
-        )
+        source = self.analysis.source(path) if finding.fixes else None
+        fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
+        return Diagnostic(path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags)
 
     def _related(self, path: str, related: Related) -> RelatedPlace | None:
         if isinstance(related.place, Symbol):
