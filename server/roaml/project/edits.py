@@ -25,10 +25,10 @@ def in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdi
     What stands on a line is seen with all the edits made.
     """
     text, edits = source.text, sorted(edits)
-    line_end = line_end_of(text) if any("\n" in edit.new_text for edit in edits) else "\n"
+    line_end = line_end_of(text) if any(_LINE_END.search(edit.new_text) for edit in edits) else "\n"
     for edit in edits:
         if edit.new_text or edit.span.start == edit.span.end:
-            yield TextEdit(edit.span, edit.new_text.replace("\n", line_end))
+            yield TextEdit(edit.span, _LINE_END.sub(line_end, edit.new_text))
             continue
         start = source.lines.line_start(source.lines.position(edit.span.start).line)
         end = source.lines.line_end(source.lines.position(edit.span.end).line)

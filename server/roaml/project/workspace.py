@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
@@ -26,18 +26,29 @@ _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MOD
 
 
 class Snapshot:
-    """One moment: what is known (`analysis`) and what is wrong (`checker`)."""
+    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are all files in the folders."""
 
-    def __init__(self, analysis: Analysis, checker: Checker, listed: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        analysis: Analysis,
+        checker: Checker,
+        listed: tuple[str, ...],
+        again: Callable[[Mapping[str, SourceFile]], Snapshot],
+    ) -> None:
         self.analysis = analysis
         self.checker = checker
-        self._listed = listed
+        self.listed = listed
+        self._again = again
+
+    def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
+        """The same moment with some texts in place of what the files hold."""
+        return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
         """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
         analysis = self.analysis
         found = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
-        for path in self._listed:
+        for path in self.listed:
             if path not in found and analysis.kind(path) not in _NOT_BY_THEMSELVES:
                 found[path] = None
         return tuple(path for path in found if analysis.source(path) is not None)
@@ -97,14 +108,23 @@ class Workspace:
         self._registry = self._new_registry()
 
     def snapshot(self) -> Snapshot:
-        files = Files(self._disk, self._open)
+        opened = self._open
+        return self._snapshot(opened, lambda texts: self._with(opened, texts))
+
+    def _with(self, opened: dict[str, SourceFile], texts: Mapping[str, SourceFile]) -> Snapshot:
+        return self._snapshot({**opened, **texts}, lambda more: self._with(opened, {**texts, **more}))
+
+    def _snapshot(
+        self, opened: Mapping[str, SourceFile], again: Callable[[Mapping[str, SourceFile]], Snapshot]
+    ) -> Snapshot:
+        files = Files(self._disk, opened)
         if self._listed is None:
             self._listed = tuple(candidates(self.roots, self.settings.exclude))
-        new = [path for path in self._open if is_candidate(path, self.roots, self.settings.exclude)]
+        new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
         analysis = Analysis(files, registry, self._memo, systems, self.settings.overrides)
-        return Snapshot(analysis, Checker(analysis, self.settings), self._listed)
+        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, again)
 
     def _new_registry(self) -> Registry:
         settings = self.settings

@@ -10,8 +10,9 @@ from roaml.expr.infer import UnknownName
 from roaml.expr.types import REAL, Scalar, Type
 from roaml.model.machine import Chart
 from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.rules.layout import first_in, last_in
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.text import Span, TextEdit
+from roaml.rules.zero import zero
 
 LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
 NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
@@ -43,7 +44,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     message = f"there is no variable `{name}`{did_you_mean(close)}"
     if not close and any(name in known for known in context.typed.variables.values()):
         message = f"`{name}` is not known here: the machine and each of its threads have variables of their own"
-    return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(value, name))
+    return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(context, value, name))
 
 
 def _answers(value: TypedValue) -> Iterable[str]:
@@ -53,13 +54,12 @@ def _answers(value: TypedValue) -> Iterable[str]:
     return STATUSES if is_known else ()
 
 
-def _declare(value: TypedValue, name: str) -> Iterator[Fix]:
+def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[Fix]:
     """Declare the variable, if its type can be told from where it is used."""
     type_ = wanted_type(value, name)
     if type_ is None:
         return
-    zero = {"int": "0", "real": "0.0", "bool": "false", "string": "''"}[type_.kind]
-    yield declaration(value.place.chart, name, str(type_), zero)
+    yield declaration(context, value.place.chart, name, str(type_), zero(type_))
 
 
 def wanted_type(value: TypedValue, name: str) -> Scalar | None:
@@ -75,22 +75,15 @@ def wanted_type(value: TypedValue, name: str) -> Scalar | None:
     return Scalar("real", "float64") if wanted == REAL else Scalar(wanted.kind, "int32")
 
 
-def declaration(chart: Chart, name: str, type_: str, value: str) -> Fix:
+def declaration(context: MachineContext, chart: Chart, name: str, type_: str, value: str) -> Fix:
     """A fix that adds a `<data>` to the datamodel of a chart, which is made if there is none."""
     data = f'<data id="{name}" type="{type_}" expr="{value}" />'
     model = chart.element.find("datamodel")
-    title = f"Declare `{name}` as {type_}"
     if model is None:
-        at = chart.element.open_span.end
-        text = f"\n\n    <datamodel>\n        {data}\n    </datamodel>"
-        return Fix(title, (TextEdit(Span(at, at), text),), preferred=False)
-    if model.elements:
-        at = model.elements[-1].span.end
-    elif model.self_closing:
-        return Fix(title, (TextEdit(model.span, f"<datamodel>\n        {data}\n    </datamodel>"),), preferred=False)
+        edit = first_in(context.document, chart.element, "<datamodel>", f"    {data}", "</datamodel>")
     else:
-        at = model.open_span.end
-    return Fix(title, (TextEdit(Span(at, at), f"\n        {data}"),), preferred=False)
+        edit = last_in(context.document, model, data)
+    return Fix(f"Declare `{name}` as {type_}", (edit,), preferred=False)
 
 
 RULE = Rule("undeclared-variable", Severity.ERROR, "A variable is used that is not declared.", machine=check)

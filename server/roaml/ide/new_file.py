@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What new files begin with, and where they are put."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+
+from roaml.model.system import safe_name
+from roaml.project.analysis import Analysis
+from roaml.text import SourceFile
+
+_DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def stem_of(path: str) -> str:
+    return safe_name(os.path.splitext(os.path.basename(path))[0])
+
+
+def camel_case(stem: str) -> str:
+    """`battery_above` as the name of a machine: `BatteryAbove`."""
+    return "".join(part[:1].upper() + part[1:] for part in stem.split("_"))
+
+
+def file_name(machine: str) -> str:
+    """`BatteryAbove` as the name of a file: `battery_above.ascxml`."""
+    return _CAMEL.sub("_", machine).lower() + ".ascxml"
+
+
+def free_path(analysis: Analysis, folder: str, name: str) -> str:
+    """A path in a folder at which there is no file."""
+    stem, extension = os.path.splitext(name)
+    path, number = os.path.join(folder, name), 2
+    while isinstance(analysis.files.read(path), SourceFile):
+        path, number = os.path.join(folder, f"{stem}_{number}{extension}"), number + 1
+    return path
+
+
+def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
+    """A path as `src` of a system file names it: like the others there, with or without `./`."""
+    src = os.path.relpath(path, os.path.dirname(system)).replace(os.sep, "/")
+    others = [other for other in written if not other.startswith("..")]
+    dotted = bool(others) and all(other.startswith("./") for other in others)
+    return f"./{src}" if dotted and not src.startswith("..") else src
+
+
+def node(name: str) -> str:
+    """A machine that does nothing yet."""
+    return f"""{_DECLARATION}<ascxml name="{name}" version="1.0" initial="run">
+    <state id="run" />
+</ascxml>
+"""
+
+
+def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool = False) -> str:
+    """A plugin that succeeds at once or, with a child, does as the child does.
+
+    Args:
+        name: of the plugin.
+        ports: direction, key and type of each.
+        child: whether the node has a child.
+    """
+    ports = tuple(ports)
+    declared = "".join(
+        f'    <bt_declare_port_{direction} key="{key}" type="{type_}" />\n' for direction, key, type_ in ports
+    )
+    outputs = "".join(
+        f'            <bt_set_output key="{key}" expr="{_ZERO.get(type_, "0")}" />\n'
+        for d, key, type_ in ports
+        if d == "out"
+    )
+    states = _WITH_CHILD if child else _LEAF.format(outputs=outputs)
+    gap = "\n" if declared else ""
+    return f'{_DECLARATION}<ascxml name="{name}" version="1.0" initial="ready">\n{declared}{gap}{states}</ascxml>\n'
+
+
+_ZERO = {"bool": "false", "string": "''", "float32": "0.0", "float64": "0.0"}
+
+_LEAF = """\
+    <state id="ready">
+        <bt_tick target="ready">
+{outputs}            <bt_return_status status="SUCCESS" />
+        </bt_tick>
+        <bt_halt target="ready">
+            <bt_return_halted />
+        </bt_halt>
+    </state>
+"""
+
+_ANSWERS = "".join(
+    f"""\
+        <bt_child_status id="0" cond="_bt.status == {status}" target="ready">
+            <bt_return_status status="{status}" />
+        </bt_child_status>
+"""
+    for status in ("SUCCESS", "FAILURE", "RUNNING")
+)
+
+_WITH_CHILD = f"""\
+    <state id="ready">
+        <bt_tick target="ticking">
+            <bt_tick_child id="0" />
+        </bt_tick>
+        <bt_halt target="halting">
+            <bt_halt_child id="0" />
+        </bt_halt>
+    </state>
+
+    <state id="ticking">
+{_ANSWERS}    </state>
+
+    <state id="halting">
+        <bt_child_halted id="0" target="ready">
+            <bt_return_halted />
+        </bt_child_halted>
+    </state>
+"""
+
+
+def tree() -> str:
+    """A tree of one node that succeeds."""
+    return f"""{_DECLARATION}<root BTCPP_format="4" main_tree_to_execute="MainTree">
+    <BehaviorTree ID="MainTree">
+        <AlwaysSuccess />
+    </BehaviorTree>
+</root>
+"""
+
+
+def structs() -> str:
+    return f"{_DECLARATION}<types>\n</types>\n"
+
+
+def properties() -> str:
+    return '{\n    "properties": []\n}\n'

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every quick fix keeps its promise: made alone, it removes its diagnostic and adds no error."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.ide.actions import quick_fixes
+from roaml.ide.change import Action, Change
+from roaml.project.settings import Settings
+from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import apply_edits
+
+
+def workspace_of(folder: Path) -> Workspace:
+    return Workspace((str(folder),), Settings())
+
+
+def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
+    """Path -> text of the files that a change makes or changes."""
+    texts = dict(change.created)
+    for path, edits in change.edits.items():
+        source = snapshot.analysis.source(path)
+        assert source is not None
+        assert all(one.span.end <= other.span.start for one, other in _pairs(sorted(edits))), "edits overlap"
+        texts[path] = apply_edits(source.text, edits)
+    return texts
+
+
+def broken_promises(workspace: Workspace, code: str | None = None) -> Iterator[str]:
+    """What is wrong with the fixes of all that is found in a folder, or of what one rule finds."""
+    snapshot = workspace.snapshot()
+    before = found(snapshot)
+    for diagnostic in before:
+        if code in (None, diagnostic.code):
+            for action in quick_fixes(snapshot, diagnostic.path, diagnostic):
+                reason = _reason(snapshot, before, diagnostic, action)
+                if reason:
+                    name = os.path.basename(diagnostic.path)
+                    yield f"{name}: {diagnostic.code}: {diagnostic.message}: {action.title}: {reason}"
+
+
+def _reason(snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action) -> str:
+    texts = applied(snapshot, action.make())
+    if not texts:
+        return "does nothing"
+    after = found(snapshot.with_texts(texts))
+    if _same(after)[_key(diagnostic)] >= _same(before)[_key(diagnostic)]:
+        return "the diagnostic stays"
+    new = Counter(_key(d)[1:] for d in after if d.severity is Severity.ERROR)
+    new -= Counter(_key(d)[1:] for d in before if d.severity is Severity.ERROR)
+    if errors(after) > errors(before) or (action.preferred and errors(after) == errors(before) and new):
+        return f"new errors: {sorted(new)}"
+    return ""
+
+
+def found(snapshot: Snapshot) -> list[Diagnostic]:
+    return [d for path in snapshot.files() for d in snapshot.checker.diagnostics(path)]
+
+
+def errors(diagnostics: list[Diagnostic]) -> int:
+    return sum(d.severity is Severity.ERROR for d in diagnostics)
+
+
+def _same(diagnostics: list[Diagnostic]) -> Counter[tuple[str, str, str]]:
+    return Counter(map(_key, diagnostics))
+
+
+def _key(diagnostic: Diagnostic) -> tuple[str, str, str]:
+    return diagnostic.path, diagnostic.code, diagnostic.message
+
+
+def _pairs(edits: list) -> Iterator[tuple]:  # type: ignore[type-arg]
+    return zip(edits, edits[1:], strict=False)
