@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections import Counter
 from collections.abc import Iterator
@@ -26,7 +27,9 @@ def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
     for path, edits in change.edits.items():
         source = snapshot.analysis.source(path)
         assert source is not None
-        assert all(one.span.end <= other.span.start for one, other in _pairs(sorted(edits))), "edits overlap"
+        assert all(one.span.end <= other.span.start for one, other in itertools.pairwise(sorted(edits))), (
+            "edits overlap"
+        )
         texts[path] = apply_edits(source.text, edits)
     return texts
 
@@ -72,7 +75,3 @@ def _same(diagnostics: list[Diagnostic]) -> Counter[tuple[str, str, str]]:
 
 def _key(diagnostic: Diagnostic) -> tuple[str, str, str]:
     return diagnostic.path, diagnostic.code, diagnostic.message
-
-
-def _pairs(edits: list) -> Iterator[tuple]:  # type: ignore[type-arg]
-    return zip(edits, edits[1:], strict=False)

@@ -42,6 +42,7 @@ class Action:
         make: what it does, worked out when it is asked for.
         mends: the diagnostic that a quick fix removes.
         preferred: it is the one obvious thing to do.
+        resources: `create` or `rename`, if it makes new files or gives files other names.
     """
 
     title: str
@@ -49,6 +50,7 @@ class Action:
     make: Callable[[], Change]
     mends: Diagnostic | None = None
     preferred: bool = False
+    resources: tuple[str, ...] = ()
 
 
 def known(change: Change) -> Callable[[], Change]:

@@ -42,8 +42,10 @@ def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
         yield from repair(snapshot, diagnostic)
 
 
-def _action(diagnostic: Diagnostic, title: str, make: Callable[[], Change], *, preferred: bool = False) -> Action:
-    return Action(title, QUICK_FIX, make, diagnostic, preferred)
+def _action(
+    diagnostic: Diagnostic, title: str, make: Callable[[], Change], *, preferred: bool = False, creates: bool = False
+) -> Action:
+    return Action(title, QUICK_FIX, make, diagnostic, preferred, ("create",) if creates else ())
 
 
 # --------------------------------------------------------- files that are missing
@@ -67,7 +69,9 @@ def _create(diagnostic: Diagnostic, listed: ListedFile, text: Callable[[str], st
     path, stem = listed.path, new_file.stem_of(listed.path)
     if os.path.splitext(path)[1] and stem:
         content = text(new_file.camel_case(stem))
-        yield _action(diagnostic, f"Create `{os.path.basename(path)}`", known(Change(created={path: content})))
+        yield _action(
+            diagnostic, f"Create `{os.path.basename(path)}`", known(Change(created={path: content})), creates=True
+        )
 
 
 _NEW: dict[str, Callable[[str], str]] = {
@@ -136,7 +140,7 @@ def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Acti
                 yield _action(diagnostic, title, partial(_list, analysis, systems, path), preferred=True)
                 return
     for title, make in skeletons(analysis, diagnostic.path, node):
-        yield _action(diagnostic, title, make)
+        yield _action(diagnostic, title, make, creates=True)
 
 
 def _is_machine(analysis: Analysis, path: str, name: str) -> bool:

@@ -181,8 +181,9 @@ class _Parser:
         if key is not None:
             if not key.colon:
                 # Of a key that is never closed, the colon is in it.
-                fixes = [_insertion(key.end, ":")] if self.text[key.end - 1] == self.text[key.start] else []
-                self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", *fixes)
+                closed = self.text[key.end - 1] == self.text[key.start]
+                fix = _insertion(key.end, ":") if closed else None
+                self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", fix)
             self.parts.append(key.member(value))
             self.key = None
             self.wants_comma = True

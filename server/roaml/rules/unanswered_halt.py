@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
@@ -11,7 +11,8 @@ from roaml.model.system import Automaton
 from roaml.rules import misspelled, removed_bt_event
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
-from roaml.xml import Element
+from roaml.text import TextEdit
+from roaml.xml import Document, Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -42,16 +43,21 @@ def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
 
 
 def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:
-    """Add a `<bt_halt>` that goes to the initial state to each state that takes ticks."""
+    edits = halts(context.document, root, root.elements)
+    if edits:
+        yield Fix("Add `<bt_halt>` to every state that takes ticks", edits)
+
+
+def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
+    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
     initial = root.get("initial")
     edits = []
-    for state in root.elements:
+    for state in states:
         ticks = [child for child in state.elements if child.name == "bt_tick"]
-        if state.name == "state" and ticks and initial:
+        if state.name == "state" and ticks and initial and state.find("bt_halt") is None:
             halt = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
-            edits.append(after(context.document, ticks[-1], *halt))
-    if edits:
-        yield Fix("Add `<bt_halt>` to every state that takes ticks", tuple(edits))
+            edits.append(after(document, ticks[-1], *halt))
+    return tuple(edits)
 
 
 def _answer(context: MachineContext, root: Element) -> Iterator[Fix]:
