@@ -34,29 +34,38 @@ def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
     return texts
 
 
-def broken_promises(workspace: Workspace, code: str | None = None) -> Iterator[str]:
-    """What is wrong with the fixes of all that is found in a folder, or of what one rule finds."""
+def broken_promises(workspace: Workspace, code: str | None = None, *, errors_may_come: bool = False) -> Iterator[str]:
+    """What is wrong with the fixes of all that is found in a folder, or of what one rule finds.
+
+    Of several names that may be meant, those that are not preferred may be wrong. With `errors_may_come`, a fix need
+    only remove its diagnostic.
+    """
     snapshot = workspace.snapshot()
     before = found(snapshot)
     for diagnostic in before:
         if code in (None, diagnostic.code):
             for action in quick_fixes(snapshot, diagnostic.path, diagnostic):
-                reason = _reason(snapshot, before, diagnostic, action)
+                strict = not errors_may_come and (action.preferred or not action.title.startswith("Change to"))
+                reason = _reason(snapshot, before, diagnostic, action, strict=strict)
                 if reason:
                     name = os.path.basename(diagnostic.path)
                     yield f"{name}: {diagnostic.code}: {diagnostic.message}: {action.title}: {reason}"
 
 
-def _reason(snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action) -> str:
+def _reason(
+    snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action, *, strict: bool
+) -> str:
     texts = applied(snapshot, action.make())
     if not texts:
         return "does nothing"
     after = found(snapshot.with_texts(texts))
-    if _same(after)[_key(diagnostic)] >= _same(before)[_key(diagnostic)]:
+    if Counter(map(_key, after))[_key(diagnostic)] >= Counter(map(_key, before))[_key(diagnostic)]:
         return "the diagnostic stays"
-    new = Counter(_key(d)[1:] for d in after if d.severity is Severity.ERROR)
-    new -= Counter(_key(d)[1:] for d in before if d.severity is Severity.ERROR)
-    if errors(after) > errors(before) or (action.preferred and errors(after) == errors(before) and new):
+    if any(each.code == "internal-error" for each in after):
+        return "a rule fails"
+    new = Counter(map(_key, _errors(after))) - Counter(map(_key, _errors(before)))
+    removes = diagnostic.severity is Severity.ERROR
+    if strict and new and (action.preferred or len(_errors(after)) > len(_errors(before)) - removes):
         return f"new errors: {sorted(new)}"
     return ""
 
@@ -65,12 +74,8 @@ def found(snapshot: Snapshot) -> list[Diagnostic]:
     return [d for path in snapshot.files() for d in snapshot.checker.diagnostics(path)]
 
 
-def errors(diagnostics: list[Diagnostic]) -> int:
-    return sum(d.severity is Severity.ERROR for d in diagnostics)
-
-
-def _same(diagnostics: list[Diagnostic]) -> Counter[tuple[str, str, str]]:
-    return Counter(map(_key, diagnostics))
+def _errors(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    return [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
 
 
 def _key(diagnostic: Diagnostic) -> tuple[str, str, str]:

@@ -20,7 +20,6 @@ from roaml.ide.rename import Renaming, rename
 from roaml.ide.skeleton import skeletons
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
-from roaml.model.system import safe_name
 from roaml.model.system_file import ListedFile
 from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
@@ -157,6 +156,8 @@ def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Act
     """What is listed as a node and is a plugin is listed in the wrong section."""
     analysis = snapshot.analysis
     for system in analysis.memberships.get(diagnostic.path, ()):
+        if not analysis.tree_paths(system):
+            continue  # it would have plugins and no tree
         for listed in analysis.listed(system):
             if listed.path == diagnostic.path and listed.input.section == "node_models":
                 yield _move(analysis, diagnostic, system, listed)
@@ -286,7 +287,7 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     if diagnostic.fixes:
         return
     analysis = snapshot.analysis
-    new = safe_name(_text_at(analysis, diagnostic)).strip("_")
+    new = re.sub(r"\W", "_", _text_at(analysis, diagnostic), flags=re.ASCII).strip("_")
     if not new:
         return
     new = new if not new[0].isdigit() else f"n{new}"

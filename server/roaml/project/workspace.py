@@ -108,22 +108,20 @@ class Workspace:
         self._registry = self._new_registry()
 
     def snapshot(self) -> Snapshot:
-        opened = self._open
-        return self._snapshot(opened, lambda texts: self._with(opened, texts))
+        return self._snapshot(self._open, self._memo)
 
-    def _with(self, opened: dict[str, SourceFile], texts: Mapping[str, SourceFile]) -> Snapshot:
-        return self._snapshot({**opened, **texts}, lambda more: self._with(opened, {**texts, **more}))
+    def _snapshot(self, opened: Mapping[str, SourceFile], memo: Memo) -> Snapshot:
+        def again(texts: Mapping[str, SourceFile]) -> Snapshot:
+            """What might be is looked at with a memory of its own, so that nothing that is is forgotten for it."""
+            return self._snapshot({**opened, **texts}, memo.copy())
 
-    def _snapshot(
-        self, opened: Mapping[str, SourceFile], again: Callable[[Mapping[str, SourceFile]], Snapshot]
-    ) -> Snapshot:
         files = Files(self._disk, opened)
         if self._listed is None:
             self._listed = tuple(candidates(self.roots, self.settings.exclude))
         new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
-        analysis = Analysis(files, registry, self._memo, systems, self.settings.overrides)
+        analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
         return Snapshot(analysis, Checker(analysis, self.settings), self._listed, again)
 
     def _new_registry(self) -> Registry:
