@@ -29,6 +29,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.discover import is_inside
 from roaml.project.files import Problem
+from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings
@@ -104,6 +105,17 @@ def check(
     files = _files(named, snapshot, checked)
     diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path))
     return CheckResult(diagnostics, files, problems, snapshot)
+
+
+def fix(result: CheckResult) -> dict[str, bytes]:
+    """What becomes of the checked files when all safe fixes of what was found are made. Nothing is written.
+
+    A safe fix takes away nothing that has an effect and guesses nothing. Files that stay as they are, and those that
+    hold bytes that are no text, are left out.
+    """
+    sources = {path: result.source(path) for path in result.files}
+    texts = fix_all((p for p, s in sources.items() if s.undecodable is None), safe_fix, result.snapshot.with_texts)
+    return {path: sources[path].encode(text) for path, text in texts.items()}
 
 
 class ModelError(ValueError):
