@@ -31,6 +31,9 @@ def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
             "edits overlap"
         )
         texts[path] = apply_edits(source.text, edits)
+    for path, new in change.renamed.items():
+        source = snapshot.analysis.source(path)
+        texts[new] = texts.pop(path, source.text if source else "")
     return texts
 
 

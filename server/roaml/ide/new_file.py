@@ -7,8 +7,11 @@ import os
 import re
 from collections.abc import Iterable
 
+from roaml.expr.types import BASE_TYPES
 from roaml.model.system import safe_name
 from roaml.project.analysis import Analysis
+from roaml.rules.invalid_name import variable_problem
+from roaml.rules.zero import zero
 from roaml.text import SourceFile
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -55,7 +58,7 @@ def node(name: str) -> str:
 
 
 def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool = False) -> str:
-    """A plugin that succeeds at once or, with a child, does as the child does.
+    """A plugin that reads and sets its ports and succeeds at once or, with a child, does as the child does.
 
     Args:
         name: of the plugin.
@@ -63,25 +66,40 @@ def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool
         child: whether the node has a child.
     """
     ports = tuple(ports)
-    declared = "".join(
-        f'    <bt_declare_port_{direction} key="{key}" type="{type_}" />\n' for direction, key, type_ in ports
+    inputs = [
+        (key, f"{key}_input" if variable_problem(key) else key, type_) for way, key, type_ in ports if way == "in"
+    ]
+    outputs = [(key, type_) for way, key, type_ in ports if way == "out"]
+    parts = []
+    if ports:
+        parts.append(
+            "".join(f'    <bt_declare_port_{way} key="{key}" type="{type_}" />\n' for way, key, type_ in ports)
+        )
+    if inputs:
+        data = (f'        <data id="{id_}" type="{type_}" expr="{_zero(type_)}" />\n' for _, id_, type_ in inputs)
+        parts.append(f"    <datamodel>\n{''.join(data)}    </datamodel>\n")
+    work = "".join(
+        f"""\
+            <assign location="{id_}">
+                <expr><bt_get_input key="{key}" /></expr>
+            </assign>
+"""
+        for key, id_, _ in inputs
     )
-    outputs = "".join(
-        f'            <bt_set_output key="{key}" expr="{_ZERO.get(type_, "0")}" />\n'
-        for d, key, type_ in ports
-        if d == "out"
-    )
-    states = _WITH_CHILD if child else _LEAF.format(outputs=outputs)
-    gap = "\n" if declared else ""
-    return f'{_DECLARATION}<ascxml name="{name}" version="1.0" initial="ready">\n{declared}{gap}{states}</ascxml>\n'
+    work += "".join(f'            <bt_set_output key="{key}" expr="{_zero(type_)}" />\n' for key, type_ in outputs)
+    parts.append((_WITH_CHILD if child else _LEAF).format(work=work))
+    body = "\n".join(parts)
+    return f'{_DECLARATION}<ascxml name="{name}" version="1.0" initial="ready">\n{body}</ascxml>\n'
 
 
-_ZERO = {"bool": "false", "string": "''", "float32": "0.0", "float64": "0.0"}
+def _zero(type_: str) -> str:
+    return zero(BASE_TYPES[type_]) if type_ in BASE_TYPES else "0"
+
 
 _LEAF = """\
     <state id="ready">
         <bt_tick target="ready">
-{outputs}            <bt_return_status status="SUCCESS" />
+{work}            <bt_return_status status="SUCCESS" />
         </bt_tick>
         <bt_halt target="ready">
             <bt_return_halted />
@@ -101,7 +119,7 @@ _ANSWERS = "".join(
 _WITH_CHILD = f"""\
     <state id="ready">
         <bt_tick target="ticking">
-            <bt_tick_child id="0" />
+{{work}}            <bt_tick_child id="0" />
         </bt_tick>
         <bt_halt target="halting">
             <bt_halt_child id="0" />

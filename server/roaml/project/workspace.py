@@ -26,18 +26,21 @@ _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MOD
 
 
 class Snapshot:
-    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are all files in the folders."""
+    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are the files in the folders, with
+    those of the editor that were never saved."""
 
     def __init__(
         self,
         analysis: Analysis,
         checker: Checker,
         listed: tuple[str, ...],
+        opened: Iterable[str],
         again: Callable[[Mapping[str, SourceFile]], Snapshot],
     ) -> None:
         self.analysis = analysis
         self.checker = checker
-        self.listed = listed
+        self.listed = tuple(dict.fromkeys((*listed, *opened)))
+        self._listed = listed
         self._again = again
 
     def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
@@ -48,7 +51,7 @@ class Snapshot:
         """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
         analysis = self.analysis
         found = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
-        for path in self.listed:
+        for path in self._listed:
             if path not in found and analysis.kind(path) not in _NOT_BY_THEMSELVES:
                 found[path] = None
         return tuple(path for path in found if analysis.source(path) is not None)
@@ -122,7 +125,7 @@ class Workspace:
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
         analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
-        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, again)
+        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
 
     def _new_registry(self) -> Registry:
         settings = self.settings

@@ -77,7 +77,7 @@ def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scal
         assigned = (v for v in context.typed.values if v.use is Use.ASSIGNED and v.element is value.element)
         return next((_named(v.type) for v in assigned), None)
     variables = context.typed.variables.get(value.place.chart.scope, {})
-    return _beside(tree, name, variables.get, BOOL if value.use in (Use.CONDITION, Use.BRANCH) else None)
+    return _beside(tree, name, variables.get, BOOL if value.use in (Use.CONDITION, Use.BRANCH) else value.wanted)
 
 
 def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], wanted: Type | None) -> Scalar | None:
@@ -90,8 +90,9 @@ def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], want
             return _beside(operand, name, variables, BOOL if is_not else wanted)
         case Binary(operator=Operator.AND | Operator.OR, left=left, right=right):
             return _beside(left, name, variables, BOOL) or _beside(right, name, variables, BOOL)
-        case Binary(left=left, right=right):
-            types = (infer(side, variables)[0] for side in (right, left))
+        case Binary(operator=operator, left=left, right=right):
+            whole = wanted if operator.kind == "arithmetic" else None
+            types = (_closer(infer(side, variables)[0], whole) for side in (right, left))
             found_types = (
                 _beside(side, name, variables, type_) for side, type_ in zip((left, right), types, strict=True)
             )
@@ -101,6 +102,13 @@ def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], want
                 (type_ for side in (then, otherwise) if (type_ := _beside(side, name, variables, wanted))), None
             )
     return None
+
+
+def _closer(beside: Type, whole: Type | None) -> Type:
+    """What is known better: the type of the other operand, or that of the result where the other is a literal."""
+    if isinstance(beside, Scalar) and not beside.name and isinstance(whole, Scalar) and whole.kind == beside.kind:
+        return whole
+    return beside
 
 
 def _named(type_: Type | None) -> Scalar | None:
