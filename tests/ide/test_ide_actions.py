@@ -264,7 +264,7 @@ OLDER = """\
 -- main.xml --
 <convince_mc_tc>
     <mc_parameters><max_time value="1" unit="s" /></mc_parameters>
-    <node_models><input ‸type="ros-scxml" src="a.scxml" /></node_models>
+    <node_models><input type="ros-‸scxml" src="a.scxml" /></node_models>
 </convince_mc_tc>
 -- a.scxml --
 <scxml name="A" version="1.0" model_src="" initial="s">
