@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from as2fm_lsp.handlers import (
     call_hierarchy,
     code_action,
+    completion,
     formatting,
     hover,
     navigate,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _FEATURES = (
     call_hierarchy,
     code_action,
+    completion,
     formatting,
     hover,
     navigate,
