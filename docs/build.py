@@ -179,7 +179,7 @@ A fix is a change that an editor offers. Some are *safe*: they take away nothing
 `as2fm-lsp --check PATH --fix` makes all safe fixes and reports what is left; in an editor, the code action
 `source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes are for somebody who looks at
 them: an editor makes the obvious one with its key for fixes, and all obvious ones of a rule with *Fix all ... in this
-file*. No fix of either kind is made to many findings at once where that brings an error.
+file*. A safe fix is not made where, alone or with others, it would bring an error.
 
 Besides, an editor offers these refactorings:
 

@@ -114,7 +114,9 @@ def fix(result: CheckResult) -> dict[str, bytes]:
     hold bytes that are no text, are left out.
     """
     sources = {path: result.source(path) for path in result.files}
-    texts = fix_all((p for p, s in sources.items() if s.undecodable is None), safe_fix, result.snapshot.with_texts)
+    texts = fix_all(
+        (p for p, s in sources.items() if s.undecodable is None), safe_fix, result.snapshot.with_texts, careful=True
+    )
     return {path: sources[path].encode(text) for path, text in texts.items()}
 
 

@@ -61,6 +61,16 @@ def test_an_element_that_must_stay(check: Command, tmp_path: Path) -> None:
     assert path.read_text().count("<log") == 2
 
 
+def test_of_two_elements_one_must_stay(check: Command, tmp_path: Path) -> None:
+    """Each alone could go. What else is safe is done all the same."""
+    path = tmp_path / "drainer.ascxml"
+    log = '<log expr="n" />'
+    path.write_text(MACHINE.replace(f"{log}\n            {log}", f'<if cond="n == 1">{log}{log}</if>'))
+    check("drainer.ascxml", "--fix")
+    assert path.read_text().count("<log") == 1
+    assert path.read_text().count("<ros_topic_publisher") == 1
+
+
 def test_files_that_are_no_text_stay(check: Command, tmp_path: Path) -> None:
     path = tmp_path / "drainer.ascxml"
     data = MACHINE.replace("kept", "\udcff").encode("utf-8", "surrogateescape")

@@ -54,17 +54,22 @@ def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code
         def choose(diagnostic: Diagnostic) -> Fix | None:
             return preferred_fix(diagnostic) if diagnostic.code == code else None
 
-        yield Action(f"Fix all `{code}` in this file", QUICK_FIX, lambda: _all(snapshot, path, choose), mendable[0])
+        yield Action(
+            f"Fix all `{code}` in this file",
+            QUICK_FIX,
+            lambda: _all(snapshot, path, choose, careful=False),
+            mendable[0],
+        )
 
 
 def _fix_file(snapshot: Snapshot, path: str) -> Iterator[Action]:
     """All safe fixes of the file."""
     if any(safe_fix(diagnostic) for diagnostic in snapshot.checker.diagnostics(path)):
         title = "Make all safe fixes in this file"
-        yield Action(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix))
+        yield Action(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))
 
 
-def _all(snapshot: Snapshot, path: str, choose: Choice) -> Change:
+def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> Change:
     source = snapshot.analysis.source(path)
-    after = fix_all((path,), choose, snapshot.with_texts)
+    after = fix_all((path,), choose, snapshot.with_texts, careful=careful)
     return Change({path: whole(source.text, after[path])}) if source and path in after else Change()

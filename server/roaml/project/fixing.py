@@ -3,18 +3,19 @@
 
 - Fixes that touch each other are not made together: the later one waits for the next pass, which sees what the first
   has done.
-- A pass that makes errors is not made, whatever its fixes promise.
+- Of fixes that are made without a look, those that would bring an error, alone or together, are not made.
 """
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Callable, Iterable, Mapping
 
 from roaml.diagnostics import Diagnostic, Fix, Severity
 from roaml.project.workspace import Snapshot
 from roaml.text import TextEdit, apply_edits
 
-MAX_PASSES = 20
+MAX_PASSES = 100
 
 Choice = Callable[[Diagnostic], "Fix | None"]
 """Which fix of a diagnostic is to be made, if any."""
@@ -32,42 +33,69 @@ def preferred_fix(diagnostic: Diagnostic) -> Fix | None:
 
 def fix_edits(snapshot: Snapshot, path: str, choose: Choice) -> tuple[TextEdit, ...]:
     """The edits of all chosen fixes of a file that do not touch each other."""
-    edits: list[TextEdit] = []
-    for diagnostic in snapshot.checker.diagnostics(path):
-        fix = choose(diagnostic)
-        if fix is not None and not any(_touch(new, made) for new in fix.edits for made in edits):
-            edits += fix.edits
-    return tuple(edits)
+    return tuple(edit for fix in _fixes(snapshot, path, choose) for edit in fix.edits)
 
 
 def fix_all(
-    paths: Iterable[str], choose: Choice, snapshot_of: Callable[[Mapping[str, str]], Snapshot]
+    paths: Iterable[str],
+    choose: Choice,
+    snapshot_of: Callable[[Mapping[str, str]], Snapshot],
+    *,
+    careful: bool,
 ) -> dict[str, str]:
     """The texts of files after all chosen fixes, made until none is left. Files that stay as they are are left out.
 
-    `snapshot_of` gives the files with some texts in place of what they hold.
+    Args:
+        paths: the files.
+        choose: which fix of a diagnostic is to be made, if any.
+        snapshot_of: gives the files with some texts in place of what they hold.
+        careful: make no fix that brings an error.
     """
     texts: dict[str, str] = {}
     snapshot = snapshot_of(texts)
     for path in dict.fromkeys(paths):
-        if snapshot.analysis.source(path) is None:
-            continue
         for _ in range(MAX_PASSES):
-            source = snapshot.analysis.source(path)
-            assert source is not None
-            text = apply_edits(source.text, fix_edits(snapshot, path, choose))
-            if text == source.text:
+            found = _pass(snapshot, path, choose, lambda text: snapshot_of({**texts, path: text}), careful=careful)  # noqa: B023 - called at once
+            if found is None:
                 break
-            changed = snapshot_of({**texts, path: text})
-            if _errors(changed, path) > _errors(snapshot, path):
-                break
-            texts[path], snapshot = text, changed
+            texts[path], snapshot = found
     return texts
+
+
+def _pass(
+    snapshot: Snapshot, path: str, choose: Choice, with_text: Callable[[str], Snapshot], *, careful: bool
+) -> tuple[str, Snapshot] | None:
+    """The text after as many fixes at once as go together, and what is known then. None if there is none to make."""
+    source, fixes = snapshot.analysis.source(path), _fixes(snapshot, path, choose)
+    if source is None:
+        return None
+    together = [fixes, *([fix] for fix in fixes if len(fixes) > 1)] if careful else [fixes]
+    for chosen in together:
+        text = apply_edits(source.text, tuple(edit for fix in chosen for edit in fix.edits))
+        if text != source.text:
+            changed = with_text(text)
+            if not careful or _errors(changed, path) <= _errors(snapshot, path):
+                return text, changed
+    return None
+
+
+def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
+    fixes: list[Fix] = []
+    made: list[TextEdit] = []  # sorted; none touches another one's fix
+    for diagnostic in snapshot.checker.diagnostics(path):
+        fix = choose(diagnostic)
+        if fix is not None and not any(_touches_one_of(made, edit) for edit in fix.edits):
+            fixes.append(fix)
+            for edit in fix.edits:
+                bisect.insort(made, edit)
+    return fixes
 
 
 def _errors(snapshot: Snapshot, path: str) -> int:
     return sum(diagnostic.severity is Severity.ERROR for diagnostic in snapshot.checker.diagnostics(path))
 
 
-def _touch(one: TextEdit, other: TextEdit) -> bool:
-    return one.span.start <= other.span.end and other.span.start <= one.span.end
+def _touches_one_of(made: list[TextEdit], edit: TextEdit) -> bool:
+    at = bisect.bisect(made, edit)
+    near = made[max(0, at - 1) : at + 1]
+    return any(each.span.start <= edit.span.end and edit.span.start <= each.span.end for each in near)
