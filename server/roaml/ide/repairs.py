@@ -17,14 +17,17 @@ from roaml.ide import new_file
 from roaml.ide.change import QUICK_FIX, Action, Change, known
 from roaml.ide.inputs import add_input, move_input
 from roaml.ide.rename import Renaming, rename
-from roaml.ide.skeleton import skeletons
+from roaml.ide.skeleton import port_of, skeletons
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
+from roaml.model.system import CHILDREN_COUNT
 from roaml.model.system_file import ListedFile
 from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
+from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
 from roaml.rules.elements import removal
+from roaml.rules.layout import after, first_in
 from roaml.rules.rule import close_names
 from roaml.text import SourceFile, Span, TextEdit
 
@@ -244,6 +247,46 @@ def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edi
     return {each: tuple(edits) for each, edits in found.items()}
 
 
+def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """Declare a port in the plugin, if all its nodes set it."""
+    if any(fix.preferred for fix in diagnostic.fixes):
+        return
+    analysis = snapshot.analysis
+    node = _node_at(analysis, diagnostic)
+    setting = next((s for s in node.ports if s.key.span == diagnostic.span), None) if node else None
+    for path in analysis.memberships.get(diagnostic.path, ())[:1]:
+        system = analysis.system(path)
+        if system is None or node is None or node.plugin is None or setting is None:
+            return
+        plugin = system.plugin(node.plugin.value)[0]
+        machine, document = (analysis.machine(plugin), analysis.document(plugin)) if plugin else (None, None)
+        source = analysis.source(plugin) if plugin else None
+        same = [
+            n
+            for t in analysis.tree_paths(path)
+            for n in _all_nodes(analysis, t)
+            if n.plugin and n.plugin.value == node.plugin.value
+        ]
+        everywhere = all(n.element.get(setting.key.value) is not None for n in same)
+        if (
+            machine is None
+            or document is None
+            or source is None
+            or not everywhere
+            or setting.key.value == CHILDREN_COUNT
+        ):
+            return
+        way, key, type_ = port_of(system, setting)
+        text = f'<bt_declare_port_{way} key="{key}" type="{type_}" />'
+        edit = (
+            after(document, machine.ports[-1].element, text)
+            if machine.ports
+            else first_in(document, machine.element, text)
+        )
+        change = Change({plugin: tuple(in_layout(source, (edit,)))})
+        yield _action(diagnostic, f"Declare the port `{key}` in `{node.plugin.value}`", known(change))
+
+
 def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """Unless a tree that is not executed has it."""
     analysis, system = snapshot.analysis, diagnostic.path
@@ -343,6 +386,7 @@ _REPAIRS: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
     "missing-include": _missing_include,
     "tree-element-in-node": _element_in_node,
     "unknown-plugin": _unknown_plugin,
+    "unknown-port": _unknown_port,
     "unused-plugin": _unused_plugin,
     "unused-port": _unused_port,
 }

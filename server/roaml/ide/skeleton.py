@@ -44,13 +44,13 @@ def free_path(analysis: Analysis, system: str, name: str) -> str:
 def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target: str) -> Change:
     assert node.plugin is not None
     linked = analysis.system(systems[0])
-    ports = [(*_port(linked, setting),) for setting in node.ports]
+    ports = [(*port_of(linked, setting),) for setting in node.ports]
     text = new_file.plugin(node.plugin.value, ports, child=bool(node.children))
     edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", target) for s in systems}
     return Change({s: each for s, each in edits.items() if each}, {target: text})
 
 
-def _port(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
+def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
     """Direction, key and type that a setting suggests: a variable that somebody else sets is read, another is set."""
     variable = setting.variable
     if variable is None:
