@@ -66,6 +66,8 @@ def _reason(
         return "the diagnostic stays"
     if any(each.code == "internal-error" for each in after):
         return "a rule fails"
+    if action.preferred and _ill_formed(after) > _ill_formed(before):
+        return "the text is less well-formed than before"
     new = Counter(map(_key, _errors(after))) - Counter(map(_key, _errors(before)))
     removes = diagnostic.severity is Severity.ERROR
     if strict and new and (action.preferred or len(_errors(after)) > len(_errors(before)) - removes):
@@ -75,6 +77,10 @@ def _reason(
 
 def found(snapshot: Snapshot) -> list[Diagnostic]:
     return [d for path in snapshot.files() for d in snapshot.checker.diagnostics(path)]
+
+
+def _ill_formed(diagnostics: list[Diagnostic]) -> int:
+    return sum(diagnostic.code in ("xml-syntax", "duplicate-attribute") for diagnostic in diagnostics)
 
 
 def _errors(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
