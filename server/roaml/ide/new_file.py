@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable
 
 from roaml.expr.types import BASE_TYPES
 from roaml.model.system import safe_name
 from roaml.project.analysis import Analysis
+from roaml.project.paths import inside, seen_from, split_name
 from roaml.rules.invalid_name import variable_problem
 from roaml.rules.zero import zero
 from roaml.text import SourceFile
@@ -19,7 +19,7 @@ _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def stem_of(path: str) -> str:
-    return safe_name(os.path.splitext(os.path.basename(path))[0])
+    return safe_name(split_name(path)[0])
 
 
 def camel_case(stem: str) -> str:
@@ -34,16 +34,16 @@ def file_name(machine: str) -> str:
 
 def free_path(analysis: Analysis, folder: str, name: str) -> str:
     """A path in a folder at which there is no file."""
-    stem, extension = os.path.splitext(name)
-    path, number = os.path.join(folder, name), 2
+    stem, extension = split_name(name)
+    path, number = inside(folder, name), 2
     while isinstance(analysis.files.read(path), SourceFile):
-        path, number = os.path.join(folder, f"{stem}_{number}{extension}"), number + 1
+        path, number = inside(folder, f"{stem}_{number}{extension}"), number + 1
     return path
 
 
 def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
     """A path as `src` of a system file names it: like the others there, with or without `./`."""
-    src = os.path.relpath(path, os.path.dirname(system)).replace(os.sep, "/")
+    src = seen_from(path, system)
     others = [other for other in written if not other.startswith("..")]
     dotted = bool(others) and all(other.startswith("./") for other in others)
     return f"./{src}" if dotted and not src.startswith("..") else src

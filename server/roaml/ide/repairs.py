@@ -7,7 +7,6 @@ is never out of date.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -25,6 +24,7 @@ from roaml.model.system_file import ListedFile
 from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
+from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
 from roaml.rules.elements import removal
 from roaml.rules.layout import after, first_in
@@ -63,17 +63,15 @@ def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action
     of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.wanted)
     yield from _other_files(analysis, diagnostic, listed.path, of_kind)
     text = _NEW.get(listed.input.type.value if listed.input.type else "")
-    if text is not None and listed.problem == "there is no such file" and os.path.isabs(listed.path):
+    if text is not None and listed.problem == "there is no such file" and is_on_disk(listed.path):
         yield from _create(diagnostic, listed, text)
 
 
 def _create(diagnostic: Diagnostic, listed: ListedFile, text: Callable[[str], str]) -> Iterator[Action]:
     path, stem = listed.path, new_file.stem_of(listed.path)
-    if os.path.splitext(path)[1] and stem:
+    if split_name(path)[1] and stem:
         content = text(new_file.camel_case(stem))
-        yield _action(
-            diagnostic, f"Create `{os.path.basename(path)}`", known(Change(created={path: content})), creates=True
-        )
+        yield _action(diagnostic, f"Create `{name_of(path)}`", known(Change(created={path: content})), creates=True)
 
 
 _NEW: dict[str, Callable[[str], str]] = {
@@ -103,8 +101,8 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
     by_name: dict[str, list[str]] = {}
     for other in others:
         if other != path:
-            by_name.setdefault(os.path.basename(other), []).append(other)
-    name = os.path.basename(path)
+            by_name.setdefault(name_of(other), []).append(other)
+    name = name_of(path)
     close = dict.fromkeys((*([name] if name in by_name else []), *close_names(name, by_name)))
     found = [other for each in close for other in by_name[each]]
     for number, other in enumerate(found[:_MOST]):
@@ -138,7 +136,7 @@ def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Acti
             return
         for path in snapshot.listed:
             if analysis.kind(path) is FileKind.MACHINE and _is_machine(analysis, path, name):
-                title = f"List `{os.path.basename(path)}` in `{os.path.basename(system)}`"
+                title = f"List `{name_of(path)}` in `{name_of(system)}`"
                 yield _action(diagnostic, title, partial(_list, analysis, systems, path), preferred=True)
                 return
     for title, make in skeletons(analysis, diagnostic.path, node):
@@ -168,7 +166,7 @@ def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Act
 
 
 def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: ListedFile) -> Action:
-    title = f"List `{os.path.basename(listed.path)}` as a plugin in `{os.path.basename(system)}`"
+    title = f"List `{name_of(listed.path)}` as a plugin in `{name_of(system)}`"
 
     def make() -> Change:
         edits = move_input(analysis, system, listed, "behavior_tree", "bt-plugin-ascxml")
@@ -193,8 +191,8 @@ def _list_file(
 ) -> Iterator[Action]:
     """List a file that lies in the folder of the system file, or below it."""
     analysis, system = snapshot.analysis, diagnostic.path
-    folder = os.path.dirname(system) + os.sep
-    for number, path in enumerate(p for p in snapshot.listed if p.startswith(folder) and analysis.kind(p) is kind):
+    folder = folder_of(system)
+    for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
         if number < _MOST:
             title = f"List `{new_file.relative(path, system)}`"
             edits = add_input(analysis, system, section, type_, path)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 
 from roaml.ide import new_file
@@ -12,6 +11,7 @@ from roaml.ide.inputs import add_input
 from roaml.model.system import System, safe_name
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.project.analysis import Analysis
+from roaml.project.paths import folder_of, name_of
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], Change]]]:
@@ -27,7 +27,7 @@ def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[s
     name = node.plugin.value
     target = free_path(analysis, systems[0], name)
     yield (
-        f"Create the plugin `{name}` in `{os.path.basename(target)}`",
+        f"Create the plugin `{name}` in `{name_of(target)}`",
         lambda: _create(analysis, systems, node, target),
     )
 
@@ -37,7 +37,7 @@ def free_path(analysis: Analysis, system: str, name: str) -> str:
     plugins = [
         f.path for f in analysis.listed(system) if f.input.section == "behavior_tree" and f.path.endswith("cxml")
     ]
-    folder = os.path.dirname(plugins[0] if plugins else system)
+    folder = folder_of(plugins[0] if plugins else system)
     return new_file.free_path(analysis, folder, new_file.file_name(name))
 
 
