@@ -115,9 +115,17 @@ def fix(result: CheckResult) -> dict[str, bytes]:
     """
     sources = {path: result.source(path) for path in result.files}
     texts = fix_all(
-        (p for p, s in sources.items() if s.undecodable is None), safe_fix, result.snapshot.with_texts, careful=True
+        (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text)),
+        safe_fix,
+        result.snapshot.with_texts,
+        careful=True,
     )
     return {path: sources[path].encode(text) for path, text in texts.items()}
+
+
+def _is_text(text: str) -> bool:
+    """Whether a text that was not read from a file can be written to one: halves of characters cannot."""
+    return not any("\ud800" <= character <= "\udfff" for character in text)
 
 
 class ModelError(ValueError):
