@@ -17,6 +17,7 @@ Nothing here prints or raises for what stands in a user's files; a path that doe
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -114,18 +115,17 @@ def fix(result: CheckResult) -> dict[str, bytes]:
     hold bytes that are no text, are left out.
     """
     sources = {path: result.source(path) for path in result.files}
-    texts = fix_all(
-        (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text)),
-        safe_fix,
-        result.snapshot.with_texts,
-        careful=True,
-    )
+    mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
+    texts = fix_all(result.snapshot, mendable, safe_fix, careful=True)
     return {path: sources[path].encode(text) for path, text in texts.items()}
+
+
+_HALF = re.compile("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:
     """Whether a text that was not read from a file can be written to one: halves of characters cannot."""
-    return not any("\ud800" <= character <= "\udfff" for character in text)
+    return _HALF.search(text) is None
 
 
 class ModelError(ValueError):

@@ -71,5 +71,5 @@ def _fix_file(snapshot: Snapshot, path: str) -> Iterator[Action]:
 
 def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> Change:
     source = snapshot.analysis.source(path)
-    after = fix_all((path,), choose, snapshot.with_texts, careful=careful)
+    after = fix_all(snapshot, (path,), choose, careful=careful)
     return Change({path: whole(source.text, after[path])}) if source and path in after else Change()

@@ -147,9 +147,5 @@ def tree() -> str:
 """
 
 
-def structs() -> str:
-    return f"{_DECLARATION}<types>\n</types>\n"
-
-
 def properties() -> str:
     return '{\n    "properties": []\n}\n'

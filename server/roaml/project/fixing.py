@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from roaml.diagnostics import Diagnostic, Fix, Severity
 from roaml.project.workspace import Snapshot
@@ -36,35 +36,26 @@ def fix_edits(snapshot: Snapshot, path: str, choose: Choice) -> tuple[TextEdit, 
     return tuple(edit for fix in _fixes(snapshot, path, choose) for edit in fix.edits)
 
 
-def fix_all(
-    paths: Iterable[str],
-    choose: Choice,
-    snapshot_of: Callable[[Mapping[str, str]], Snapshot],
-    *,
-    careful: bool,
-) -> dict[str, str]:
+def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful: bool) -> dict[str, str]:
     """The texts of files after all chosen fixes, made until none is left. Files that stay as they are are left out.
 
     Args:
+        snapshot: what is known.
         paths: the files.
         choose: which fix of a diagnostic is to be made, if any.
-        snapshot_of: gives the files with some texts in place of what they hold.
-        careful: make no fix that brings an error.
+        careful: make no fix that brings an error to its file.
     """
     texts: dict[str, str] = {}
-    snapshot = snapshot_of(texts)
     for path in dict.fromkeys(paths):
         for _ in range(MAX_PASSES):
-            found = _pass(snapshot, path, choose, lambda text: snapshot_of({**texts, path: text}), careful=careful)  # noqa: B023 - called at once
+            found = _pass(snapshot, path, choose, careful=careful)
             if found is None:
                 break
             texts[path], snapshot = found
     return texts
 
 
-def _pass(
-    snapshot: Snapshot, path: str, choose: Choice, with_text: Callable[[str], Snapshot], *, careful: bool
-) -> tuple[str, Snapshot] | None:
+def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tuple[str, Snapshot] | None:
     """The text after as many fixes at once as go together, and what is known then. None if there is none to make."""
     source, fixes = snapshot.analysis.source(path), _fixes(snapshot, path, choose)
     if source is None:
@@ -73,7 +64,7 @@ def _pass(
     for chosen in together:
         text = apply_edits(source.text, tuple(edit for fix in chosen for edit in fix.edits))
         if text != source.text:
-            changed = with_text(text)
+            changed = snapshot.with_texts({path: text})
             if not careful or _errors(changed, path) <= _errors(snapshot, path):
                 return text, changed
     return None

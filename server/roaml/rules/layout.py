@@ -39,13 +39,6 @@ def after(document: Document, element: Element, *lines: str) -> TextEdit:
     return TextEdit(Span(at, at), _block(document, indent_of(document.text, element), lines))
 
 
-def before(document: Document, element: Element, *lines: str) -> TextEdit:
-    """Put lines before an element, as its sibling."""
-    indent = indent_of(document.text, element)
-    at = element.span.start
-    return TextEdit(Span(at, at), _block(document, indent, lines).removeprefix(f"\n{indent}") + f"\n{indent}")
-
-
 def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     """Put lines into an element, before all that it holds."""
     if parent.self_closing or not parent.elements:
