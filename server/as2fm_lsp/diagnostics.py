@@ -33,6 +33,8 @@ class Diagnostics:
     publish: sends diagnostics to the client.
     pushes: whether the client wants to be told, or asks by itself.
     refresh: tells a client that asks by itself to ask again.
+
+    `finished` is called when all that is known of a change has been told.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class Diagnostics:
     ) -> None:
         self.session = session
         self.pushes = True
+        self.finished: Callable[[], None] = lambda: None
         self._publish = publish
         self._refresh = refresh
         self._sent: dict[str, tuple[int | None, list[types.Diagnostic]]] = {}
@@ -63,6 +66,7 @@ class Diagnostics:
         if not self.pushes:
             self._waiting.clear()
             self._refresh()
+            self.finished()
             return
         moment = self.session.moment()
         for path in [path for path in self._waiting if path in moment.versions]:
@@ -75,6 +79,7 @@ class Diagnostics:
         for path in self._sent.keys() - set(there):
             self._send(path, [], None)
         self._waiting.clear()
+        self.finished()
 
     def _check(self, moment: Moment, path: str) -> None:
         try:

@@ -18,6 +18,7 @@ from pygls.lsp.server import LanguageServer
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import register
+from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.session import Session
 from roaml import __version__
 from roaml.model.kinds import EXTENSIONS
@@ -32,18 +33,21 @@ SECTION = "as2fm"
 class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
-    `is_shut_down` tells whether the client has asked it to shut down.
+    `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
+    client that shows places, "" if it has none.
     """
 
     def __init__(self) -> None:
         super().__init__("as2fm-lsp", __version__)
         self.is_shut_down = False
+        self.show_references = ""
         self.session = Session()
         self.diagnostics = Diagnostics(
             self.session,
             self.text_document_publish_diagnostics,
             self.ask_to_pull,
         )
+        self.diagnostics.finished = Refresh(self).look
 
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
         """A failure of ours: told in the log, without a pop-up for each keystroke."""
@@ -116,6 +120,7 @@ def _workspace(server: Server) -> None:
         session.convert = Converter(str(server.workspace.position_encoding))
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
         session.configure(options.get("settings") or {})
+        server.show_references = str(options.get("showReferences") or "")
         session.set_folders(session.convert.path(folder.uri) for folder in server.workspace.folders.values())
         if not server.workspace.folders and params.root_uri:
             session.set_folders([session.convert.path(params.root_uri)])

@@ -142,7 +142,7 @@ def _initial(value: Value | None) -> str:
 
 def _short(text: str, most: int = 40) -> str:
     text = " ".join(text.split())
-    return text if len(text) <= most else f"{text[: most - 1]}…"
+    return text if len(text) <= most else f"{text[:most].rpartition(' ')[0] or text[:most]} …"
 
 
 def _bounds(data: Data | None) -> str:
