@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from roaml.expr.types import Struct, parse_type, resolve_type
 from roaml.ide import describe_language
 from roaml.ide.describe import describe
-from roaml.ide.describe_machine import rate
+from roaml.ide.describe_machine import protocol, rate
 from roaml.ide.find import occurrences_at, systems_of
 from roaml.ide.hover_expression import in_expression
 from roaml.ide.hover_json import global_variable, in_json
@@ -80,7 +80,7 @@ def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Itera
         return
     for tag in (element.name_span, element.close_name_span):
         if tag is not None and tag.contains(offset):
-            yield tag, describe_language.element(type_)
+            yield tag, paragraphs(describe_language.element(type_), protocol(analysis, path, type_))
             return
     for attribute in element.attributes:
         known = type_.attributes.get(attribute.name)
