@@ -23,6 +23,7 @@ RICH = types.ClientCapabilities(
         completion=types.CompletionClientCapabilities(
             completion_item=types.ClientCompletionItemOptions(
                 snippet_support=True,
+                documentation_format=[types.MarkupKind.Markdown],
                 label_details_support=True,
                 tag_support=types.CompletionItemTagOptions([types.CompletionItemTag.Deprecated]),
             )
@@ -59,7 +60,7 @@ async def test_with_snippets(tmp_path: Path) -> None:
     assert item.label_details
     assert item.label_details.description == "data"
     assert isinstance(item.documentation, types.MarkupContent)
-    assert "std_msgs/Int32" in item.documentation.value
+    assert "```\npublisher pub : std_msgs/Int32\n```" in item.documentation.value
     assert next(iter(found)) == "ros_topic_publish pub"
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from as2fm_lsp.markup import content
+from as2fm_lsp.markup import documentation
 from roaml.diagnostics import Symbol
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
 
@@ -58,7 +58,7 @@ def register(server: Server) -> None:
             path, *about = item.data
             text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
             if text:
-                item.documentation = content(text, _Client(server).formats)
+                item.documentation = documentation(text, _Client(server).formats)
         return item
 
 
