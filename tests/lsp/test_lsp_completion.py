@@ -60,7 +60,8 @@ async def test_with_snippets(tmp_path: Path) -> None:
     assert item.label_details
     assert item.label_details.description == "data"
     assert isinstance(item.documentation, types.MarkupContent)
-    assert "```\npublisher pub : std_msgs/Int32\n```" in item.documentation.value
+    assert item.documentation.kind is types.MarkupKind.Markdown
+    assert "std_msgs/Int32" in item.documentation.value
     assert next(iter(found)) == "ros_topic_publish pub"
 
 
@@ -73,6 +74,9 @@ async def test_without_snippets(tmp_path: Path) -> None:
     assert '<field name="data" expr="0"/>' in item.text_edit.new_text
     assert "$" not in item.text_edit.new_text
     assert item.detail == "data"
+    assert isinstance(item.documentation, str)
+    assert "std_msgs/Int32" in item.documentation
+    assert "```" not in item.documentation
 
 
 async def test_the_rest_of_the_tag_stays(tmp_path: Path) -> None:

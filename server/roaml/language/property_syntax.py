@@ -7,14 +7,12 @@ Read on first use and kept.
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from roaml.language.resources import schema_path
+from roaml.language.json_schema import PROPERTIES
 
-_SCHEMA = "jani-properties.schema.json"
 _PREFIX = "#/$defs/"
 
 
@@ -43,7 +41,7 @@ class Shape:
 @functools.cache
 def shapes() -> Mapping[str, Shape]:
     """All kinds of objects by their names in the schema, and "file" for the outermost one."""
-    schema = json.loads(schema_path(_SCHEMA).read_text(encoding="utf-8"))
+    schema = PROPERTIES.root
     definitions = schema["$defs"]
     found = {name: _shape(name, node, definitions) for name, node in definitions.items() if "properties" in node}
     return {"file": _shape("file", schema, definitions), **found}
