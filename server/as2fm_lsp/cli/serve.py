@@ -16,7 +16,7 @@ UNEXPECTED_END = 1
 def run(tcp: str | None) -> int:
     """Serve one client, on standard input and output or on `HOST:PORT`."""
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
-    logging.getLogger("pygls").setLevel(logging.ERROR)
+    logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server tells of errors itself
     server = create()
     if tcp is None:
         server.start_io()

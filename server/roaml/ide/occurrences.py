@@ -32,9 +32,11 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     source = analysis.source(path)
     if source is None:
         return _index(())
-    linked = analysis.system(system) if system else None
-    typed = analysis.typed_in(path, system) if analysis.machine(path) is not None else None
-    key = (source.digest, linked, analysis.structs(system), typed, trees_of(analysis, path, system))
+    key: tuple[object, ...] = (source.digest, analysis.structs(system))
+    if _kind(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+        key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
+    else:
+        key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
     return analysis.memo.get(
         "uses", (path, system), key, lambda: _index(tuple(dict.fromkeys(_of(analysis, path, system))))
     )
