@@ -10,11 +10,13 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import hashlib
 import logging
 import time
 from collections.abc import Callable, Iterable
 from contextlib import AsyncExitStack
+from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 from lsprotocol import types
@@ -22,6 +24,7 @@ from lsprotocol import types
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.session import Moment, Session
+from roaml.ide.occurrences import uses
 from roaml.project.memo import Interrupted
 from roaml.text import SourceFile
 
@@ -34,6 +37,9 @@ T = TypeVar("T")
 TITLE = "Checking models"
 QUICK = 0.5
 """Seconds of work of which nobody need be told."""
+
+REST = 0.3
+"""Seconds after which it is likely that nothing more is typed for a while."""
 
 TRIES = 5
 """How often a computation gives way before it is brought to its end."""
@@ -81,6 +87,18 @@ class Diagnostics:
             self._server.ask_to_pull()
         self._waiting.clear()
         self._all_waiting = False
+        await asyncio.sleep(REST)
+        await self._prepare()
+
+    async def _prepare(self) -> None:
+        """While nobody waits: find out what the next question is likely to need, and clear away."""
+        moment = self.session.moment()
+        for path in await self._giving_way(moment.files):
+            analysis = moment.snapshot(path).analysis
+            for system in analysis.memberships.get(path, (None,)):
+                await self._giving_way(partial(uses, analysis, path, system))
+        await self._let_messages_by()
+        gc.collect(1)
 
     async def _check_all(self) -> None:
         started = time.monotonic()

@@ -20,7 +20,7 @@ from bench.keystrokes import keys, places, position
 from bench.report import Benchmark, Row, listed, median, percentile, seconds
 from bench.server import Server, is_answer, is_diagnostics, started
 
-SESSIONS = 3
+SESSIONS = 2
 BURST = 100
 """Keys that are pressed without waiting for anything."""
 
