@@ -44,9 +44,17 @@ class Server:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
-    def initialize(self, folder: Path) -> None:
+    def initialize(
+        self, folder: Path, capabilities: dict[str, Any] | None = None, options: dict[str, Any] | None = None
+    ) -> None:
+        """
+        Args:
+            capabilities: of the client.
+            options: for this server.
+        """
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
-        self.tell("initialize", {"processId": None, "workspaceFolders": folders, "capabilities": {}}, 1)
+        params = {"processId": None, "workspaceFolders": folders, "capabilities": capabilities or {}}
+        self.tell("initialize", {**params, "initializationOptions": options}, 1)
         self.capabilities = self.answer(1)[1]["result"]["capabilities"]
         self.tell("initialized", {})
 
