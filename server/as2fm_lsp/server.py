@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any, BinaryIO
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException, JsonRpcInternalError, PyglsError
+from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcRequestCancelled, PyglsError
 from pygls.io_ import StdoutWriter
 from pygls.lsp.server import LanguageServer
 
@@ -86,6 +86,7 @@ class Server(LanguageServer):
             self.shutdown()  # type: ignore[no-untyped-call]
 
     async def _handle_messages(self, source: BinaryIO) -> None:
+        asyncio.get_running_loop().set_exception_handler(_report)
         self.inbox.fill_from(source)
         async for message in self.inbox:
             try:
@@ -129,6 +130,12 @@ class Server(LanguageServer):
         for problem in dict.fromkeys(self.session.problems):
             self.window_show_message(types.ShowMessageParams(types.MessageType.Warning, problem))
         self.session.problems.clear()
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """What went wrong where nobody waits; that somebody does not wait any more is nothing wrong."""
+    if not isinstance(context.get("exception"), JsonRpcRequestCancelled):
+        loop.default_exception_handler(context)
 
 
 def create() -> Server:
