@@ -48,11 +48,13 @@ TRIES = 5
 class Diagnostics:
     """Attributes:
     pushes: whether the client wants to be told, or asks by itself.
+    finished: called when all that is known of a change has been told.
     """
 
     def __init__(self, server: Server, session: Session, inbox: Inbox) -> None:
         self.session = session
         self.pushes = True
+        self.finished: Callable[[], None] = lambda: None
         self._server = server
         self._inbox = inbox
         self._gives_way = False
@@ -87,6 +89,7 @@ class Diagnostics:
             self._server.ask_to_pull()
         self._waiting.clear()
         self._all_waiting = False
+        self.finished()
         await asyncio.sleep(REST)
         await self._prepare()
 

@@ -24,6 +24,7 @@ from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import register
 from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
 from as2fm_lsp.tcp import accepted
@@ -40,16 +41,19 @@ SECTION = "as2fm"
 class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
-    `is_shut_down` tells whether the client has asked it to shut down.
+    `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
+    client that shows places, "" if it has none.
     """
 
     def __init__(self) -> None:
         super().__init__("as2fm-lsp", __version__)
         self.is_shut_down = False
+        self.show_references = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
+        self.diagnostics.finished = Refresh(self).look
 
     def feature(self, feature_name: str, options: Any = None) -> Callable[[Any], Any]:
         register = super().feature(feature_name, options)
@@ -193,6 +197,7 @@ def _workspace(server: Server) -> None:
         session.convert = Converter(str(server.workspace.position_encoding))
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
         session.configure(options.get("settings") or {})
+        server.show_references = str(options.get("showReferences") or "")
         general = params.capabilities.general
         if general is not None and general.stale_request_support is not None:
             server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)

@@ -167,6 +167,11 @@ class Session:
             settings = self._settings(folder)
             workspace.configure(settings, _roots(folder, settings))
 
+    @property
+    def client_settings(self) -> object:
+        """As the client sent them; it may send anything."""
+        return self._client_settings
+
     def _workspaces(self) -> tuple[Workspace, ...]:
         return (*self._folders.values(), *self._around.values())
 

@@ -152,7 +152,7 @@ async def test_what_it_can_do() -> None:
         "workspaceDiagnostics": True,
     }
     assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix", "source"]}
-    assert capabilities["codeLensProvider"] == {"resolveProvider": False}
+    assert capabilities["codeLensProvider"] == {"resolveProvider": True}
     assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.translateToJani"]}
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
 

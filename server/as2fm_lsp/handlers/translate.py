@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `as2fm.translateToJani`, with the code lens and the code actions that call it."""
+"""The command `as2fm.translateToJani`, with the lens and the code actions that call it."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.project.memo import Interrupted
 from roaml.project.workspace import Snapshot
+from roaml.text import SourceFile
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -78,15 +79,13 @@ def register(server: Server) -> None:
         _tell(server, types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
         return {"uri": session.convert.uri(target), "summary": found}
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
-    def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source, file = analysis.source(path), analysis.system_file(path)
-        if source is None or file is None or not os.path.isabs(path):
-            return []
-        place = session.convert.range(source, file.element.name_span)
-        return [types.CodeLens(place, types.Command(TITLE, COMMAND, arguments=[session.convert.uri(path)]))]
+
+def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:
+    """One for a system file that lies on the disk."""
+    file = snapshot.analysis.system_file(path)
+    if file is not None and os.path.isabs(path):
+        command = types.Command(TITLE, COMMAND, arguments=[convert.uri(path)])
+        yield types.CodeLens(convert.range(source, file.element.name_span), command)
 
 
 async def _write(server: Server, shown: Progress, path: str, target: str) -> Model:

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.frames import Trees
+from roaml.ide.frames import Piece, Trees
 from roaml.ide.in_machine import in_machine
-from roaml.ide.in_properties import in_properties
+from roaml.ide.in_properties import in_properties, names
 from roaml.ide.in_structs import in_json, in_xml
 from roaml.ide.in_tree import in_tree
 from roaml.ide.occurrence import Occurrence
@@ -33,7 +33,7 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     if source is None:
         return _index(())
     key: tuple[object, ...] = (source.digest, analysis.structs(system))
-    if _kind(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
         key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
     else:
         key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
@@ -65,7 +65,7 @@ def _index(found: Iterable[Occurrence]) -> Uses:
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
-    kind = _kind(analysis, path, system)
+    kind = kind_in(analysis, path, system)
     assert source is not None
     if kind is FileKind.MACHINE:
         machine = analysis.machine(path)
@@ -83,11 +83,18 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
         if value is not None:
             yield from in_json(source.text, value[0], analysis.struct_declarations(path), owner)
     elif kind is FileKind.PROPERTIES and system is not None:
-        linked = analysis.system(system)
-        if linked is not None:
-            trees = trees_of(analysis, path, system)
-            properties, _ = analysis.properties(path)
-            yield from in_properties(source.text, properties, linked, analysis.globals(system), trees)
+        properties, _ = analysis.properties(path)
+        yield from in_properties(source.text, properties, global_names(analysis, system))
+
+
+def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, ...]]:
+    """The names of the global variables of a translated system -> what they are made of."""
+    linked = analysis.system(system)
+    if linked is None:
+        return {}
+    variables, trees = analysis.globals(system), trees_of(analysis, system, system)
+    find = analysis.environment(system).interface
+    return analysis.memo.get("global names", system, (linked, trees), lambda: names(linked, variables, trees, find))
 
 
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
@@ -98,7 +105,7 @@ def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
 
 
-def _kind(analysis: Analysis, path: str, system: str | None) -> FileKind:
+def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
     """What a file is: by itself, or else as what a system lists it."""
     kind = analysis.kind(path)
     if kind is not FileKind.UNKNOWN or system is None:

@@ -42,6 +42,12 @@ class Snapshot:
                 found[path] = None
         return tuple(path for path in found if analysis.source(path) is not None)
 
+    def candidates(self) -> tuple[str, ...]:
+        """The files of the workspace whose names say that they may be ours, and those of systems, each once."""
+        analysis = self.analysis
+        of_systems = (path for system in analysis.system_paths for path in analysis.files_of(system))
+        return tuple(dict.fromkeys((*self._listed, *of_systems, *analysis.files.open_files)))
+
 
 class Workspace:
     """Args:
