@@ -118,7 +118,9 @@ def at_rest(server: Server, path: Path, text: str, request: Request) -> Iterator
     """The seconds that each answer takes when nothing else is to be done."""
     for number, offset in enumerate(_offsets(text, request)):
         sent = server.tell(request.method, request.params(path, position(text, offset)), _ID + number)
-        yield server.answer(_ID + number)[0] - sent
+        arrived, answer = server.answer(_ID + number)
+        assert "error" not in answer, answer
+        yield arrived - sent
 
 
 def behind_keys(server: Server, path: Path, text: str, request: Request) -> Iterator[float]:
