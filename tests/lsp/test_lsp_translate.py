@@ -80,9 +80,10 @@ async def test_progress(tmp_path: Path) -> None:
     async with connect(tmp_path, capabilities=capabilities) as client:
         await translate(client, (tmp_path / "main.xml").as_uri())
         (reports,) = client.progress_reports.values()
-    begin, end = reports
+    begin, *steps, end = reports
     assert isinstance(begin, types.WorkDoneProgressBegin)
-    assert begin.title == "Translating main.xml"
+    assert (begin.title, begin.cancellable) == ("Translating main.xml", True)
+    assert [step.message for step in steps] == ["checking", "translating", "writing"]
     assert isinstance(end, types.WorkDoneProgressEnd)
 
 

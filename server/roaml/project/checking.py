@@ -228,6 +228,7 @@ class _Run:
                 checks.append((rule, functools.partial(rule.file, file)))
         checks += self._own_checks()
         for rule, check in checks:
+            self.analysis.memo.checkpoint()
             try:
                 yield from list(check())
             except Exception as error:  # a crash of ours must not stop the other rules

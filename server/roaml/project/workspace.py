@@ -17,7 +17,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.checking import Checker
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
-from roaml.project.memo import Memo
+from roaml.project.memo import Memo, go_on
 from roaml.project.settings import Settings
 from roaml.text import SourceFile, decode
 
@@ -69,6 +69,7 @@ class Workspace:
     settings: what is configured.
     systems: further system files that count.
     packages: the folders in which ROS packages are looked for; the roots if not given.
+    checkpoint: called again and again during all work, which it gives up by raising `Interrupted`.
     """
 
     def __init__(
@@ -77,6 +78,7 @@ class Workspace:
         settings: Settings,
         systems: Iterable[str] = (),
         packages: Iterable[str] | None = None,
+        checkpoint: Callable[[], None] = go_on,
     ) -> None:
         self.roots = tuple(os.path.abspath(root) for root in roots)
         self.settings = settings
@@ -84,7 +86,7 @@ class Workspace:
         self._packages = None if packages is None else tuple(os.path.abspath(folder) for folder in packages)
         self._open: dict[str, SourceFile] = {}
         self._disk = DiskFiles()
-        self._memo = Memo()
+        self._memo = Memo(checkpoint)
         self._index = SystemIndex()
         self._listed: tuple[str, ...] | None = None
         self._registry = self._new_registry()
