@@ -7,10 +7,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, storm, translate
+from bench import check, requests, storm, translate
 from bench.report import Benchmark, machine, table
 
-BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS, **translate.BENCHMARKS, **storm.BENCHMARKS}
+BENCHMARKS: dict[str, Benchmark] = {
+    **check.BENCHMARKS,
+    **requests.BENCHMARKS,
+    **translate.BENCHMARKS,
+    **storm.BENCHMARKS,
+}
 
 
 def main() -> int:

@@ -23,6 +23,7 @@ RICH = types.ClientCapabilities(
         completion=types.CompletionClientCapabilities(
             completion_item=types.ClientCompletionItemOptions(
                 snippet_support=True,
+                documentation_format=[types.MarkupKind.Markdown],
                 label_details_support=True,
                 tag_support=types.CompletionItemTagOptions([types.CompletionItemTag.Deprecated]),
             )
@@ -59,6 +60,7 @@ async def test_with_snippets(tmp_path: Path) -> None:
     assert item.label_details
     assert item.label_details.description == "data"
     assert isinstance(item.documentation, types.MarkupContent)
+    assert item.documentation.kind is types.MarkupKind.Markdown
     assert "std_msgs/Int32" in item.documentation.value
     assert next(iter(found)) == "ros_topic_publish pub"
 
@@ -72,6 +74,9 @@ async def test_without_snippets(tmp_path: Path) -> None:
     assert '<field name="data" expr="0"/>' in item.text_edit.new_text
     assert "$" not in item.text_edit.new_text
     assert item.detail == "data"
+    assert isinstance(item.documentation, str)
+    assert "std_msgs/Int32" in item.documentation
+    assert "```" not in item.documentation
 
 
 async def test_the_rest_of_the_tag_stays(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.markup import documentation
 from roaml.diagnostics import Symbol
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
 
@@ -57,7 +58,7 @@ def register(server: Server) -> None:
             path, *about = item.data
             text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
             if text:
-                item.documentation = types.MarkupContent(types.MarkupKind.Markdown, text)
+                item.documentation = documentation(text, _Client(server).formats)
         return item
 
 
@@ -69,6 +70,7 @@ class _Client:
         asks = document.completion.completion_item if document and document.completion else None
         self.snippets = bool(asks and asks.snippet_support)
         self.tags = bool(asks and asks.tag_support)
+        self.formats = asks.documentation_format if asks else None
         self.label_details = bool(asks and asks.label_details_support)
 
     def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:

@@ -18,12 +18,6 @@ _WANTED = {
     "expression": "an expression",
     "constant": "a constant expression",
     "location": "what is written to",
-    "type": "a type",
-    "path": "a file",
-    "number": "a number",
-    "status": "an answer",
-    "child-index": "the index of a child",
-    "script": "a script",
 }
 _ROS = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 
@@ -159,6 +153,45 @@ def conditional() -> str:
     return paragraphs(code("bool ? x : y"), "The first of both where the condition holds, else the second.")
 
 
+EVENT_VARIABLES = {
+    "_msg": "The message that has arrived.",
+    "_req": "The request that has arrived.",
+    "_res": "The response that has arrived.",
+    "_goal": "The goal that has arrived.",
+    "_feedback": "The feedback that has arrived.",
+    "_wrapped_result": "The result that has arrived, with its code.",
+    "_action": "The goal that this is about.",
+    "_event": "The event that has arrived.",
+    "_bt": "The answer of the child.",
+}
+
+
+def event_variable(called: str, type_: Type) -> str:
+    """An event variable, `_msg` for example, with what is in it where it is used."""
+    inner, _ = unwrap(type_)
+    of = f" : {inner.name}" if isinstance(inner, Struct) and inner.name else ""
+    rows = _rows(inner) if isinstance(inner, Struct) else []
+    return paragraphs(code("\n".join((f"{called}{of}", *rows))), EVENT_VARIABLES.get(called, ""))
+
+
+def event_data(found: Struct) -> str:
+    """`_event.data` with the parameters of the event."""
+    return paragraphs(code("\n".join(("_event.data", *_rows(found)))), "The parameters of the event.")
+
+
+def status(called: str, value: int) -> str:
+    """An answer of a tree node, where it stands for a number."""
+    return paragraphs(code(f"{called} = {value}"), "An answer of a node of the tree.")
+
+
+def length(of: str) -> str:
+    """`.length`"""
+    return paragraphs(
+        code("length : int"),
+        f"How many elements {name(of)} has now. Assigning a smaller number shortens it, 0 empties it.",
+    )
+
+
 # ----------------------------------------------------------------------- types
 
 
@@ -182,23 +215,27 @@ def type_(type_: Type) -> str:
     if isinstance(inner, Struct):
         return code(members(inner))
     rest = value_range(type_)
-    return paragraphs(code(str(type_)), f"{rest[:1].upper()}{rest[1:]}", array_size(bounds))
+    facts = " · ".join(filter(None, (rest, array_size(bounds))))
+    return paragraphs(code(str(type_)), f"{facts[:1].upper()}{facts[1:]}")
 
 
 def array_size(bounds: tuple[int | None, ...]) -> str:
-    """How many elements an array has, as a sentence."""
+    """How many elements an array has, as a clause; "" of no array."""
     if not bounds:
         return ""
     size = " times ".join("`max_array_size`" if bound is None else str(bound) for bound in bounds)
-    return f"Up to {size} elements"
+    return f"up to {size} elements"
 
 
 def members(struct: Struct, most: int = 24) -> str:
     """The members of a struct, message or event, each in a line."""
     head = " ".join(filter(None, (struct.what, struct.name if struct.name not in struct.what else "")))
+    return "\n".join([head, *_rows(struct, most)])
+
+
+def _rows(struct: Struct, most: int = 24) -> list[str]:
     found = [f"  {key} : {type_}" for key, type_ in struct.members]
-    rest = [f"  … {len(found) - most} more"] if len(found) > most + 1 else []
-    return "\n".join([head, *(found[:most] if rest else found), *rest])
+    return [*found[:most], f"  … {len(found) - most} more"] if len(found) > most + 1 else found
 
 
 def base_type(written: str) -> str:

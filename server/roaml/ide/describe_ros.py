@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.ide.markdown import code, name, paragraphs
 from roaml.interfaces.registry import NotFound, Registry
-from roaml.interfaces.types import KIND_NAMES, SECTION_NAMES, Constant, Definition, Field, Kind, Section
+from roaml.interfaces.types import SECTION_NAMES, Constant, Definition, Field, Kind, Section
 
 LANGUAGE = "rosmsg"
 _MOST = 40
@@ -30,11 +30,7 @@ def definition(found: Definition) -> str:
         rows += _section(section)
     if len(rows) > _MOST + 1:
         rows = [*rows[:_MOST], f"# … {len(rows) - _MOST} more lines"]
-    return paragraphs(code("\n".join(rows), LANGUAGE), _about(found))
-
-
-def _about(found: Definition) -> str:
-    return f"A {KIND_NAMES[found.kind]} type" if found.kind != "action" else "An action type"
+    return code("\n".join(rows), LANGUAGE)
 
 
 def _section(section: Section) -> Iterator[str]:

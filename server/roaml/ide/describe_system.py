@@ -12,12 +12,12 @@ from roaml.ide.find import systems_of, thing
 from roaml.ide.jani_names import global_variables
 from roaml.ide.markdown import code, file, lines, name, names, paragraphs
 from roaml.ide.occurrence import Access
+from roaml.ide.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
-from roaml.model.outline import InterfaceUse
 from roaml.model.structs import StructDeclaration, resolve_structs
-from roaml.model.system import Automaton, BoundPort, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 
@@ -38,7 +38,7 @@ def _sentence(text: str) -> str:
 
 def _in_properties(variables: Iterable[GlobalVariable]) -> str:
     found = [each.name for each in variables]
-    return f"In properties {names(found, 4)}" if found else ""
+    return f"In properties {names(found, 3)}" if found else ""
 
 
 # ---------------------------------------------------------------------- events
@@ -108,14 +108,14 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
     if system is None or found is None:
         return code(f"{symbol.kind} {shown}")
     types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in found.endpoints))
-    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found))
+    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found, system))
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
     """The same in fewer words, for those who take part."""
     found = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind)} {name(written)}"
-    return head if found is None else lines(head, _sides(analysis, symbol, found))
+    return head if found is None else lines(head, _sides(analysis, symbol, found, system))
 
 
 def find_channel(system: System, symbol: Symbol) -> Channel | None:
@@ -123,13 +123,19 @@ def find_channel(system: System, symbol: Symbol) -> Channel | None:
     return channels.get(symbol.name)
 
 
-def _sides(analysis: Analysis, symbol: Symbol, found: Channel) -> str:
+def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -> str:
     given, taken = _VERBS[symbol.kind]
+    sources = "the clock of the system" if is_clock(system, symbol) else _ends(found.sources)
     return lines(
-        f"**{_sentence(given)}** {_ends(found.sources)} · **{taken}** {_ends(found.users)}",
+        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(found.users)}",
         _plain_events(symbol, found),
         _in_properties(global_variables(analysis, symbol)),
     )
+
+
+def is_clock(system: System, symbol: Symbol) -> bool:
+    """Whether a topic is that of the simulated time, which the translation publishes."""
+    return symbol.kind == "topic" and symbol.name == CLOCK_TOPIC and system.has_timer
 
 
 def _ends(endpoints: Iterable[Endpoint]) -> str:
@@ -139,27 +145,12 @@ def _ends(endpoints: Iterable[Endpoint]) -> str:
 def _plain_events(symbol: Symbol, found: Channel) -> str:
     if symbol.kind == "topic":
         return f"In plain SCXML event {name(f'topic_{symbol.name}_msg')}"
-    lead = f"srv_{sanitise(symbol.name)}" if symbol.kind == "service" else f"action_{sanitise(symbol.name)}"
-    clients = len(found.users)
-    return f"In plain SCXML events {name(f'{lead}_…')}{f', of {clients} clients' if clients > 1 else ''}"
-
-
-def plain_events(system: System, automaton: Automaton, use: InterfaceUse) -> tuple[str, ...]:
-    """The events of plain SCXML that a declaration's own sending and receiving become."""
-    interface = automaton.interface_name(use)
-    if not interface:
-        return ()
-    found, who = sanitise(interface), safe_name(automaton.name)
-    match use.kind:
-        case "publisher" | "subscriber":
-            return (f"topic_{found}_msg",)
-        case "service-client":
-            return (f"srv_{found}_req_client_{who}", f"srv_{found}_response_client_{who}")
-        case "service-server":
-            return (f"srv_{found}_request", f"srv_{found}_response")
-        case "action-client":
-            return (f"action_{found}_goal_req_client_{who}", f"action_{found}_result_handle_client_{who}")
-    return (f"action_{found}_goal_handle", f"action_{found}_result")
+    called = sanitise(symbol.name)
+    if symbol.kind == "action":
+        return f"In plain SCXML events {name(f'action_{called}_…')}"
+    there = ("req_client_…", "request") if found.users else ()
+    back = ("response", "response_client_…") if found.sources else ()
+    return f"In plain SCXML {' → '.join(name(f'srv_{called}_{each}') for each in (*there, *back))}"
 
 
 # -------------------------------------------------------------------- blackboard
@@ -224,34 +215,50 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
                 size = "one node" if count == 1 else f"{count} nodes"
                 return paragraphs(
                     code(f"tree {symbol.name}"),
-                    lines(_sentence(f"{size} · {file(place.path)}"), _subtrees(analysis, symbol)),
+                    lines(_sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol)),
                 )
     return paragraphs(code(f"tree {symbol.name}"), "No tree has this name")
 
 
-def _subtrees(analysis: Analysis, symbol: Symbol) -> str:
+def _use(analysis: Analysis, symbol: Symbol) -> str:
+    if is_main(analysis, symbol):
+        return "The tree that is executed"
     uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind == "tree"]
     count = sum(not use.occurrence.defines and analysis.tree(use.path) is not None for use in uses)
     return f"Named {count} times" if count > 1 else "Named once" if count else "Never named"
 
 
+def is_main(analysis: Analysis, symbol: Symbol) -> bool:
+    """Whether a tree is the one that is executed."""
+    system = symbol.path if symbol.path in analysis.system_paths else None
+    main = trees_of(analysis, symbol.path, system).main
+    return main is not None and (main[1].id.value if main[1].id else "") == symbol.name
+
+
 def tree_node(analysis: Analysis, symbol: Symbol) -> str:
     """A named node of a tree: what it becomes."""
-    found = [each for each in instances(analysis, symbol) if each.instance]
-    if not found:
-        return code(f"node {symbol.name}")
-    return paragraphs(code(f"node {symbol.name}"), f"In JANI automaton {names((a.name for a in found), 4)}")
+    inside, _, position = symbol.scope.rpartition(":")
+    return paragraphs(code(f"node {symbol.name}"), becomes(analysis, symbol.path, inside, int(position or 0)))
 
 
-def instances(analysis: Analysis, symbol: Symbol) -> Iterator[Automaton]:
-    """The nodes of the executed tree that a named node becomes."""
-    place, _, position = symbol.scope.rpartition(":")
-    for each in systems_of(analysis, symbol.path):
+def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
+    """What a node of a file becomes where its tree is executed."""
+    told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
+    rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
+    return paragraphs(*told[:_MOST], rest)
+
+
+_MOST = 3
+
+
+def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
+    """The nodes of executed trees that a node of a file becomes, in all systems of the file."""
+    for each in systems_of(analysis, path):
         system = analysis.system(each) if each else None
         for automaton in system.automata if system else ():
             source = automaton.instance.source if automaton.instance else None
-            if source and (source.path, source.tree, str(source.position)) == (symbol.path, place, position):
-                yield automaton
+            if system and source and (source.path, source.tree, source.position) == (path, tree, position):
+                yield system, automaton
 
 
 def node(system: System, automaton: Automaton) -> str:

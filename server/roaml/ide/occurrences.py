@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
@@ -32,12 +32,12 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     source = analysis.source(path)
     if source is None:
         return _index(())
-    linked = analysis.system(system) if system else None
-    typed = analysis.typed_in(path, system) if analysis.machine(path) is not None else None
-    key = (source.digest, linked, analysis.structs(system), typed, trees_of(analysis, path, system))
-    return analysis.memo.get(
-        "uses", (path, system), key, lambda: _index(tuple(dict.fromkeys(_of(analysis, path, system))))
-    )
+    key: tuple[object, ...] = (source.digest, analysis.structs(system))
+    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+        key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
+    else:
+        key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
+    return analysis.memo.get("uses", (path, system), key, lambda: _index(_of(analysis, path, system)))
 
 
 def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tuple[Occurrence, ...]:
@@ -45,15 +45,19 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
     return uses(analysis, path, system).all
 
 
-def _index(found: tuple[Occurrence, ...]) -> Uses:
-    ordered = tuple(sorted(found, key=lambda each: (each.span, each.symbol.kind)))
+def _index(found: Iterable[Occurrence]) -> Uses:
+    """Each occurrence once."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
-    for each in ordered:
-        by_symbol.setdefault(each.symbol, []).append(each)
-        by_span.setdefault(each.span, []).append(each)
+    ordered: list[Occurrence] = []
+    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind)):
+        there = by_span.setdefault(each.span, [])
+        if each not in there:
+            there.append(each)
+            ordered.append(each)
+            by_symbol.setdefault(each.symbol, []).append(each)
     return Uses(
-        ordered,
+        tuple(ordered),
         {symbol: tuple(uses_) for symbol, uses_ in by_symbol.items()},
         {span: tuple(uses_) for span, uses_ in by_span.items()},
     )

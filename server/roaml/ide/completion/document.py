@@ -19,7 +19,8 @@ def document(analysis: Analysis, about: Symbol) -> str:
     """What is known of the thing that an item stands for, as Markdown; "" if nothing is.
 
     Beyond the symbols that `describe` knows there are `element` (its path is the parent's name, its scope the schema),
-    `attribute` (path `PARENT/ELEMENT`), `choice` (path `PARENT/ELEMENT/ATTRIBUTE`), `function`, `base-type` and `json`
+    `attribute` (path `PARENT/ELEMENT`), `choice` (path `PARENT/ELEMENT/ATTRIBUTE`), `function`,
+    `event-variable`, `base-type` and `json`
     (scope is the text).
     """
     grammar = _GRAMMARS.get(about.scope)
@@ -40,6 +41,8 @@ def document(analysis: Analysis, about: Symbol) -> str:
         case "function":
             found = FUNCTIONS.get(about.name)
             return describe_language.function(found) if found else ""
+        case "event-variable":
+            return describe_language.EVENT_VARIABLES.get(about.name, "")
         case "base-type":
             return describe_language.base_type(about.name)
         case "json":

@@ -107,7 +107,7 @@ def in_expression(request: Request, subject: Subject, part: str, start: int) -> 
     wanted = _wanted(request, subject, part)
     items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
     items += [
-        Item(name, ItemKind.VARIABLE, detail=str(type_), rank=Rank.LIKELY)
+        Item(name, ItemKind.VARIABLE, detail=str(type_), about=Symbol("", "event-variable", name), rank=Rank.LIKELY)
         for name, type_ in events.items()
         if name not in STATUSES
     ]
