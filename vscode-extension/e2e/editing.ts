@@ -66,6 +66,20 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
+        "a lens counts the uses of a thing and shows them",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            const lens = window.page.locator(".codelens-decoration a", { hasText: /^\d+ / }).first();
+            await lens.waitFor();
+            await lens.click();
+            await window.page.locator(".peekview-widget, .reference-zone-widget").first().waitFor();
+            await window.screenshot("lens");
+        },
+    );
+
+    stage.test(
         "rename changes both files",
         () => sample(MEND),
         async (window) => {

@@ -45,6 +45,8 @@ function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, l
         vscode.workspace.onDidChangeConfiguration((event) => {
             if (event.affectsConfiguration("as2fm.server.path") || event.affectsConfiguration("as2fm.interpreter")) {
                 again();
+            } else if (event.affectsConfiguration("as2fm")) {
+                server.settingsChanged();
             }
         }),
     );

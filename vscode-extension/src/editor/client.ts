@@ -28,6 +28,9 @@ const SELECTOR: DocumentSelector = [
     { scheme: "file", pattern: "**/*.{msg,srv,action}" },
 ];
 
+/** The command with which the server's lenses show places; its arguments are in terms of the protocol. */
+export const SHOW_REFERENCES = "as2fm.showReferences";
+
 const WELL_FORMEDNESS = "xml-syntax";
 const LAST_WORDS = 4000;
 
@@ -89,7 +92,11 @@ function options(
         traceOutputChannel: log,
         revealOutputChannelOn: RevealOutputChannelOn.Never,
         // Files that are not open are checked as well, and told of when they change.
-        initializationOptions: { diagnostics: "push" },
+        initializationOptions: {
+            diagnostics: "push",
+            settings: vscode.workspace.getConfiguration("as2fm"),
+            showReferences: SHOW_REFERENCES,
+        },
         progressOnInitialization: false,
         initializationFailedHandler: () => false,
         // What happens when the process ends is the supervisor's business.

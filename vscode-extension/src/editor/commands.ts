@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as vscode from "vscode";
+import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE, type Translated } from "../protocol";
 import { thisMachine } from "../server/machine";
 import { pythons } from "../server/python";
+import { SHOW_REFERENCES } from "./client";
 import type { Documents } from "./documents";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
@@ -49,6 +51,14 @@ export function registerCommands(parts: Parts): void {
         openServerSetting: () => vscode.commands.executeCommand("workbench.action.openSettings", "as2fm.server.path"),
         getPython: () => vscode.env.openExternal(vscode.Uri.parse("https://www.python.org/downloads/")),
     };
+    context.subscriptions.push(
+        vscode.commands.registerCommand(SHOW_REFERENCES, (uri: string, position: Position, places: Location[]) => {
+            const convert = server.client?.protocol2CodeConverter;
+            if (!convert) return undefined;
+            const [at, found] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
+            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, found);
+        }),
+    );
     for (const [name, run] of Object.entries(commands)) {
         context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
     }

@@ -7,7 +7,7 @@ import * as os from "node:os";
 import { join } from "node:path";
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
-import type { RequestType } from "vscode-languageserver-protocol";
+import { DidChangeConfigurationNotification, type RequestType } from "vscode-languageserver-protocol";
 import type { Translated } from "../protocol";
 import { PrivateEnvironment, type Step } from "../server/environment";
 import { expanded, findServer } from "../server/find";
@@ -76,6 +76,11 @@ export class LanguageServer implements vscode.Disposable {
 
     stop(): Promise<void> {
         return this.supervisor.stop();
+    }
+
+    /** The server then asks for them. */
+    settingsChanged(): void {
+        void this.client?.sendNotification(DidChangeConfigurationNotification.type, { settings: null });
     }
 
     /** Ask the server; undefined if none runs or it has no answer. */
