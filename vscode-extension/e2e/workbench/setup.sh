@@ -17,14 +17,14 @@ need() {
     if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
         [ -n "${updated:-}" ] || apt-get -qq update >/dev/null 2>&1 || true
         updated=yes
-        DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "$2" >/dev/null 2>&1 || true
+        DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends $2 >/dev/null 2>&1 || true
     fi
     command -v "$1" >/dev/null 2>&1 || fail "$1 is missing: as root, 'apt-get install $2'"
 }
 
 need node nodejs
 need npm npm
-need chromium chromium
+need chromium "chromium fonts-dejavu-core"
 need rg ripgrep
 
 wanted="$(cat "$here/package-lock.json" "$here/setup.sh" | cksum) $(node --version)"

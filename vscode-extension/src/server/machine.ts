@@ -22,7 +22,7 @@ export const thisMachine: Machine = {
     windows: process.platform === "win32",
     run,
     async which(name) {
-        const extensions = process.platform === "win32" ? [".exe", ".cmd", ".bat"] : [""];
+        const extensions = process.platform === "win32" ? [".exe"] : [""];
         for (const folder of (process.env["PATH"] ?? "").split(path.delimiter)) {
             // An empty or relative entry means the workspace, from which nothing is started by name.
             if (!path.isAbsolute(folder)) continue;
