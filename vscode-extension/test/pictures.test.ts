@@ -39,6 +39,8 @@ const MACHINE: Picture = {
         edge("a", "b", { labels: ["go", "[x > 1]"], place: place(2, 4, 4, 20) }),
         edge("a", "a", { labels: ["again"], place: place(5, 0, 5, 4) }),
         edge("t/a", "t/b", { labels: ["start"], place: place(12, 4, 12, 20) }),
+        edge("t/b", "t/a", { labels: ["done"] }),
+        edge("t/b", "t/b", { kind: "eventless" }),
     ],
 };
 
@@ -73,6 +75,7 @@ function box(drawing: Drawing, index: number) {
 test("what is initial lies at the top, frames hold what is in them", async () => {
     const drawing = await layout(MACHINE);
     assert.ok(box(drawing, 0).y < box(drawing, 1).y);
+    assert.ok(box(drawing, 3).y < box(drawing, 4).y);
     const [frame, inside] = [box(drawing, 2), box(drawing, 4)];
     assert.ok(inside.x > frame.x && inside.x + inside.width < frame.x + frame.width);
     assert.ok(inside.y > frame.y && inside.y + inside.height < frame.y + frame.height);

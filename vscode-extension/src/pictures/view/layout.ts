@@ -90,9 +90,7 @@ export function graphOf(picture: Picture, measure: Measure, kindWord: (node: Pic
         if (!made) continue;
         if (parent) {
             (parent.children ??= []).push(made);
-            parent.layoutOptions = {
-                "elk.padding": `[top=${2.2 * SMALL_SIZE * LINE + 16},left=16,bottom=16,right=16]`,
-            };
+            parent.layoutOptions ??= { ...OPTIONS[picture.kind], "elk.padding": paddingOf(picture, node.parent) };
         } else {
             roots.push(made);
         }
@@ -105,6 +103,13 @@ export function graphOf(picture: Picture, measure: Measure, kindWord: (node: Pic
 /** Edges that elkjs gets the other way round, so that what is read lies below who reads it. */
 export function isTurned(edge: PictureEdge): boolean {
     return edge.kind === "reads";
+}
+
+/** Around what lies in a frame: its lines stand at the top. */
+function paddingOf(picture: Picture, frame: string): string {
+    const node = picture.nodes.find((each) => each.id === frame);
+    const top = 6 + TITLE_SIZE * LINE + ((node ? linesOf(node) : 1) - 1) * SMALL_SIZE * LINE + 12;
+    return `[top=${top},left=16,bottom=16,right=16]`;
 }
 
 function sizeOf(node: PictureNode, measure: Measure, kind: string): { width: number; height: number } {
