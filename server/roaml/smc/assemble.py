@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -31,10 +31,10 @@ from roaml.jani.expressions import (
 )
 from roaml.jani.model import Function
 from roaml.jani.node import Node
-from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
+from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BasicType, BoundedType, Type
-from roaml.smc.fault import Fault
+from roaml.smc.fault import FaultError
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.registers import BOOL, INT, REAL, Label, Number, Operand, Region, Tape, product
 
@@ -148,7 +148,7 @@ class Assembler:
         match node:
             case Integer():
                 if abs(node.value) > MOST:
-                    raise Fault("this number does not fit into 64 bits", node.origin)
+                    raise FaultError("this number does not fit into 64 bits", node.origin)
                 return self.moved(self.tape.constant(INT, node.value), into)
             case Boolean():
                 return self.moved(self.tape.constant(BOOL, node.value), into)
@@ -159,7 +159,7 @@ class Assembler:
             case Name(identifier):
                 meaning = self.meaning(node, names)
                 if isinstance(meaning, Region) or (isinstance(meaning, Storage) and meaning.shape):
-                    raise Fault(f"`{identifier}` is an array, a single value is needed here", node.origin)
+                    raise FaultError(f"`{identifier}` is an array, a single value is needed here", node.origin)
                 if isinstance(meaning, Storage):
                     meaning = Operand(meaning.kind, meaning.base)
                 return self.moved(meaning, into)
@@ -172,7 +172,7 @@ class Assembler:
             case ArrayAccess():
                 region = self.element(node, names)
                 if region.shape:
-                    raise Fault("this is an array, a single value is needed here", node.origin)
+                    raise FaultError("this is an array, a single value is needed here", node.origin)
                 return self.load(region, into)
             case Call():
                 body, inner = self.called(node, names)
@@ -181,14 +181,14 @@ class Assembler:
                 finally:
                     self._calls.pop()
             case ArrayValue() | ArrayConstructor():
-                raise Fault("this is an array, a single value is needed here", node.origin)
+                raise FaultError("this is an array, a single value is needed here", node.origin)
             case _:
-                raise Fault(unsupported(node), node.origin)
+                raise FaultError(unsupported(node), node.origin)
 
     def meaning(self, node: Name, names: Names) -> Meaning:
         meaning = names.values.get(node.identifier)
         if meaning is None:
-            raise Fault(f"there is no variable `{node.identifier}`", node.origin)
+            raise FaultError(f"there is no variable `{node.identifier}`", node.origin)
         return meaning
 
     def moved(self, operand: Operand, into: int) -> Operand:
@@ -241,25 +241,28 @@ class Assembler:
                     return REAL
                 if op is BinaryOperator.POWER and not (isinstance(right, Integer) and right.value >= 0):
                     return REAL
-                while isinstance(left, Binary) and left.operator in _ARITHMETIC:
-                    if self.kind(right, names) == REAL:
+                first: Expression = node
+                while isinstance(first, Binary) and first.operator in _ARITHMETIC:
+                    if self.kind(first.right, names) == REAL:
                         return REAL
-                    left, right = left.left, left.right
+                    first = first.left
+                if first is not node:
+                    return REAL if self.kind(first, names) == REAL else INT
                 return REAL if REAL in (self.kind(left, names), self.kind(right, names)) else INT
             case Conditional(_, then, otherwise):
-                first, second = self.kind(then, names), self.kind(otherwise, names)
-                return REAL if REAL in (first, second) else first
+                kinds = (self.kind(then, names), self.kind(otherwise, names))
+                return REAL if REAL in kinds else kinds[0]
             case ArrayAccess(array, _):
                 return self.kind(array, names)
             case ArrayValue(elements):
-                kinds = {self.kind(each, names) for each in elements}
-                return REAL if REAL in kinds else min(kinds, default=INT)
+                inside = {self.kind(each, names) for each in elements}
+                return REAL if REAL in inside else min(inside, default=INT)
             case ArrayConstructor(variable, _, body):
                 return self.kind(body, names.bound({variable: Operand(INT, 0)}))
             case Call():
                 return kind_of(self.function(node, names).type)
             case _:
-                raise Fault(unsupported(node), node.origin)
+                raise FaultError(unsupported(node), node.origin)
 
     def unary(self, node: Unary, names: Names, into: int) -> Operand:
         op, operand = node.operator, node.operand
@@ -277,7 +280,7 @@ class Assembler:
         if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
             return self.moved(value, into)
         kind = INT if op.signature is Signature.ROUNDING else REAL
-        return self.call(node, op.function, op.name, (value,), kind, into)
+        return self.call(node, op, (value,), kind, into)
 
     def binary(self, node: Binary, names: Names, into: int) -> Operand:
         op = node.operator
@@ -321,23 +324,15 @@ class Assembler:
             return Operand(REAL, register)
         is_int = op is BinaryOperator.POWER and not is_real and isinstance(node.right, Integer)
         is_int = is_int and isinstance(second.value, int) and second.value >= 0
-        return self.call(node, op.function, op.name, (first, second), INT if is_int else REAL, into)
+        return self.call(node, op, (first, second), INT if is_int else REAL, into)
 
-    def call(
-        self,
-        node: Node,
-        function: Callable[..., object],
-        name: str,
-        arguments: Sequence[Operand],
-        kind: str,
-        into: int,
-    ) -> Operand:
+    def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
         for argument in arguments:
             self.tape.emit(Op.ARGUMENT_REAL if argument.kind == REAL else Op.ARGUMENT, a=argument.register)
         register = self.target(kind, into)
         self.tape.place(node.origin)
         code = Op.CALL_REAL if kind == REAL else Op.CALL_INT
-        self.tape.emit(code, register, c=self.tape.function(function, name))
+        self.tape.emit(code, register, c=self.tape.function(op))
         return Operand(kind, register)
 
     def folded(self, node: Unary | Binary, operands: Sequence[Operand]) -> Operand:
@@ -435,14 +430,14 @@ class Assembler:
         parts.reverse()
         # a ⇒ b is ¬a ∨ b; one operand with the value `decisive` decides.
         decisive = node.operator is not BinaryOperator.AND
-        negated = (node.operator is BinaryOperator.IMPLIES,)
+        is_implication = node.operator is BinaryOperator.IMPLIES
         if when is decisive:
             for number, part in enumerate(parts):
-                self.jump(part, names, label, decisive is not (negated[0] and number == 0))
+                self.jump(part, names, label, decisive is not (is_implication and number == 0))
             return
         end = Label()
         for number, part in enumerate(parts[:-1]):
-            self.jump(part, names, end, decisive is not (negated[0] and number == 0))
+            self.jump(part, names, end, decisive is not (is_implication and number == 0))
         self.jump(parts[-1], names, label, when)
         self.tape.mark(end)
 
@@ -532,9 +527,11 @@ class Assembler:
         try:
             size = evaluate(length, known, names.functions)
         except EvaluationError as error:
-            raise Fault("the length of an array must not depend on the state", error.origin or node.origin) from None
+            raise FaultError(
+                "the length of an array must not depend on the state", error.origin or node.origin
+            ) from None
         if not isinstance(size, int) or not 0 <= size <= MOST_ELEMENTS:
-            raise Fault(f"an array cannot have {size} elements", length.origin)
+            raise FaultError(f"an array cannot have {size} elements", length.origin)
         return size
 
     def element(self, node: ArrayAccess, names: Names) -> Region:
@@ -547,7 +544,7 @@ class Assembler:
         indexes.reverse()
         whole = self.region(inner, names)
         if len(indexes) > len(whole.shape):
-            raise Fault("this is not an array", node.origin)
+            raise FaultError("this is not an array", node.origin)
         return self.indexed(whole, indexes, names)
 
     def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: Names) -> Region:
@@ -586,7 +583,7 @@ class Assembler:
                     return Region(meaning.kind, meaning.shape, meaning.base)
                 if isinstance(meaning, Region):
                     return meaning
-                raise Fault(f"`{node.identifier}` is not an array", node.origin)
+                raise FaultError(f"`{node.identifier}` is not an array", node.origin)
             case ArrayAccess():
                 return self.element(node, names)
             case _:
@@ -671,7 +668,7 @@ class Assembler:
     def copy(self, source: Region, into: Region, watch: int, node: Node) -> None:
         """Copy an array to a region without offset."""
         if len(source.shape) != len(into.shape):
-            raise Fault("arrays of different dimensions", node.origin)
+            raise FaultError("arrays of different dimensions", node.origin)
         if source.kind != into.kind and into.kind == REAL:
             for i in range(into.size):
                 value = self.load(Region(source.kind, (), source.base + i, source.offset))
@@ -717,7 +714,7 @@ class Assembler:
     def function(self, node: Call, names: Names) -> Function:
         function = names.functions.get(node.function)
         if function is None:
-            raise Fault(f"there is no function `{node.function}`", node.origin)
+            raise FaultError(f"there is no function `{node.function}`", node.origin)
         return function
 
     def called(self, node: Call, names: Names, shapes_only: bool = False) -> tuple[Expression, Names]:
@@ -725,10 +722,10 @@ class Assembler:
         function off `_calls` afterwards."""
         function = self.function(node, names)
         if node.function in self._calls:
-            raise Fault(f"`{node.function}` calls itself, which is not supported", node.origin)
+            raise FaultError(f"`{node.function}` calls itself, which is not supported", node.origin)
         if len(node.arguments) != len(function.parameters):
             wanted, given = len(function.parameters), len(node.arguments)
-            raise Fault(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
+            raise FaultError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
         bound: dict[str, Meaning] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):
             kind = kind_of(parameter.type)
@@ -771,12 +768,12 @@ class Assembler:
             accesses.append(inner)
             inner = inner.array
         if not isinstance(inner, Name):
-            raise Fault(unsupported(inner), target.origin)
+            raise FaultError(unsupported(inner), target.origin)
         storage = self.meaning(inner, names)
         if not isinstance(storage, Storage) or storage.is_constant:
-            raise Fault(f"`{inner.identifier}` cannot be assigned to", target.origin)
+            raise FaultError(f"`{inner.identifier}` cannot be assigned to", target.origin)
         if len(accesses) > len(storage.shape):
-            raise Fault("this is not an array", target.origin)
+            raise FaultError("this is not an array", target.origin)
         accesses.reverse()
         return storage, accesses
 
@@ -834,7 +831,7 @@ def kind_of(type_: Type) -> str:
     """The kind of values of a type, of the elements of an array type.
 
     Raises:
-        Fault: values of this type are not supported.
+        FaultError: values of this type are not supported.
     """
     while isinstance(type_, ArrayType):
         type_ = type_.element
@@ -843,7 +840,7 @@ def kind_of(type_: Type) -> str:
     kinds = {BasicType.BOOL: BOOL, BasicType.INT: INT, BasicType.REAL: REAL}
     if isinstance(type_, BasicType) and type_ in kinds:
         return kinds[type_]
-    raise Fault("only variables of type bool, int, real and arrays of these are supported")
+    raise FaultError("only variables of type bool, int, real and arrays of these are supported")
 
 
 def larger(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
@@ -882,5 +879,3 @@ def variables_in(expression: Expression, functions: Mapping[str, Function]) -> s
 def unsupported(node: Node) -> str:
     """The message for a kind of expression that the engine does not know."""
     return f"the model checker does not support this kind of expression ({type(node).__name__})"
-
-

@@ -17,7 +17,7 @@ from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import Formula, identifiers
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.smc.assemble import Assembler, Names, Storage, variables_in
-from roaml.smc.fault import Fault
+from roaml.smc.fault import FaultError
 from roaml.smc.layout import Instance, Layout, lay_out
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import Operand
@@ -77,12 +77,12 @@ class Compilation:
     """Compiles `model` so that conditions over `formulas` can be watched; `program` closes it.
 
     Raises:
-        Fault: the model has parts that cannot be run, or that are wrong whatever happens.
+        FaultError: the model has parts that cannot be run, or that are wrong whatever happens.
     """
 
     def __init__(self, model: Model, formulas: Iterable[Formula] = ()) -> None:
         if model.type not in SUPPORTED:
-            raise Fault(f"models of type {model.type.value} are not supported; dtmc and mdp are", model.origin)
+            raise FaultError(f"models of type {model.type.value} are not supported; dtmc and mdp are", model.origin)
         self.model = model
         self.assembler = Assembler()
         self.tape = self.assembler.tape
@@ -124,9 +124,9 @@ class Compilation:
             try:
                 holds = evaluate(clause.exp, values, self.layout.names.functions)
             except EvaluationError as error:
-                raise Fault(error.message, error.origin) from None
+                raise FaultError(error.message, error.origin) from None
             if not holds:
-                raise Fault("there is no initial state: the initial values do not fulfil this", clause.exp.origin)
+                raise FaultError("there is no initial state: the initial values do not fulfil this", clause.exp.origin)
 
     def _number_locations(self) -> None:
         for number, instance in enumerate(self.layout.instances):
@@ -134,13 +134,13 @@ class Compilation:
             table = {}
             for location in instance.automaton.locations:
                 if location.time_progress is not None:
-                    raise Fault("conditions for time progress are not supported", location.origin)
+                    raise FaultError("conditions for time progress are not supported", location.origin)
                 table[location.name] = len(self.locations)
                 self.locations.append((number, location.name))
             self.location_of.append(table)
             if len(instance.automaton.initial_locations) != 1:
                 name = instance.automaton.name
-                raise Fault(f"`{name}` must have one initial location", instance.automaton.origin)
+                raise FaultError(f"`{name}` must have one initial location", instance.automaton.origin)
 
     def _collect_steps(self) -> None:
         prepared: dict[int, list[Step | None]] = {}
@@ -157,7 +157,7 @@ class Compilation:
                     continue
                 source = self.location_of[number].get(edge.source)
                 if source is None:
-                    raise Fault(f"there is no location `{edge.source}`", edge.origin)
+                    raise FaultError(f"there is no location `{edge.source}`", edge.origin)
                 count = 0
                 if edge.action is None:
                     count = silent[source] = silent.get(source, 0) + 1
@@ -178,7 +178,7 @@ class Compilation:
     def _step(self, edge: Edge, instance: Instance) -> Step | None:
         """None for what can never be taken."""
         if edge.rate is not None:
-            raise Fault("rates are not supported", edge.origin)
+            raise FaultError("rates are not supported", edge.origin)
         guard = None if edge.guard is None else edge.guard.exp
         if guard is not None:
             known = self._known(guard, instance)
@@ -191,18 +191,18 @@ class Compilation:
             clause = destination.probability
             probability = 1.0 if clause is None else self._known(clause.exp, instance)
             if probability is not None and probability < 0:
-                raise Fault("a probability must not be negative", destination.origin or edge.origin)
+                raise FaultError("a probability must not be negative", destination.origin or edge.origin)
             if probability != 0:
                 ways.append(Way(destination, None if probability is None else float(probability)))
         if not ways:
-            raise Fault("the probabilities of this edge do not add up to 1", edge.origin)
+            raise FaultError("the probabilities of this edge do not add up to 1", edge.origin)
         if any(way.probability is None for way in ways):
             for way in ways:
                 way.probability = None
         else:
             total = sum(way.probability or 0 for way in ways)
             if abs(total - 1) > _CLOSE:
-                raise Fault(f"the probabilities of this edge add up to {total:g}, not to 1", edge.origin)
+                raise FaultError(f"the probabilities of this edge add up to {total:g}, not to 1", edge.origin)
         is_inert = all(way.destination.location == edge.source and not way.destination.assignments for way in ways)
         return Step(edge, ways, guard, is_inert)
 
@@ -328,7 +328,9 @@ class Compilation:
             destination = way.destination
             target = self.location_of[number].get(destination.location)
             if target is None:
-                raise Fault(f"there is no location `{destination.location}`", destination.origin or step.edge.origin)
+                raise FaultError(
+                    f"there is no location `{destination.location}`", destination.origin or step.edge.origin
+                )
             self.way_source.append(location)
             self.way_target.append(target)
             self.ways.append((step.edge, destination))
@@ -609,4 +611,3 @@ def _accepting(instance: Instance, actions: tuple[str, ...]) -> list[Edge]:
 
 def _both(left: Expression, right: Expression) -> Expression:
     return Binary(BinaryOperator.AND, left, right)
-

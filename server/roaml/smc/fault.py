@@ -8,7 +8,7 @@ from typing import Any
 from roaml.jani.node import Origin
 
 
-class Fault(Exception):
+class FaultError(Exception):
     """A model or property cannot be run, or did something that has no meaning.
 
     Attributes:

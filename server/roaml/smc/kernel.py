@@ -39,7 +39,7 @@ class Kernel:
 
     def __init__(self, program: Program, goal: Goal) -> None:
         self.code = program.code
-        self.functions = program.functions
+        self.functions = [operator.function for operator in program.functions]
         self.ints_0 = program.ints[:]
         self.reals_0 = program.reals[:]
         self.ints = program.ints[:]
@@ -195,6 +195,10 @@ class Kernel:
     def real(self, register: int) -> float:
         """The value of a real register."""
         return self.reals[register]
+
+    def snapshot(self) -> tuple[list[int], list[float]]:
+        """The values of all variables."""
+        return [self.ints[i] for i in range(self.int_count)], [self.reals[i] for i in range(self.real_count)]
 
     def location(self, instance: int) -> int:
         """The location, counted through all instances, where an instance is."""
@@ -624,6 +628,8 @@ class Kernel:
             if self.fault != 0:
                 return FAULTY
             self.steps += 1
+            if self.is_bounded == 2:
+                self.must_look = 1
             if self.must_look != 0 or self.is_bounded != 0:
                 status = self._look()
                 if status != UNKNOWN:
@@ -656,11 +662,15 @@ class Kernel:
         return self._combined()
 
     def _holds(self, code: int) -> int:
-        """A condition: -1 stands for true, -2 for "nothing is possible here"."""
+        """A condition: code, or one of those that `program.Goal` names."""
         if code == -1:
             return 1
         if code == -2:
+            return 0
+        if code == -3:
             return 1 if self.enabled_count == 0 else 0
+        if code == -4:
+            return 0 if self.enabled_count == 0 else 1
         return 1 if self._execute(code) != 0 else 0
 
     def _ends(self, repeats: int) -> int:
@@ -746,10 +756,10 @@ class Kernel:
             c = self.code[pc + 4]
             if op == 0:  # RETURN
                 return self.ints[a]
-            elif op == 1:  # JUMP
+            if op == 1:  # JUMP
                 pc = d
                 continue
-            elif op == 2:  # JUMP_TRUE
+            if op == 2:  # JUMP_TRUE
                 if self.ints[a] != 0:
                     pc = d
                     continue

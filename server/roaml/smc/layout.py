@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, MutableSequence
 from dataclasses import dataclass
+from typing import Any
 
 from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.model import Assignment, Automaton, Function, Model, Variable
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BoundedType, Type
 from roaml.smc.assemble import Assembler, Meaning, Names, Storage, kind_of, larger, shape_of
-from roaml.smc.fault import Fault
+from roaml.smc.fault import FaultError
 from roaml.smc.registers import INT, REAL, Number, Operand
 
 
@@ -50,7 +51,7 @@ def lay_out(model: Model, assembler: Assembler) -> Layout:
     """Give a place to everything that has a value; registers of variables come before all others.
 
     Raises:
-        Fault: a constant or variable has no value, or one that is not supported.
+        FaultError: a constant or variable has no value, or one that is not supported.
     """
     functions = {function.name: function for function in model.functions}
     constants = _constants(model, functions)
@@ -72,7 +73,7 @@ def lay_out(model: Model, assembler: Assembler) -> Layout:
     for element in model.system.elements:
         automaton = by_name.get(element.automaton)
         if automaton is None:
-            raise Fault(f"there is no automaton `{element.automaton}`", element.origin)
+            raise FaultError(f"there is no automaton `{element.automaton}`", element.origin)
         inner = {**functions, **{function.name: function for function in automaton.functions}}
         own = _storages(automaton.variables, constants, inner, initial)
         drafts.append((automaton, inner, own))
@@ -106,7 +107,7 @@ def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Val
     known: dict[str, Value] = {}
     for constant in model.constants:
         if constant.value is None:
-            raise Fault(f"the constant `{constant.name}` has no value", constant.origin)
+            raise FaultError(f"the constant `{constant.name}` has no value", constant.origin)
         known[constant.name] = _evaluated(constant.value, known, functions)
     return known
 
@@ -115,9 +116,9 @@ def _evaluated(expression: Expression, known: Mapping[str, Value], functions: Ma
     try:
         value = evaluate(expression, known, functions)
     except EvaluationError as error:
-        raise Fault(error.message, error.origin or expression.origin) from None
+        raise FaultError(error.message, error.origin or expression.origin) from None
     if isinstance(value, int) and abs(value) >= 1 << 63:
-        raise Fault("integer overflow: the result does not fit into 64 bits", expression.origin)
+        raise FaultError("integer overflow: the result does not fit into 64 bits", expression.origin)
     return value
 
 
@@ -131,10 +132,10 @@ def _storages(
     for variable in variables:
         try:
             kind_of(variable.type)
-        except Fault as fault:
-            raise Fault(f"`{variable.name}`: {fault.message}", variable.origin) from None
+        except FaultError as fault:
+            raise FaultError(f"`{variable.name}`: {fault.message}", variable.origin) from None
         if variable.initial_value is None:
-            raise Fault(f"the variable `{variable.name}` has no initial value", variable.origin)
+            raise FaultError(f"the variable `{variable.name}` has no initial value", variable.origin)
         value = _evaluated(variable.initial_value, constants, functions)
         storage = _storage(variable.name, variable.type, value)
         if isinstance(variable.type, BoundedType):
@@ -147,7 +148,7 @@ def _storages(
             storage.bounds = low, high
             assert isinstance(value, (int, float))
             if (low is not None and value < low) or (high is not None and value > high):
-                raise Fault(f"the initial value of `{variable.name}` is outside of its bounds", variable.origin)
+                raise FaultError(f"the initial value of `{variable.name}` is outside of its bounds", variable.origin)
         initial[id(storage)] = value
         found.append(storage)
     return tuple(found)
@@ -183,7 +184,7 @@ def _grow(scopes: list[tuple[Automaton, Names]], assembler: Assembler, constants
                 changed = True
         if not changed:
             return
-    raise Fault("the sizes of the arrays do not settle")
+    raise FaultError("the sizes of the arrays do not settle")
 
 
 def _assignments(automaton: Automaton) -> Iterator[Assignment]:
@@ -197,11 +198,11 @@ def _place(storage: Storage, value: Value, assembler: Assembler) -> None:
     for length in storage.shape:
         size *= length
     storage.base = assembler.tape.room(storage.kind, size)
-    cells: list[int] | list[float] = assembler.tape.reals if storage.kind == REAL else assembler.tape.ints
+    cells: MutableSequence[Any] = assembler.tape.reals if storage.kind == REAL else assembler.tape.ints
     _fill(cells, storage.base, storage.shape, value)
 
 
-def _fill(cells: list[int] | list[float], base: int, shape: tuple[int, ...], value: Value) -> None:
+def _fill(cells: MutableSequence[Any], base: int, shape: tuple[int, ...], value: Value) -> None:
     if not shape:
         assert isinstance(value, (bool, int, float))
         cells[base] = value if isinstance(value, float) else int(value)

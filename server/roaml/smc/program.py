@@ -9,9 +9,13 @@ range of what belongs to `i`. Code is given by the place of its first instructio
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
+
+from roaml.jani.operators import Operator
+
+FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
+"""What becomes of a trace. The kernel has the same numbers; UNKNOWN: it can go on, and undecided if it does not."""
 
 Ints: TypeAlias = "array[int]"
 Reals: TypeAlias = "array[float]"
@@ -22,7 +26,7 @@ class Program:
     """A compiled model.
 
     Attributes:
-        code, functions: the bytecode, and the Python functions that it calls.
+        code, functions: the bytecode, and the operators whose functions it calls.
         ints, reals: all registers at first: variables, then constants, then room for intermediate results.
         int_count, real_count: the registers that are variables.
         initial: the first location of each instance.
@@ -38,7 +42,7 @@ class Program:
     """
 
     code: Ints
-    functions: list[Callable[..., Any]]
+    functions: list[Operator]
     ints: Ints
     reals: Reals
     int_count: int
@@ -93,9 +97,10 @@ class Goal:
 
     Attributes:
         seen: for each watched variable, whether a condition reads it.
-        left, right: the two sides of each until: code; -1 is true, -2 is deadlock.
+        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite.
         lower, upper: its step bounds, both inclusive; -1 is none.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
+        is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.
         step_reward, exit_reward: code that gives the register of the reward of a step.
     """
 

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from roaml.jani.node import Origin
+from roaml.jani.operators import Operator
 from roaml.smc.opcodes import WIDTH, Op
 
 BOOL, INT, REAL = "bool", "int", "real"
@@ -62,10 +62,10 @@ class Tape:
         self.code: list[int] = []
         self.ints: list[int] = []
         self.reals: list[float] = []
-        self.functions: list[Callable[..., Any]] = []
+        self.functions: list[Operator] = []
         self.origins: list[tuple[int, Origin]] = []
         self._constants: dict[tuple[str, Number], Operand] = {}
-        self._functions: dict[Any, int] = {}
+        self._functions: dict[Operator, int] = {}
         self._free_ints: list[int] = []
         self._free_reals: list[int] = []
         self._used_ints = 0
@@ -127,12 +127,12 @@ class Tape:
         self._used_ints += 1
         return self._free_ints[self._used_ints - 1]
 
-    def function(self, function: Callable[..., Any], name: object) -> int:
-        """The number under which code calls a function; equal names are the same function."""
-        if name not in self._functions:
-            self._functions[name] = len(self.functions)
-            self.functions.append(function)
-        return self._functions[name]
+    def function(self, operator: Operator) -> int:
+        """The number under which code calls the function of an operator."""
+        if operator not in self._functions:
+            self._functions[operator] = len(self.functions)
+            self.functions.append(operator)
+        return self._functions[operator]
 
     def origin_of(self, at: int) -> Origin | None:
         """What the instruction at a place of the code exists for."""
