@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import sys
 import time
@@ -85,11 +86,11 @@ def _run(options: argparse.Namespace) -> int:
             subject = load(options.main, options.ros_path, settings)
             names = options.property or None
             if names is not None:
-                names = [*names, *(each.property for each in expectations)]
+                names = [*names, *(each.name for each in expectations)]
             known = {each.name for each in subject.model.properties}
             for each in expectations:
-                if each.property not in known:
-                    raise api.PropertyError(f"there is no property {each.property}, of which something is expected")
+                if each.name not in known:
+                    raise api.PropertyError(f"there is no property {each.name}, of which something is expected")
             progress.stage("compiling")
             checker = api.checker(subject.model, names)
     except api.ModelError as error:
@@ -129,14 +130,14 @@ class _Verification:
         asked = [self._with_threshold(each) for each in self.checker.asked]
         interrupted = False
         try:
-            with _executor(self.options.dask) as (executor, workers):
-                with Pool(workers or self.options.jobs, executor) as pool, Bar() as bar:
-                    for each in asked:
+            with _executor(self.options.dask) as (executor, workers), Bar() as bar:
+                for each in asked:
+                    with Pool(workers or self.options.jobs, executor) as pool:
                         result = self._answer(each, pool, bar)
-                        self.results.append(result)
-                        if result.is_interrupted:
-                            interrupted = True
-                            break
+                    self.results.append(result)
+                    if result.is_interrupted:
+                        interrupted = True
+                        break
         except FaultError as fault:
             return _fault(self.options, self.subject, fault, self.results)
         self._print()
@@ -149,12 +150,12 @@ class _Verification:
         """The question with the first number that it is compared with, for the sequential test."""
         if asked.question.threshold is None:
             for expectation in self.expectations:
-                if expectation.property == asked.question.name:
+                if expectation.name == asked.question.name:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
         return asked
 
     def _expected(self, asked: Asked) -> Iterator[Expectation]:
-        own = [each for each in self.expectations if each.property == asked.question.name]
+        own = [each for each in self.expectations if each.name == asked.question.name]
         threshold = asked.question.threshold
         if threshold is not None and not any(each.threshold == threshold for each in own):
             yield Expectation(asked.question.name, threshold, is_own=True)
@@ -241,7 +242,7 @@ class _Verification:
                 seen = shortest.get(wanted) or shortest.get(UNKNOWN)
                 if seen is None:
                     what = "fails" if wanted == FALSE else "holds"
-                    print(f"{result.property}: there is no trace in which it {what}", file=sys.stderr)
+                    print(f"{result.name}: there is no trace in which it {what}", file=sys.stderr)
                 else:
                     stories.append(tell(recorder, seen.trace, self.subject.clock))
         for target in self.options.explain:
@@ -275,11 +276,11 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
         yield None, 0
         return
     try:
-        from distributed import Client  # noqa: PLC0415
+        distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise UsageError("--dask needs the package distributed: pip install 'as2fm-lsp[dask]'") from None
     try:
-        client = Client(address, timeout=10)
+        client = distributed.Client(address, timeout=10)
     except OSError as error:
         raise UsageError(f"there is no Dask scheduler at {address}: {error}") from None
     with client:
@@ -351,9 +352,7 @@ def _natural(text: str) -> int:
 
 def _story_file(text: str) -> str:
     if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
-        raise argparse.ArgumentTypeError(
-            f"'{text}' does not end in .txt, .mmd or .html; give MAIN.xml before --explain"
-        )
+        raise argparse.ArgumentTypeError(f"'{text}' does not end in .txt, .mmd or .html; MAIN.xml stands first")
     return text
 
 

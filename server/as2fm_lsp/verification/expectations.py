@@ -32,7 +32,7 @@ _FORM = re.compile(r"\s*(.+?)\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
 class Expectation:
     """That the value of a property is in some relation to a number. `is_own`: the property itself says so."""
 
-    property: str
+    name: str
     threshold: Threshold
     is_own: bool = False
 

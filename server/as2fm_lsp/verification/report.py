@@ -37,7 +37,7 @@ class Result:
         is_interrupted: whether somebody could not wait.
     """
 
-    property: str
+    name: str
     answer: Answer | None
     verdicts: tuple[Verdict, ...]
     seconds: float
@@ -63,15 +63,15 @@ def _block(result: Result) -> str:
         both = _number(exact.least)
         if exact.least != exact.greatest:
             both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
-        lines.append(f"{result.property}: {both}, exactly, from {exact.states:,} states")
+        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states")
     if result.extremes is not None:
         for what, found, by in (
             ("least", result.extremes.least, result.extremes.least_by),
             ("greatest", result.extremes.greatest, result.extremes.greatest_by),
         ):
-            lines.append(f"{result.property}: {what} probability found {_estimate(found)} by scheduler {by}")
+            lines.append(f"{result.name}: {what} probability found {_estimate(found)} by scheduler {by}")
     elif result.answer is not None:
-        lines.append(f"{result.property}: {_estimate(result.answer)}, {result.seconds:.1f} s")
+        lines.append(f"{result.name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
         lines += _remarks(result)
     for verdict in result.verdicts:
         text = f"  expected {verdict.expectation.text}: {'met' if verdict.is_met else 'NOT MET'}"
@@ -124,7 +124,7 @@ def as_json(results: Sequence[Result], errors: Sequence[dict[str, Any]] = ()) ->
 
 
 def _row(result: Result) -> dict[str, Any]:
-    row: dict[str, Any] = {"property": result.property, "seconds": round(result.seconds, 3)}
+    row: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
     if result.answer is not None:
         row.update(_answer(result.answer))
     if result.extremes is not None:
@@ -176,7 +176,7 @@ def as_junit(results: Sequence[Result], title: str) -> str:
     suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
     for result in results:
-        names = {"classname": _clean(title), "name": _clean(result.property), "time": f"{result.seconds:.3f}"}
+        names = {"classname": _clean(title), "name": _clean(result.name), "time": f"{result.seconds:.3f}"}
         case = ET.SubElement(suite, "testcase", names)
         text = _clean(_block(result))
         if result.is_met:

@@ -38,10 +38,8 @@ def write_traces(folder: str, subject: Subject, recorder: Recorder, answer: Answ
             chosen[shortest.trace] = None
         for trace in sorted(chosen):
             name = f"{_UNSAFE.sub('_', answer.question.name)}-{trace:07}-{VERDICTS[verdict]}"
-            for extension, lines in (
-                ("csv", csv_lines(recorder, trace, subject.clock)),
-                ("json", json_lines(subject, recorder, trace)),
-            ):
+            texts = {"csv": csv_lines(recorder, trace, subject.clock), "json": json_lines(subject, recorder, trace)}
+            for extension, lines in texts.items():
                 path = os.path.join(folder, f"{name}.{extension}")
                 write_file(path, lines)
                 written.append(path)

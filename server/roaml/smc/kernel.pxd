@@ -75,6 +75,8 @@ cdef class Kernel:
     cdef int _way(self, int edge) noexcept
     @cython.locals(first=int, end=int, unit=double, total=double, found=int, last=int, way=int, register=int, chance=double)
     cdef int _way_computed(self, int edge) noexcept
+    @cython.locals(way=int, before=double)
+    cdef list _chances(self, int edge)
     @cython.locals(index=i64, following=i64, i=int, k=int, way=int)
     cdef void _execute_phases(self) noexcept
     @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, group=int)

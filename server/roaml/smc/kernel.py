@@ -15,6 +15,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from roaml.smc.program import Goal, Program
 
 MASK = 0xFFFFFFFFFFFFFFFF
@@ -204,13 +206,40 @@ class Kernel:
         """The location, counted through all instances, where an instance is."""
         return self.place[instance]
 
-    def choices(self) -> int:
-        """How many choices there are in this state."""
-        return self._total()
+    def restore(self, place: Sequence[int], ints: Sequence[int], reals: Sequence[float]) -> None:
+        """Go to a state."""
+        self._reset()
+        for i in range(self.instances):
+            self.place[i] = place[i]
+        for i in range(self.int_count):
+            self.ints[i] = ints[i]
+        for i in range(self.real_count):
+            self.reals[i] = reals[i]
+        for slot in range(len(self.ready)):
+            self._set_ready(slot, 0)
+        for i in range(self.instances):
+            for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
+                self._set_ready(self.group_slot[group], self._count(group))
+
+    def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
+        """All vectors that are enabled: the number, how many choices differ in nothing else, and for each slot that
+        does something the probabilities of the ways of each enabled edge."""
+        found = []
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            slots = []
+            combinations = 1
+            for k in range(self.active_start[vector], self.active_start[vector + 1]):
+                slot = self.active_slot[k]
+                combinations *= self.ready[slot]
+                edges = [self._chances(self._edge(slot, pick)) for pick in range(self.ready[slot])]
+                slots.append(edges)
+            found.append((vector, self._weight(vector) // combinations, slots))
+        return found
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
-        """Take a given choice, for those who look at all of them: for each slot of the vector that does anything the
-        number of its edge among those enabled, and the number of the way. What `step` returns."""
+        """Take a choice: for each slot of the vector that does something the number of its enabled edge, and that of
+        the way. What `step` returns."""
         self._take_given(vector, picks, ways)
         if self.fault != 0:
             return FAULTY
@@ -513,6 +542,18 @@ class Kernel:
             self._fail(6, self.way_chance[first])
             return -1
         return last if found < 0 else found
+
+    def _chances(self, edge: int) -> list[float]:
+        """The probability of each way of an edge."""
+        found = []
+        before = 0.0
+        for way in range(self.way_start[edge], self.way_start[edge + 1]):
+            if self.way_chance[way] >= 0:
+                found.append(self.reals[self._execute(self.way_chance[way])])
+            else:
+                found.append(self.way_sum[way] - before)
+                before = self.way_sum[way]
+        return found
 
     def _execute_phases(self) -> None:
         """The assignments of ways that have to do with one another: of each index, first all values, then all

@@ -18,6 +18,7 @@ class Story:
 
     Attributes:
         length: the number of all steps.
+        folded: so many steps that matter stand before those that are told.
         clock: for each step of the story the time in seconds, None where the model has no clock.
     """
 
@@ -27,13 +28,19 @@ class Story:
     clock: tuple[float | None, ...]
     length: int
     variables: tuple[str, ...]
+    folded: int = 0
 
 
-def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
+MOST = 60
+"""Steps of a story; the last ones tell most."""
+
+
+def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None, most: int = MOST) -> Story:
     """The story of a trace.
 
     Args:
         clock: the variables that hold the seconds and nanoseconds of the model's time.
+        most: no more steps than that, the last ones.
     """
     recording = Recording(trace)
     steps: list[TraceStep] = []
@@ -49,7 +56,8 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         steps.append(step)
         times.append(None if clock is None else seconds + nanoseconds / 1e9)
     variables = recorder.asked.question.variables
-    kept = _relevant(recorder, steps, variables)
+    relevant = _relevant(recorder, steps, variables)
+    kept = relevant[-most:]
     return Story(
         recorder.asked.question.name,
         recording,
@@ -57,6 +65,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         tuple(times[i] for i in kept),
         len(steps),
         variables,
+        len(relevant) - len(kept),
     )
 
 

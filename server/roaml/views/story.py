@@ -63,9 +63,12 @@ def as_text(story: Story, place_of: PlaceOf) -> str:
 def heading(story: Story) -> str:
     """What happens in one sentence."""
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
-    read = f"; it reads {', '.join(story.variables)}" if story.variables else ""
     steps = f"{story.length:,} {'step' if story.length == 1 else 'steps'}"
-    return f"{story.property} {verdict} in trace {story.recording.trace} after {steps}, {len(story.steps)} of them matter{read}"
+    text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"
+    text += f", of which {len(story.steps) + story.folded:,} matter"
+    if story.folded:
+        text += f"; the last {len(story.steps)} of these"
+    return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
 
 def as_mermaid(story: Story, place_of: PlaceOf) -> str:
