@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from roaml.jani.expressions import (
     ArrayAccess,
@@ -58,6 +58,14 @@ class Storage:
 
 Meaning: TypeAlias = Storage | Operand | Region
 """What a name stands for: a variable, a bound scalar, a bound array."""
+
+
+class Later(NamedTuple):
+    """An assignment whose value is computed: where it goes, the register where the value is kept, whom to tell."""
+
+    place: Region
+    register: int
+    watch: int
 
 
 @dataclass(frozen=True)
@@ -269,9 +277,10 @@ class Assembler:
         if op is UnaryOperator.NOT:
             return self.boolean(node, names, into)
         value = self.value(operand, names)
-        if value.value is not None:
-            return self.moved(self.folded(node, (value,)), into)
         is_int = value.kind != REAL
+        kind = value.kind if op is UnaryOperator.ABS else INT if op.signature is Signature.ROUNDING else REAL
+        if value.value is not None:
+            return self.moved(self.folded(node, (value,), kind), into)
         if op is UnaryOperator.ABS:
             self.tape.place(node.origin)
             register = self.target(value.kind, into)
@@ -279,7 +288,6 @@ class Assembler:
             return Operand(value.kind, register)
         if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
             return self.moved(value, into)
-        kind = INT if op.signature is Signature.ROUNDING else REAL
         return self.call(node, op, (value,), kind, into)
 
     def binary(self, node: Binary, names: Names, into: int) -> Operand:
@@ -304,27 +312,21 @@ class Assembler:
 
     def computed(self, node: Binary, first: Operand, second: Operand, into: int) -> Operand:
         op = node.operator
+        is_real = REAL in (first.kind, second.kind) or op.signature is Signature.REAL
+        if op is BinaryOperator.POWER and not (isinstance(node.right, Integer) and node.right.value >= 0):
+            is_real = True
+        kind = REAL if is_real else INT
         if first.value is not None and second.value is not None:
-            return self.moved(self.folded(node, (first, second)), into)
-        is_real = REAL in (first.kind, second.kind)
-        if op in _ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real):
+            return self.moved(self.folded(node, (first, second), kind), into)
+        if op in _ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real) or op is BinaryOperator.DIVIDE:
             if is_real:
                 first, second = self.as_real(first), self.as_real(second)
-            codes = _ARITHMETIC.get(op, (Op.REM, Op.REM))
+            code = _ARITHMETIC[op][is_real] if op in _ARITHMETIC else Op.DIVIDE if is_real else Op.REM
             self.tape.place(node.origin)
-            kind = REAL if is_real else INT
             register = self.target(kind, into)
-            self.tape.emit(codes[is_real], register, first.register, second.register)
+            self.tape.emit(code, register, first.register, second.register)
             return Operand(kind, register)
-        if op is BinaryOperator.DIVIDE:
-            first, second = self.as_real(first), self.as_real(second)
-            self.tape.place(node.origin)
-            register = self.target(REAL, into)
-            self.tape.emit(Op.DIVIDE, register, first.register, second.register)
-            return Operand(REAL, register)
-        is_int = op is BinaryOperator.POWER and not is_real and isinstance(node.right, Integer)
-        is_int = is_int and isinstance(second.value, int) and second.value >= 0
-        return self.call(node, op, (first, second), INT if is_int else REAL, into)
+        return self.call(node, op, (first, second), kind, into)
 
     def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
         for argument in arguments:
@@ -335,7 +337,7 @@ class Assembler:
         self.tape.emit(code, register, c=self.tape.function(op))
         return Operand(kind, register)
 
-    def folded(self, node: Unary | Binary, operands: Sequence[Operand]) -> Operand:
+    def folded(self, node: Unary | Binary, operands: Sequence[Operand], kind: str) -> Operand:
         """An operator whose operands are constants."""
         constants: list[Expression] = []
         for operand in operands:
@@ -345,10 +347,8 @@ class Assembler:
                 constants.append(Boolean(bool(value)))
             else:
                 constants.append(Real(value) if isinstance(value, float) else Integer(value))
-        names = Names({}, {})
         plain: Expression
         plain = Unary(node.operator, *constants) if isinstance(node, Unary) else Binary(node.operator, *constants)
-        kind = self.kind(plain, names)
         try:
             result = evaluate(plain, {})
         except EvaluationError as error:
@@ -743,14 +743,10 @@ class Assembler:
 
     # ------------------------------------------------------------ assignments
 
-    def assign(self, target: Expression, value: Expression, names: Names, early: int = -1) -> None:
-        """`target := value`. With `early`, the value was computed before: its register."""
+    def assign(self, target: Expression, value: Expression, names: Names) -> None:
+        """`target := value`, at once."""
         storage, accesses = self.assigned(target, names)
-        whole = Region(storage.kind, storage.shape, storage.base)
-        place = self.indexed(whole, accesses, names)
-        if early >= 0:
-            self.write_early(place, early, storage.watch)
-            return
+        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         self.tape.place(value.origin or target.origin)
         if place.shape:
             self.assign_array(value, place, names, storage.watch)
@@ -797,17 +793,24 @@ class Assembler:
             if watch >= 0:
                 self.tape.emit(Op.NOTE, watch)
 
-    def early(self, target: Expression, value: Expression, names: Names) -> int:
-        """Compute what will be assigned; the register where it is kept until then."""
+    def early(self, target: Expression, value: Expression, names: Names) -> Later:
+        """Compute what will be assigned, and where; `finish` assigns it."""
         storage, accesses = self.assigned(target, names)
-        shape = storage.shape[len(accesses) :]
+        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
+        if place.offset >= 0:
+            offset = self.tape.room(INT, 1)
+            self.tape.emit(Op.MOVE, offset, place.offset)
+            place = Region(place.kind, place.shape, place.base, offset)
         self.tape.place(value.origin or target.origin)
-        if shape:
-            return self.materialized(value, storage.kind, shape, names).base
+        if place.shape:
+            return Later(place, self.materialized(value, storage.kind, place.shape, names).base, storage.watch)
         register = self.tape.room(storage.kind, 1)
         operand = self.stored(value, storage.kind, names, register)
         self.check_bounds(operand, storage)
-        return register
+        return Later(place, register, storage.watch)
+
+    def finish(self, later: Later) -> None:
+        self.write_early(later.place, later.register, later.watch)
 
     def reset(self, storage: Storage) -> None:
         """Give a variable its first value again."""

@@ -354,16 +354,14 @@ class Compilation:
         if not assignments:
             return -1
         names, assembler = instance.names, self.assembler
-        early: list[tuple[Assignment, int]] = []
         start = self.tape.begin()
         for group in _by_index(assignments):
             if len(group) == 1 or not self._has_hazard(group, instance):
                 for assignment in group:
                     assembler.assign(assignment.target, assignment.value, names)
                 continue
-            early = [(each, assembler.early(each.target, each.value, names)) for each in group]
-            for each, register in early:
-                assembler.assign(each.target, each.value, names, register)
+            for later in [assembler.early(each.target, each.value, names) for each in group]:
+                assembler.finish(later)
         assembler.end()
         return start
 
@@ -381,11 +379,11 @@ class Compilation:
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
             self.phase_read.append(self.tape.begin())
-            early = [(each, assembler.early(each.target, each.value, names)) for each in group]
+            computed = [assembler.early(each.target, each.value, names) for each in group]
             assembler.end()
             self.phase_write.append(self.tape.begin())
-            for each, register in early:
-                assembler.assign(each.target, each.value, names, register)
+            for later in computed:
+                assembler.finish(later)
             assembler.end()
 
     def _write_moves(self) -> None:
