@@ -7,9 +7,9 @@ import gzip
 from pathlib import Path
 from typing import Any
 
-import conformance
 import pytest
 
+import conformance
 from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.json import parse

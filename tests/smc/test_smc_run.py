@@ -164,7 +164,8 @@ def test_many_undecided_traces_end_the_run() -> None:
     answer = ask(Options(max_steps=50), written)
     assert not answer.is_complete
     assert answer.tally.traces < 1000
-    assert answer.bounds.lower < 0.34 < 0.66 < answer.bounds.upper
+    assert answer.bounds.lower < 0.34
+    assert answer.bounds.upper > 0.66
 
 
 def test_examples_are_remembered() -> None:

@@ -40,7 +40,12 @@ def test_quantiles_are_where_the_distribution_says(probability: float, a: float,
 
 
 def test_quantiles_of_tables() -> None:
-    for probability, freedom, expected in ((0.975, 1, 12.706), (0.975, 9, 2.2622), (0.95, 30, 1.6973), (0.995, 5, 4.0321)):
+    for probability, freedom, expected in (
+        (0.975, 1, 12.706),
+        (0.975, 9, 2.2622),
+        (0.95, 30, 1.6973),
+        (0.995, 5, 4.0321),
+    ):
         assert student_quantile(probability, freedom) == pytest.approx(expected, abs=1e-3)
     assert student_quantile(0.975, 10**7) == pytest.approx(1.959964, abs=1e-4)
 

@@ -30,7 +30,7 @@ from roaml.jani.expressions import (
     walk,
 )
 from roaml.jani.model import Function
-from roaml.jani.node import Node
+from roaml.jani.node import Node, Origin
 from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BasicType, BoundedType, Type
@@ -113,21 +113,19 @@ class Assembler:
 
     # ------------------------------------------------------------ pieces of code
 
-    def condition(self, expression: Expression, names: Names) -> int:
+    def condition(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
         """Code that tells whether `expression` holds."""
-        start = self.tape.begin()
+        start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
-        self.tape.place(expression.origin)
         self.jump(expression, names, otherwise, False)
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 1).register)
         self.tape.mark(otherwise)
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
         return start
 
-    def real_register(self, expression: Expression, names: Names) -> int:
+    def real_register(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
         """Code that gives the number of the real register with the value of `expression`."""
-        start = self.tape.begin()
-        self.tape.place(expression.origin)
+        start = self.tape.begin(expression.origin or origin)
         value = self.as_real(self.value(expression, names))
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
         return start
@@ -743,11 +741,12 @@ class Assembler:
 
     # ------------------------------------------------------------ assignments
 
-    def assign(self, target: Expression, value: Expression, names: Names) -> None:
+    def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
         """`target := value`, at once."""
+        self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
         place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
-        self.tape.place(value.origin or target.origin)
+        self.tape.place(value.origin or target.origin or origin)
         if place.shape:
             self.assign_array(value, place, names, storage.watch)
         elif storage.bounds != (None, None):
@@ -793,15 +792,16 @@ class Assembler:
             if watch >= 0:
                 self.tape.emit(Op.NOTE, watch)
 
-    def early(self, target: Expression, value: Expression, names: Names) -> Later:
+    def early(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> Later:
         """Compute what will be assigned, and where; `finish` assigns it."""
+        self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
         place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         if place.offset >= 0:
             offset = self.tape.room(INT, 1)
             self.tape.emit(Op.MOVE, offset, place.offset)
             place = Region(place.kind, place.shape, place.base, offset)
-        self.tape.place(value.origin or target.origin)
+        self.tape.place(value.origin or target.origin or origin)
         if place.shape:
             return Later(place, self.materialized(value, storage.kind, place.shape, names).base, storage.watch)
         register = self.tape.room(storage.kind, 1)

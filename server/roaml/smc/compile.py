@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 
 from roaml.jani.expressions import ArrayAccess, Binary, Boolean, Expression, Real, Unary
 from roaml.jani.model import Assignment, Destination, Edge, Model, ModelType
+from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import Formula, identifiers
 from roaml.jani.semantics import EvaluationError, Value, evaluate
@@ -322,7 +323,7 @@ class Compilation:
         number, _ = self.locations[location]
         instance = self.layout.instances[number]
         names = instance.names
-        self.guard.append(-1 if step.guard is None else self.assembler.condition(step.guard, names))
+        self.guard.append(-1 if step.guard is None else self.assembler.condition(step.guard, names, step.edge.origin))
         total = 0.0
         for way in step.ways:
             destination = way.destination
@@ -337,30 +338,32 @@ class Compilation:
             chance = -1
             if way.probability is None:
                 clause = destination.probability
-                chance = self.assembler.real_register(_one() if clause is None else clause.exp, names)
+                exp = _one() if clause is None else clause.exp
+                chance = self.assembler.real_register(exp, names, destination.origin or step.edge.origin)
             else:
                 total += way.probability
             self.way_chance.append(chance)
             self.way_sum.append(total)
-            self.way_code.append(self._write_assignments(destination.assignments, instance))
+            origin = destination.origin or step.edge.origin
+            self.way_code.append(self._write_assignments(destination.assignments, instance, origin))
             if is_phased:
-                self._write_phases(destination.assignments, names)
+                self._write_phases(destination.assignments, names, origin)
             self.phase_start.append(len(self.phase_index))
         if step.ways[-1].probability is not None:
             self.way_sum[-1] = 1.0
         self.way_start.append(len(self.way_target))
 
-    def _write_assignments(self, assignments: tuple[Assignment, ...], instance: Instance) -> int:
+    def _write_assignments(self, assignments: tuple[Assignment, ...], instance: Instance, origin: Origin | None) -> int:
         if not assignments:
             return -1
         names, assembler = instance.names, self.assembler
-        start = self.tape.begin()
+        start = self.tape.begin(origin)
         for group in _by_index(assignments):
             if len(group) == 1 or not self._has_hazard(group, instance):
                 for assignment in group:
-                    assembler.assign(assignment.target, assignment.value, names)
+                    assembler.assign(assignment.target, assignment.value, names, assignment.origin)
                 continue
-            for later in [assembler.early(each.target, each.value, names) for each in group]:
+            for later in [assembler.early(each.target, each.value, names, each.origin) for each in group]:
                 assembler.finish(later)
         assembler.end()
         return start
@@ -374,14 +377,14 @@ class Compilation:
             written.add(_root(assignment))
         return False
 
-    def _write_phases(self, assignments: tuple[Assignment, ...], names: Names) -> None:
+    def _write_phases(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> None:
         assembler = self.assembler
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
-            self.phase_read.append(self.tape.begin())
-            computed = [assembler.early(each.target, each.value, names) for each in group]
+            self.phase_read.append(self.tape.begin(origin))
+            computed = [assembler.early(each.target, each.value, names, each.origin) for each in group]
             assembler.end()
-            self.phase_write.append(self.tape.begin())
+            self.phase_write.append(self.tape.begin(origin))
             for later in computed:
                 assembler.finish(later)
             assembler.end()
@@ -520,7 +523,7 @@ class Compilation:
                 if location.transient_values:
                     code[self.location_of[number][location.name]] = self.tape.begin()
                     for value in location.transient_values:
-                        assembler.assign(value.target, value.value, instance.names)
+                        assembler.assign(value.target, value.value, instance.names, value.origin)
                     assembler.end()
         return settle, _ints(code)
 

@@ -255,7 +255,9 @@ class _Writer:
             case _:
                 self.conditions.append(formula)
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
-                return self.compilation.assembler.condition(expression, self.names)
+                return self.compilation.assembler.condition(
+                    expression, self.names, formula.origin or self.property.origin
+                )
 
     def bounds(self, path: PathBounds) -> tuple[int, int | None]:
         """The step bounds, both inclusive."""
@@ -289,7 +291,7 @@ class _Writer:
         if Accumulation.TIME in formula.accumulate:
             raise FaultError("no time passes in this kind of model; accumulate on steps or exit", formula.origin)
         self.until(TRUE, self.condition(formula.reach), 0, None)
-        code = self.compilation.assembler.real_register(formula.reward, self.names)
+        code = self.compilation.assembler.real_register(formula.reward, self.names, formula.origin)
         return (
             code if Accumulation.STEPS in formula.accumulate else -1,
             code if Accumulation.EXIT in formula.accumulate else -1,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 
 from roaml.jani.model import Model
@@ -17,6 +18,9 @@ from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import Compiled, Program
 from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
 
+DEPTH = 15_000
+"""Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
+
 
 class Checker:
     """A model, compiled for some of its properties.
@@ -28,12 +32,16 @@ class Checker:
     def __init__(self, model: Model, properties: Iterable[Property] | None = None) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
+        depth = sys.getrecursionlimit()
+        sys.setrecursionlimit(max(depth, DEPTH))
         try:
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
             self.asked: tuple[Asked, ...] = tuple(ask(self._compilation, property_) for property_ in chosen)
             self.program: Program = self._compilation.program()
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
+        finally:
+            sys.setrecursionlimit(depth)
 
     @property
     def legend(self) -> Legend:

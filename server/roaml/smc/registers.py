@@ -63,7 +63,7 @@ class Tape:
         self.ints: list[int] = []
         self.reals: list[float] = []
         self.functions: list[Operator] = []
-        self.origins: list[tuple[int, Origin]] = []
+        self.origins: list[tuple[int, Origin | None]] = []
         self._constants: dict[tuple[str, Number], Operand] = {}
         self._functions: dict[Operator, int] = {}
         self._free_ints: list[int] = []
@@ -110,9 +110,10 @@ class Tape:
         self.ints += [int(value)] * size
         return len(self.ints) - size
 
-    def begin(self) -> int:
-        """A new piece of code, in which all temporary registers are free; where it begins."""
+    def begin(self, origin: Origin | None = None) -> int:
+        """A new piece of code, which exists for `origin`; all temporary registers are free in it. Where it begins."""
         self._used_ints = self._used_reals = 0
+        self.origins.append((len(self.code), origin))
         return len(self.code)
 
     def temporary(self, kind: str) -> int:
