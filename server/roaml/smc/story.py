@@ -18,7 +18,7 @@ class Story:
 
     Attributes:
         length: the number of all steps.
-        folded: so many steps that matter stand before those that are told.
+        folded: so many steps that matter are left out after the first ones.
         clock: for each step of the story the time in seconds, None where the model has no clock.
     """
 
@@ -31,16 +31,15 @@ class Story:
     folded: int = 0
 
 
-MOST = 60
-"""Steps of a story; the last ones tell most."""
+FIRST, LAST = 20, 40
+"""Steps of a story that are told; what stands between them is folded."""
 
 
-def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None, most: int = MOST) -> Story:
+def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
     """The story of a trace.
 
     Args:
         clock: the variables that hold the seconds and nanoseconds of the model's time.
-        most: no more steps than that, the last ones.
     """
     recording = Recording(trace)
     steps: list[TraceStep] = []
@@ -57,7 +56,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None, m
         times.append(None if clock is None else seconds + nanoseconds / 1e9)
     variables = recorder.asked.question.variables
     relevant = _relevant(recorder, steps, variables)
-    kept = relevant[-most:]
+    kept = relevant if len(relevant) <= FIRST + LAST else relevant[:FIRST] + relevant[-LAST:]
     return Story(
         recorder.asked.question.name,
         recording,
