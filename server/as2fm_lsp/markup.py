@@ -15,3 +15,8 @@ def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> type
     if formats and formats[0] == types.MarkupKind.Markdown:
         return types.MarkupContent(types.MarkupKind.Markdown, text)
     return types.MarkupContent(types.MarkupKind.PlainText, plain(text))
+
+
+def documentation(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent | str:
+    """The same where a client that has declared nothing takes a plain string."""
+    return content(text, formats) if formats else plain(text)

@@ -45,6 +45,8 @@ robot  tree.xml  <S|equence>  control node Sequence | Ticks its children | BT_pl
 robot  tree.xml  name="|w"  node w | BT_plugin_1002_w
 robot  tree.xml  go|al="{g}"  in goal : int32 | Holds {g} in bt_1001, bt_1002
 robot  tree.xml  <Act|ion  A leaf that does something
+robot  plugin.ascxml  <bt_ti|ck  the parent ticks this node | In plain SCXML bt_1001_tick, bt_1002_tick
+robot  plugin.ascxml  <bt_return_|halted  In plain SCXML bt_1001_halt_response, bt_1002_halt_response
 robot  main.xml  max_time value="|1"  1 s: 1 000 000 000 ns of the clock
 robot  main.xml  unit="|s"  Seconds
 robot  main.xml  src="a|.ascxml"  node A

@@ -151,7 +151,10 @@ async def test_what_it_can_do() -> None:
         "interFileDependencies": True,
         "workspaceDiagnostics": True,
     }
-    assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix", "source"]}
+    assert capabilities["codeActionProvider"] == {
+        "codeActionKinds": ["quickfix", "refactor.extract", "refactor.rewrite", "source.fixAll.as2fm", "source"],
+        "resolveProvider": True,
+    }
     assert capabilities["codeLensProvider"] == {"resolveProvider": True}
     assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.translateToJani"]}
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from as2fm_lsp.markup import content
+from as2fm_lsp.markup import documentation
 from roaml.diagnostics import Symbol
-from roaml.ide import markdown
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
 
 if TYPE_CHECKING:
@@ -59,8 +58,7 @@ def register(server: Server) -> None:
             path, *about = item.data
             text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
             if text:
-                formats = _Client(server).documentation
-                item.documentation = content(text, formats) if formats else markdown.plain(text)
+                item.documentation = documentation(text, _Client(server).formats)
         return item
 
 
@@ -70,9 +68,9 @@ class _Client:
     def __init__(self, server: Server) -> None:
         document = server.client_capabilities.text_document
         asks = document.completion.completion_item if document and document.completion else None
-        self.documentation = asks.documentation_format if asks else None
         self.snippets = bool(asks and asks.snippet_support)
         self.tags = bool(asks and asks.tag_support)
+        self.formats = asks.documentation_format if asks else None
         self.label_details = bool(asks and asks.label_details_support)
 
     def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:

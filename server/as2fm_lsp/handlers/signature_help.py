@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from as2fm_lsp.markup import content
+from as2fm_lsp.markup import documentation
 from roaml.ide.signature import TRIGGERS, Signature, signature_help
 
 if TYPE_CHECKING:
@@ -30,6 +30,6 @@ def _information(server: Server, found: Signature) -> types.SignatureInformation
     labels = [(start, end) if takes_places else found.label[start:end] for start, end in found.parameters]
     return types.SignatureInformation(
         found.label,
-        content(found.documentation, asks.documentation_format if asks else None),
+        documentation(found.documentation, asks.documentation_format if asks else None),
         [types.ParameterInformation(label) for label in labels],
     )

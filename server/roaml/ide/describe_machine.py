@@ -16,8 +16,9 @@ from roaml.ide.markdown import code, file, lines, name, names, paragraphs, prose
 from roaml.ide.occurrence import Access
 from roaml.ide.occurrences import uses
 from roaml.ide.remark import remark
+from roaml.language import ElementType
 from roaml.model.expand import Constant
-from roaml.model.machine import Chart, Data, Declaration, Handler, Machine, State
+from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import Automaton, System, sanitise
@@ -260,10 +261,16 @@ def occasion(handler: Handler) -> str:
     )
 
 
-def states_of(machine: Machine) -> Iterator[tuple[Chart, State]]:
-    for chart in machine.charts:
-        for each in chart.states:
-            yield chart, each
+_PROTOCOL = {"bt-tick": "tick", "bt-halt": "halt", "bt-status": "response", "bt-halted": "halt_response"}
+"""What a plugin receives from its parent, and answers -> the end of the event's name."""
+
+
+def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
+    """The events of plain SCXML that an element of the tree protocol becomes; "" for other elements."""
+    end = _PROTOCOL.get(type_.receives or type_.sends)
+    nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
+    events = names((f"{node_id(each)}_{end}" for each in nodes), 4)
+    return f"In plain SCXML {events}" if events else ""
 
 
 # -------------------------------------------------------- handles, ports, machines

@@ -238,8 +238,17 @@ def is_main(analysis: Analysis, symbol: Symbol) -> bool:
 def tree_node(analysis: Analysis, symbol: Symbol) -> str:
     """A named node of a tree: what it becomes."""
     inside, _, position = symbol.scope.rpartition(":")
-    found = [automaton.name for _, automaton in instances(analysis, symbol.path, inside, int(position or 0))]
-    return paragraphs(code(f"node {symbol.name}"), f"In JANI automaton {names(found, 4)}" if found else "")
+    return paragraphs(code(f"node {symbol.name}"), becomes(analysis, symbol.path, inside, int(position or 0)))
+
+
+def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
+    """What a node of a file becomes where its tree is executed."""
+    told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
+    rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
+    return paragraphs(*told[:_MOST], rest)
+
+
+_MOST = 3
 
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from roaml.expr.types import Struct, parse_type, resolve_type
 from roaml.ide import describe_language
 from roaml.ide.describe import describe
-from roaml.ide.describe_machine import rate
+from roaml.ide.describe_machine import protocol, rate
 from roaml.ide.find import occurrences_at, systems_of
 from roaml.ide.hover_expression import in_expression
 from roaml.ide.hover_json import global_variable, in_json
 from roaml.ide.hover_system import listed_file, parameter
 from roaml.ide.hover_tree import node_at
 from roaml.ide.markdown import paragraphs
-from roaml.ide.syntax import path_at, xml_file
+from roaml.ide.syntax import XmlFile, path_at, xml_file
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -50,7 +50,7 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
     text, is_property = SEPARATOR.join(known), analysis.kind(path) is FileKind.PROPERTIES
     span = found[0].span if known else None
     for more_span, more in _around(analysis, path, offset, bool(known)):
-        if more:
+        if more and more not in text:
             span = more_span if span is None else span
             text = SEPARATOR.join(filter(None, (more, text))) if is_property else paragraphs(text, more)
     return Hover(span, text) if span is not None and text else None
@@ -63,13 +63,15 @@ def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Itera
         found = global_variable(analysis, path, offset) or (None if has_name else in_json(analysis, path, offset))
         if found is not None:
             yield found
-    elif kind is FileKind.TREE and (node := node_at(analysis, path, offset)):
-        yield node
-    if has_name:
-        return
     file = xml_file(analysis, path)
-    if file is None:
-        return
+    if file is not None and not has_name:
+        yield from _written(analysis, path, file, offset)
+    if kind is FileKind.TREE and (node := node_at(analysis, path, offset)):
+        yield node
+
+
+def _written(analysis: Analysis, path: str, file: XmlFile, offset: int) -> Iterator[tuple[Span, str]]:
+    """What the language says of what is written."""
     found = in_expression(analysis, path, file, offset) or listed_file(analysis, path, offset)
     if found is not None and found[1]:
         yield found
@@ -80,7 +82,7 @@ def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Itera
         return
     for tag in (element.name_span, element.close_name_span):
         if tag is not None and tag.contains(offset):
-            yield tag, describe_language.element(type_)
+            yield tag, paragraphs(describe_language.element(type_), protocol(analysis, path, type_))
             return
     for attribute in element.attributes:
         known = type_.attributes.get(attribute.name)

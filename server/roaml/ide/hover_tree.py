@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from roaml.ide import describe_system
-from roaml.ide.markdown import paragraphs
 from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.text import Span
@@ -19,15 +18,8 @@ def node_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | No
         for position, node in enumerate(nodes(tree)):
             span = name_at(node, offset)
             if span is not None:
-                found = describe_system.instances(analysis, path, tree.id.value if tree.id else "", position)
-                told = dict.fromkeys(describe_system.node(system, each) for system, each in found)
-                shown = list(told)[:_MOST]
-                rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
-                return span, paragraphs(*shown, rest)
+                return span, describe_system.becomes(analysis, path, tree.id.value if tree.id else "", position)
     return None
-
-
-_MOST = 3
 
 
 def name_at(node: TreeNode, offset: int) -> Span | None:

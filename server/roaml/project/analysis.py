@@ -370,11 +370,11 @@ class Analysis:
 
     def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
         """A machine with its types. `events` are the data of plain events, as far as they are known."""
-        machine, source = self.machine(path), self.source(path)
+        machine = self.machine(path)
         assert machine is not None
-        assert source is not None
         known = {name: events[name] for name in _received(machine) if name in events}
-        key = (source.digest, structs.outlines, self.interfaces_of(machine), known)
+        # The machine itself, not its text: what was typed refers to its parts.
+        key = (machine, structs.outlines, self.interfaces_of(machine), known)
         environment = _MachineEnvironment(self, structs, known)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))

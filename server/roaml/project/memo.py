@@ -43,5 +43,11 @@ class Memo:
         self._slots[slot] = (key, result)
         return result
 
+    def copy(self) -> Memo:
+        """The same results, to which others are added here only."""
+        other = Memo()
+        other._slots = dict(self._slots)
+        return other
+
     def clear(self) -> None:
         self._slots.clear()

@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
@@ -26,12 +26,26 @@ _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MOD
 
 
 class Snapshot:
-    """One moment: what is known (`analysis`) and what is wrong (`checker`)."""
+    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are the files in the folders, with
+    those of the editor that were never saved."""
 
-    def __init__(self, analysis: Analysis, checker: Checker, listed: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        analysis: Analysis,
+        checker: Checker,
+        listed: tuple[str, ...],
+        opened: Iterable[str],
+        again: Callable[[Mapping[str, SourceFile]], Snapshot],
+    ) -> None:
         self.analysis = analysis
         self.checker = checker
+        self.listed = tuple(dict.fromkeys((*listed, *opened)))
         self._listed = listed
+        self._again = again
+
+    def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
+        """The same moment with some texts in place of what the files hold."""
+        return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
         """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
@@ -105,14 +119,21 @@ class Workspace:
         self._registry = self._new_registry()
 
     def snapshot(self) -> Snapshot:
-        files = Files(self._disk, self._open)
+        return self._snapshot(self._open, self._memo)
+
+    def _snapshot(self, opened: Mapping[str, SourceFile], memo: Memo) -> Snapshot:
+        def again(texts: Mapping[str, SourceFile]) -> Snapshot:
+            """What might be is looked at with a memory of its own, so that nothing that is is forgotten for it."""
+            return self._snapshot({**opened, **texts}, memo.copy())
+
+        files = Files(self._disk, opened)
         if self._listed is None:
             self._listed = tuple(candidates(self.roots, self.settings.exclude))
-        new = [path for path in self._open if is_candidate(path, self.roots, self.settings.exclude)]
+        new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
-        analysis = Analysis(files, registry, self._memo, systems, self.settings.overrides)
-        return Snapshot(analysis, Checker(analysis, self.settings), self._listed)
+        analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
+        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
 
     def _new_registry(self) -> Registry:
         settings = self.settings
