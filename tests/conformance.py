@@ -56,6 +56,12 @@ def systems() -> tuple[Path, ...]:
 
 
 @cache
+def verified() -> tuple[dict[str, Any], ...]:
+    """The cases with a probability: `model`, `property`, `probability`, `tolerance`, `max_steps`."""
+    return tuple(case for case in _table("cases.toml") if case["verify"])
+
+
+@cache
 def mistakes() -> tuple[Mistake, ...]:
     return tuple(
         Mistake(case["id"], ROOT / "bad" / case["id"], ROOT / case["base"], case["severity"], tuple(case["at"]))

@@ -10,6 +10,8 @@
     system = api.load("main.xml")
     network = api.to_scxml(system)
     model = api.to_jani(system)
+    for answer in api.verify(model, jobs=2):
+        print(answer.question.name, answer.value, answer.bounds)
 
 Nothing here prints or raises for what stands in a user's files; a path that does not exist is a `PathError`.
 """
@@ -18,12 +20,16 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from roaml.diagnostics import Diagnostic
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
+from roaml.jani.reader import read_model
+from roaml.json import parse
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import NO_OVERRIDES, Overrides
@@ -39,8 +45,12 @@ from roaml.project.source_map import source_map as _source_map
 from roaml.project.translation import program_of, properties_of
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.scxml.model import Network
-from roaml.text import SourceFile
+from roaml.text import SourceFile, decode
 from roaml.to_jani import translate
+
+if TYPE_CHECKING:
+    from roaml.smc.model import Checker
+    from roaml.smc.run import Answer, Options
 
 
 class PathError(ValueError):
@@ -229,6 +239,93 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
                 raise PropertyError(f"there is no property {name}; the system has: {known}")
         found = tuple(by_name[name] for name in properties)
     return translate(to_scxml(system), found)
+
+
+class JaniError(ValueError):
+    """A JANI file has errors: `diagnostics`, with places in `source`."""
+
+    def __init__(self, diagnostics: tuple[Diagnostic, ...], source: SourceFile) -> None:
+        super().__init__(f"{diagnostics[0].path}: {diagnostics[0].message}")
+        self.diagnostics = diagnostics
+        self.source = source
+
+
+def read_jani(path: str) -> tuple[Model, SourceFile]:
+    """Read a JANI model; its places are those in the file.
+
+    Raises:
+        PathError: the file cannot be read.
+        JaniError: it is not a JANI model, or has errors.
+    """
+    path = os.path.abspath(path)
+    try:
+        with open(path, "rb") as file:
+            source = decode(path, file.read())
+    except OSError as error:
+        raise PathError(f"{path}: {error.strerror or error}") from None
+    if source.undecodable is not None:
+        raise PathError(f"{path}: it holds bytes that are no text")
+    value, syntax = parse(source.text)
+    model, findings = (None, ()) if syntax else read_model(value, path)
+    diagnostics = tuple(
+        Diagnostic(path, found.code, found.severity or Severity.ERROR, found.span, found.message)
+        for found in (*syntax, *findings)
+    )
+    errors = tuple(diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR)
+    if errors or model is None:
+        raise JaniError(errors or diagnostics, source)
+    return model, source
+
+
+def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
+    """A model made ready to be verified.
+
+    Args:
+        properties: the names of those that will be asked about; all if not given.
+
+    Raises:
+        PropertyError: the model has no property of a name.
+        FaultError: the model or a property is of a kind that cannot be run; see `roaml.smc.fault`.
+    """
+    from roaml.smc.model import Checker  # noqa: PLC0415 - checking and translating start faster without it
+
+    found = model.properties
+    if properties is not None:
+        by_name = {each.name: each for each in found}
+        for name in (properties := tuple(dict.fromkeys(properties))):
+            if name not in by_name:
+                known = ", ".join(by_name) or "none"
+                raise PropertyError(f"there is no property {name}; the model has: {known}")
+        found = tuple(by_name[name] for name in properties)
+    return Checker(model, found)
+
+
+def verify(
+    model: Model,
+    properties: Iterable[str] | None = None,
+    options: Options | None = None,
+    jobs: int = 1,
+    executor: Executor | None = None,
+) -> Iterator[Answer]:
+    """Estimate how probable properties are, by random traces with uniform choices. Answers come one by one.
+
+    Args:
+        properties: their names; all if not given.
+        options: confidence, width of the interval, seed and limits.
+        jobs: processes to use; has no influence on the answers.
+        executor: where to run batches of traces instead.
+
+    Raises:
+        PropertyError: the model has no property of a name.
+        FaultError: the model cannot be run, or did something that has no meaning.
+    """
+    from roaml.smc.pool import Pool  # noqa: PLC0415
+    from roaml.smc.run import Options as _Options  # noqa: PLC0415
+
+    ready = checker(model, properties)
+    with Pool(jobs, executor) as pool:
+        for asked in ready.asked:
+            yield ready.answer(asked, options or _Options(), pool)
 
 
 def source_map(system: LoadedSystem, model: Model) -> SourceMap:

@@ -74,8 +74,11 @@ class Explorer:
                 for ways in itertools.product(*(edge.destinations for edge in edges)):
                     if all(self._possible(way, state) for way in ways):
                         yield self._taken(state, [i for i, _ in sync.participants], ways)
+        for i, location in enumerate(state.locations):
+            for edge in self._enabled(state, i, None) if (location, None) in self.edges[i] else ():
+                yield from (self._taken(state, [i], (way,)) for way in edge.destinations if self._possible(way, state))
 
-    def _enabled(self, state: State, automaton: int, action: str) -> list[Edge]:
+    def _enabled(self, state: State, automaton: int, action: str | None) -> list[Edge]:
         candidates = self.edges[automaton][state.locations[automaton], action]
         known = {**self.globals(state), **self.locals(state, automaton)}
         return [edge for edge in candidates if edge.guard is None or evaluate(edge.guard.exp, known)]

@@ -28,6 +28,7 @@ examples:
   as2fm-lsp format models --check         lay files out, or tell which ones are not
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
   as2fm-lsp translate main.xml            write main.jani; translate --help tells more
+  as2fm-lsp verify main.xml               how probable its properties are; verify --help tells more
   as2fm-lsp                               language server on standard input and output
 
 exit status: 0 nothing found, 1 errors found, 2 wrong use, 3 a failure of the tool itself
@@ -75,6 +76,10 @@ def _dispatch(arguments: Sequence[str]) -> int:
         from as2fm_lsp.cli import translate  # noqa: PLC0415
 
         return translate.run(arguments[1:])
+    if command == "verify":
+        from as2fm_lsp.cli import verify  # noqa: PLC0415
+
+        return verify.run(arguments[1:])
     options = parser().parse_args(arguments)
     if options.explain is not None:
         from as2fm_lsp.cli import explain  # noqa: PLC0415

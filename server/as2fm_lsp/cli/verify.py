@@ -1,0 +1,406 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: do its properties hold, and if not, why?"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
+from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.verification.bar import Bar
+from as2fm_lsp.verification.expectations import Expectation, judge, parse
+from as2fm_lsp.verification.report import Result, as_json, as_junit, as_text
+from as2fm_lsp.verification.state import State, StateError
+from as2fm_lsp.verification.subject import Subject, load
+from as2fm_lsp.write import write_file
+from roaml import api
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.project.settings import ament_prefixes, find_settings
+from roaml.smc.fault import FaultError
+from roaml.smc.goal import Asked, with_threshold
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool, WorkersLostError
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.run import ADAPTIVE, METHODS, SPRT, Options, Tally, summary
+from roaml.text import Location, SourceFile, Span
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp verify main.xml                              all properties, with 95 percent confidence to 0.01
+  as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
+  as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
+  as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
+  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability, by sampling schedulers
+  as2fm-lsp verify main.xml --exact                      the same by Storm, if there are few states
+
+A trace resolves nondeterminism at random: at each step, each edge without action and each combination of edges of a
+synchronisation is one choice, and all enabled choices are equally probable. It ends where nothing is enabled or no
+choice changes anything; then F and U are false, G and W true.
+
+exit status: 0 all expectations are met, 1 one is not or the model has errors, 2 wrong use, 3 a failure of the tool
+itself, 130 interrupted
+"""
+INTERRUPTED = 130
+STANDARD_OUTPUT = "-"
+RUN_TIME = "model-fault"
+"""The code of what a model does wrong while it runs, or that the model checker cannot run."""
+
+
+class UsageError(ValueError):
+    """Something on the command line is wrong; the message says what."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    options = parser().parse_args(arguments)
+    try:
+        return _run(options)
+    except (UsageError, api.PathError, api.PropertyError, StateError, WorkersLostError) as error:
+        return _fail(str(error))
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        return _fail(f"{shown_path(str(error.filename or options.main))}: {error.strerror or error}")
+
+
+def _run(options: argparse.Namespace) -> int:
+    expectations = _expectations(options.expect)
+    settings_found, problems = find_settings(os.path.abspath(options.main))
+    if problems:
+        raise UsageError(problems[0])
+    settings = replace(settings_found, ament_prefixes=ament_prefixes())
+    try:
+        with Progress() as progress:
+            progress.stage("reading and translating")
+            subject = load(options.main, options.ros_path, settings)
+            names = options.property or None
+            if names is not None:
+                names = [*names, *(each.name for each in expectations)]
+            known = {each.name for each in subject.model.properties}
+            for each in expectations:
+                if each.name not in known:
+                    raise api.PropertyError(f"there is no property {each.name}, of which something is expected")
+            progress.stage("compiling")
+            checker = api.checker(subject.model, names)
+    except api.ModelError as error:
+        return _errors(options, error.result.diagnostics, error.result.source)
+    except api.JaniError as error:
+        source = error.source
+        return _errors(options, error.diagnostics, lambda _: source)
+    except FaultError as fault:
+        return _fault(options, subject, fault, [])
+    if not checker.asked:
+        raise UsageError(f"{shown_path(options.main)} has no properties")
+    return _Verification(options, subject, checker, expectations).run()
+
+
+class _Verification:
+    """One call of the command, after everything is read."""
+
+    def __init__(
+        self, options: argparse.Namespace, subject: Subject, checker: Checker, expectations: list[Expectation]
+    ) -> None:
+        self.options = options
+        self.subject = subject
+        self.checker = checker
+        self.expectations = expectations
+        self.limits = Options(
+            confidence=options.confidence,
+            epsilon=options.epsilon,
+            max_traces=options.max_traces,
+            max_steps=options.max_steps,
+            seed=options.seed,
+            method=options.method,
+        )
+        self.state = None if options.resume is None else State(options.resume, self.limits)
+        self.results: list[Result] = []
+
+    def run(self) -> int:
+        asked = [self._with_threshold(each) for each in self.checker.asked]
+        interrupted = False
+        try:
+            with _executor(self.options.dask) as (executor, workers), Bar() as bar:
+                for each in asked:
+                    with Pool(workers or self.options.jobs, executor) as pool:
+                        result = self._answer(each, pool, bar)
+                    self.results.append(result)
+                    if result.is_interrupted:
+                        interrupted = True
+                        break
+        except FaultError as fault:
+            return _fault(self.options, self.subject, fault, self.results)
+        self._print()
+        status = INTERRUPTED if interrupted else CLEAN if all(r.is_met for r in self.results) else FOUND
+        if not interrupted and (self.options.traces is not None or self.options.explain):
+            self._tell(asked)
+        return status
+
+    def _with_threshold(self, asked: Asked) -> Asked:
+        """The question with the first number that it is compared with, for the sequential test."""
+        if asked.question.threshold is None:
+            for expectation in self.expectations:
+                if expectation.name == asked.question.name:
+                    return replace(asked, question=with_threshold(asked.question, expectation.threshold))
+        return asked
+
+    def _expected(self, asked: Asked) -> Iterator[Expectation]:
+        own = [each for each in self.expectations if each.name == asked.question.name]
+        threshold = asked.question.threshold
+        if threshold is not None and not any(each.threshold == threshold for each in own):
+            yield Expectation(asked.question.name, threshold, is_own=True)
+        yield from own
+
+    def _answer(self, asked: Asked, pool: Pool, bar: Bar) -> Result:
+        began = time.monotonic()
+        name = asked.question.name
+        if self.options.exact:
+            return self._exact(asked, began)
+        if self.limits.method == SPRT and (asked.question.threshold is None or asked.question.is_reward):
+            raise UsageError(f"{name} is compared with no number, which a sequential test needs; use --expect")
+        tally = Tally()
+        payload = self.checker.payload(asked)
+        if self.state is not None:
+            tally = self.state.tally(name, payload)
+        bar.begin(asked.question, self.limits, tally)
+        interrupted = False
+
+        def watch(found: Tally) -> None:
+            bar.watch(found)
+            if self.state is not None:
+                self.state.keep(name, payload, found)
+
+        try:
+            if self.options.scheduler == "lss":
+                extremes = self.checker.extremes(asked, self.limits, pool, pulse=bar.pulse)
+                return Result(name, None, (), time.monotonic() - began, extremes=extremes)
+            answer = self.checker.answer(asked, self.limits, pool, tally, watch, bar.pulse)
+        except KeyboardInterrupt:
+            if self.options.scheduler == "lss":
+                raise
+            interrupted = True
+            answer = summary(asked.question, self.limits, tally)
+        if self.state is not None:
+            self.state.keep(name, payload, tally, now=True)
+        verdicts = tuple(judge(each, answer) for each in self._expected(asked))
+        return Result(name, answer, verdicts, time.monotonic() - began, interrupted)
+
+    def _exact(self, asked: Asked, began: float) -> Result:
+        from as2fm_lsp.verification.exactly import ExactError, exactly, judged  # noqa: PLC0415
+
+        try:
+            found = exactly(self.checker, asked, self.options.max_states)
+        except ExactError as error:
+            raise UsageError(f"{asked.question.name}: {error}") from None
+        verdicts = tuple(judged(each, found) for each in self._expected(asked))
+        return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=found)
+
+    def _print(self) -> None:
+        text = self._text()
+        print_text(text, None if self.options.format == "text" else "utf-8")
+        sys.stdout.flush()
+
+    def _text(self) -> str:
+        if self.options.format == "json":
+            return as_json(self.results)
+        if self.options.format == "junit":
+            return as_junit(self.results, shown_path(self.options.main))
+        note = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        if self.options.exact:
+            note = "computed by Storm over all ways to resolve nondeterminism"
+        elif self.options.scheduler == "lss":
+            note = f"{self.limits.confidence:g} confidence for each scheduler found; there may be better ones"
+        return as_text(self.results, note)
+
+    def _tell(self, asked: Sequence[Asked]) -> None:
+        """Write traces and stories."""
+        from as2fm_lsp.verification.traces import write_traces  # noqa: PLC0415
+        from roaml.smc.record import Recorder  # noqa: PLC0415
+        from roaml.smc.story import Story, tell  # noqa: PLC0415
+
+        stories: list[Story] = []
+        for each, result in zip(asked, self.results, strict=True):
+            if result.answer is None:
+                continue
+            recorder = Recorder(self.checker, each, self.limits.seed, self.limits.max_steps)
+            if self.options.traces is not None:
+                write_traces(self.options.traces, self.subject, recorder, result.answer, self.options.traces_limit)
+            if self.options.explain:
+                expected = [verdict.expectation.threshold for verdict in result.verdicts]
+                wanted = TRUE if expected and not any(threshold.is_lower for threshold in expected) else FALSE
+                shortest = result.answer.tally.shortest
+                seen = shortest.get(wanted) or shortest.get(UNKNOWN)
+                if seen is None:
+                    what = "fails" if wanted == FALSE else "holds"
+                    print(f"{result.name}: there is no trace in which it {what}", file=sys.stderr)
+                else:
+                    stories.append(tell(recorder, seen.trace, self.subject.clock))
+        for target in self.options.explain:
+            self._write_stories(stories, target)
+
+    def _write_stories(self, stories: Sequence[Any], target: str) -> None:
+        from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
+        from roaml.views.story import as_text as story_text  # noqa: PLC0415
+
+        def place_of(origin: Location) -> str:
+            path, line, _ = self.subject.place(origin) or ("", 0, 0)
+            return f"{shown_path(path)}:{line}"
+
+        if target.endswith(".html"):
+            text = as_html(stories, place_of, shown_path(self.options.main))
+        elif target.endswith(".mmd"):
+            text = "\n".join(as_mermaid(story, place_of) for story in stories)
+        else:
+            text = "\n".join(story_text(story, place_of) for story in stories)
+        if target == STANDARD_OUTPUT:
+            # Programs read standard output; the story is for people.
+            print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
+        else:
+            write_file(target, text)
+
+
+@contextmanager
+def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
+    """Where batches run: here, or on a Dask cluster; and how many workers that has."""
+    if address is None:
+        yield None, 0
+        return
+    try:
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError:
+        raise UsageError("--dask needs the package distributed: pip install 'as2fm-lsp[dask]'") from None
+    try:
+        client = distributed.Client(address, timeout=10)
+    except OSError as error:
+        raise UsageError(f"there is no Dask scheduler at {address}: {error}") from None
+    with client:
+        yield client.get_executor(), max(1, sum(client.nthreads().values()))
+
+
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(
+        prog="as2fm-lsp verify",
+        description="Estimate by random traces how probable the properties of a system or JANI model are.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    result.add_argument("main", metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
+    add = result.add_argument
+    add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
+    add("--expect", action="append", default=[], metavar="'NAME >= P'", help="exit with 1 unless it is so")
+    add("--confidence", type=_share, default=0.95, metavar="C", help="that the true value is in the interval (0.95)")
+    add("--epsilon", type=_share, default=0.01, metavar="E", help="half the width of the interval (0.01); of an "
+        "expected reward in parts of its value")  # fmt: skip
+    add("--method", choices=METHODS, default=ADAPTIVE, help="adaptive: until the interval is narrow enough; okamoto: a "
+        "fixed number of traces; sprt: until a threshold is decided; fixed: --max-traces traces")  # fmt: skip
+    add("--max-traces", type=_positive, metavar="N", help="no more traces than that")
+    add("--max-steps", type=_positive, default=1_000_000, metavar="N", help="traces that are not decided after so many "
+        "steps stay undecided (1000000)")  # fmt: skip
+    add("--seed", type=_natural, default=0, metavar="N", help="other traces for another number (0)")
+    add("--jobs", type=_positive, default=_processors(), metavar="N", help="processes; no influence on results")
+    add("--scheduler", choices=("uniform", "lss"), default="uniform", help="how nondeterminism is resolved: at random, "
+        "or by schedulers that make the probability small or great")  # fmt: skip
+    add("--exact", action="store_true", help="compute the least and greatest probability with Storm (needs stormpy)")
+    add("--max-states", type=_positive, default=200_000, metavar="N", help="with --exact: refuse more states (200000)")
+    add("--resume", metavar="FILE", help="keep what is known in FILE, and go on from it if it is there")
+    add("--traces", metavar="DIR", help="write traces as CSV and JSON")
+    add("--traces-limit", type=_natural, default=10, metavar="N", help="so many of each verdict (10)")
+    add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
+        help="tell the shortest failing trace, as text or into FILE.txt, FILE.mmd (Mermaid) or FILE.html")  # fmt: skip
+    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
+    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+    add("--format", default="text", choices=("text", "json", "junit"), help="how results are written")
+    return result
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+def _share(text: str) -> float:
+    value = float(text)
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError("a number between 0 and 1 is expected")
+    return value
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if not 1 <= value < 1 << 62:
+        raise argparse.ArgumentTypeError("a whole number from 1 on is expected")
+    return value
+
+
+def _natural(text: str) -> int:
+    value = int(text)
+    if not 0 <= value < 1 << 63:
+        raise argparse.ArgumentTypeError("a whole number from 0 to 2^63 - 1 is expected")
+    return value
+
+
+def _story_file(text: str) -> str:
+    if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
+        raise argparse.ArgumentTypeError(f"'{text}' does not end in .txt, .mmd or .html; MAIN.xml stands first")
+    return text
+
+
+def _expectations(texts: Sequence[str]) -> list[Expectation]:
+    try:
+        return [parse(text) for text in texts]
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError, results: Sequence[Result]) -> int:
+    """What a model does wrong while it runs: with its place, and the trace that shows it."""
+    message = fault.message
+    if fault.trace is not None:
+        message += f" (in trace {fault.trace} of seed {options.seed})"
+    origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
+    diagnostic = Diagnostic(origin.path, RUN_TIME, Severity.ERROR, origin.span, message)
+    if fault.origin is None and not options.main.endswith(".jani"):
+        print(f"as2fm-lsp: {shown_path(options.main)}: {message}", file=sys.stderr)
+        if options.format == "json":
+            print_text(as_json(results, [{"message": message}]), "utf-8")
+        return FOUND
+    return _errors(options, (diagnostic,), subject.source_of, results)
+
+
+def _errors(
+    options: argparse.Namespace,
+    diagnostics: Sequence[Diagnostic],
+    source_of: Callable[[str], SourceFile],
+    results: Sequence[Result] = (),
+) -> int:
+    entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
+    files = len({each.file for each in entries})
+    report = Report(entries, files, color=takes_color(sys.stderr))
+    if options.format == "json":
+        print_text(as_json(results, [_row(each) for each in entries]), "utf-8")
+    elif options.format == "junit":
+        print_text(FORMATS["junit"](report), "utf-8")
+    else:
+        print_text(FORMATS["text"](report), stream=sys.stderr)
+    return FOUND
+
+
+def _row(each: Entry) -> dict[str, Any]:
+    place = each.place
+    return {"file": each.file, "line": place.line, "column": place.column, "code": each.code, "message": each.message}
+
+
+def _fail(message: str) -> int:
+    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    return USAGE

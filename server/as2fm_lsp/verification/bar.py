@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far a verification is, on one line of a terminal."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import sys
+import time
+from types import TracebackType
+
+from roaml.smc.goal import Question
+from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
+
+PAUSE = 0.1
+"""Seconds between two pictures."""
+PATIENCE = 0.7
+"""Seconds before the first one."""
+WIDTH = 20
+_CLEAR = "\r\033[K"
+
+
+class Bar:
+    """Within `with`; shows nothing where standard error is no terminal. The line is gone at the end."""
+
+    def __init__(self) -> None:
+        self._is_shown = False
+        self._is_wanted = sys.stderr.isatty()
+        self._next = time.monotonic() + PATIENCE
+        self._question: Question | None = None
+        self._options = Options()
+        self._tally = Tally()
+        self._began = time.monotonic()
+        self._first = 0
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        if self._is_shown:
+            sys.stderr.write(_CLEAR)
+            sys.stderr.flush()
+
+    def begin(self, question: Question, options: Options, tally: Tally) -> None:
+        """What is shown from here on."""
+        self._question, self._options, self._tally = question, options, tally
+        self._began, self._first = time.monotonic(), tally.traces
+
+    def watch(self, tally: Tally) -> None:
+        """A batch has come in."""
+        self._tally = tally
+        self._show()
+
+    def pulse(self, trace: int, steps: int) -> None:
+        """A trace is at so many steps."""
+        self._show(f", trace {trace:,} at step {steps:,}" if steps else "")
+
+    def _show(self, more: str = "") -> None:
+        now = time.monotonic()
+        if not self._is_wanted or now < self._next or self._question is None:
+            return
+        self._next = now + PAUSE
+        self._is_shown = True
+        width = shutil.get_terminal_size().columns - 1
+        text = line(self._question, self._options, self._tally, now - self._began, self._first) + more
+        sys.stderr.write(_CLEAR + text[:width])
+        sys.stderr.flush()
+
+
+def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
+    """The line: name, bar, traces, the estimate so far, the time that is left."""
+    if tally.traces == 0:
+        return f"{question.name} …"
+    share = progress(question, options, tally)
+    full = int(share * WIDTH)
+    lower, upper = bounds_of(tally, question, options)
+    value = tally.mean.mean if question.is_reward else (tally.successes + tally.undecided / 2) / tally.traces
+    text = f"{question.name} {'━' * full}{'─' * (WIDTH - full)} {share:4.0%}  {tally.traces:,} traces"
+    text += f"  {value:.4g} [{lower:.4g}, {upper:.4g}]"
+    made = tally.traces - first
+    if seconds > 1 and 0 < share < 1 and made:
+        text += f"  {_duration(seconds / made * tally.traces * (1 - share) / share)} left"
+    return text
+
+
+def progress(question: Question, options: Options, tally: Tally) -> float:
+    """The part of the work that is done, between 0 and 1."""
+    wanted = wanted_traces(options)
+    if wanted is None:
+        half = bounds_of(tally, question, options).half_width
+        target = options.epsilon * (max(abs(tally.mean.mean), 1e-9) if question.is_reward else 1)
+        # The interval narrows with the root of the number of traces.
+        share = 0.0 if math.isinf(half) or math.isnan(half) else 1.0 if half <= target else (target / half) ** 2
+    else:
+        share = tally.traces / wanted
+    if options.max_traces is not None:
+        share = max(share, tally.traces / options.max_traces)
+    return min(1.0, share)
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"

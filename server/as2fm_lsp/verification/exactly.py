@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The least and the greatest value over all schedulers, by Storm (https://www.stormchecker.org), where there are few
+states: they are counted first."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from typing import Any
+
+from as2fm_lsp.verification.expectations import Expectation, Verdict
+from as2fm_lsp.verification.report import Exact
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.writer import write
+from roaml.smc.explore import Explorer, StateFaultError, TooManyStatesError
+from roaml.smc.goal import Asked
+from roaml.smc.model import Checker
+
+
+class ExactError(ValueError):
+    """There is no exact answer; the message says why."""
+
+
+def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
+    """The exact least and greatest value of a property.
+
+    Args:
+        limit: more states are refused.
+
+    Raises:
+        ExactError: there are too many states, Storm is not there, or it does not know the model's features.
+        FaultError: the model did something that has no meaning.
+    """
+    try:
+        stormpy: Any = importlib.import_module("stormpy")
+    except ImportError:
+        raise ExactError("--exact needs the package stormpy: pip install 'as2fm-lsp[exact]'") from None
+    if asked.goal.is_bounded:
+        raise ExactError("step bounds are not computed exactly; leave --exact out")
+    try:
+        states = len(Explorer(checker.compiled(asked)).reachable(limit))
+    except TooManyStatesError:
+        message = f"there are more than {limit:,} states (--max-states); leave --exact out to estimate"
+        raise ExactError(message) from None
+    except StateFaultError as error:
+        raise checker.fault(error.problem) from None
+    document = json.loads("".join(write(checker.model)))
+    (property_,) = (each for each in document["properties"] if each["name"] == asked.question.name)
+    found = []
+    for operator in ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax"):
+        expression = _inner(property_["expression"])
+        expression["op"] = operator
+        whole = {"op": "filter", "fun": "values", "values": expression, "states": {"op": "initial"}}
+        document["properties"] = [{"name": property_["name"], "expression": whole}]
+        try:
+            model, properties = stormpy.parse_jani_model_from_string(json.dumps(document))
+            built = stormpy.build_model(model, properties)
+            result = stormpy.model_checking(built, properties[0], only_initial_states=True)
+            found.append(float(result.get_value(built.initial_states[0])))
+        except (RuntimeError, IndexError) as error:
+            raise ExactError(f"Storm cannot answer: {error}") from None
+    return Exact(found[0], found[1], states)
+
+
+def judged(expectation: Expectation, exact: Exact) -> Verdict:
+    """Whether an expectation holds under all schedulers."""
+    threshold = expectation.threshold
+    both = (exact.least, exact.greatest)
+    if threshold.relation is BinaryOperator.EQUAL:
+        met = all(abs(value - threshold.number) <= 1e-6 for value in both)
+    else:
+        slack = 1e-6 if threshold.relation in (BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER_EQUAL) else 0.0
+        met = all(threshold.met(value + slack) or threshold.met(value - slack) for value in both)
+    return Verdict(expectation, met, True)
+
+
+def _inner(formula: dict[str, Any]) -> dict[str, Any]:
+    """The probability or reward inside of filters and comparisons."""
+    while formula["op"] not in ("Pmin", "Pmax", "Emin", "Emax"):
+        if formula["op"] == "filter":
+            formula = formula["values"]
+        else:
+            formula = formula["left"] if isinstance(formula["left"], dict) else formula["right"]
+    return formula

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`NAME >= 0.95`: what somebody expects of a property, and whether it is so.
+
+Judged by the estimate, and against it: undecided traces count as if each had gone the wrong way. That the interval
+reaches over the number is told, but decides nothing: no number of traces could ever show that a probability is 1.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from roaml.jani.operators import BinaryOperator
+from roaml.smc.goal import Threshold
+from roaml.smc.run import Answer
+
+_RELATIONS = {
+    ">=": BinaryOperator.GREATER_EQUAL,
+    "≥": BinaryOperator.GREATER_EQUAL,
+    "<=": BinaryOperator.LESS_EQUAL,
+    "≤": BinaryOperator.LESS_EQUAL,
+    ">": BinaryOperator.GREATER,
+    "<": BinaryOperator.LESS,
+    "==": BinaryOperator.EQUAL,
+    "=": BinaryOperator.EQUAL,
+}
+_FORM = re.compile(r"\s*(.+?)\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """That the value of a property is in some relation to a number. `is_own`: the property itself says so."""
+
+    name: str
+    threshold: Threshold
+    is_own: bool = False
+
+    @property
+    def text(self) -> str:
+        return f"{self.threshold.relation.symbol} {self.threshold.number:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an expectation is met; `is_certain` if the whole interval says the same."""
+
+    expectation: Expectation
+    is_met: bool
+    is_certain: bool
+
+
+def parse(text: str) -> Expectation:
+    """
+    Raises:
+        ValueError: this is not of the form; the message says so.
+    """
+    match = _FORM.fullmatch(text)
+    try:
+        number = float(match[3]) if match else math.nan
+    except ValueError:
+        number = math.nan
+    if match is None or math.isnan(number):
+        raise ValueError(f"an expectation is written like 'NAME >= 0.95', not '{text}'")
+    return Expectation(match[1], Threshold(_RELATIONS[match[2]], number))
+
+
+def judge(expectation: Expectation, answer: Answer) -> Verdict:
+    """Hold an answer against what was expected."""
+    threshold, tally = expectation.threshold, answer.tally
+    if tally.traces == 0:
+        return Verdict(expectation, False, False)
+    if tally.accepted is not None and answer.question.threshold == threshold:
+        return Verdict(expectation, tally.accepted, True)
+    lower, upper = answer.bounds
+    if threshold.relation is BinaryOperator.EQUAL:
+        near = abs(answer.value - threshold.number) <= answer.options.epsilon + 1e-12
+        return Verdict(expectation, near, not lower <= threshold.number <= upper)
+    if answer.question.is_reward:
+        value = answer.value
+    elif threshold.is_lower:
+        value = tally.successes / tally.traces
+    else:
+        value = (tally.successes + tally.undecided) / tally.traces
+    met = threshold.met(value)
+    return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper))

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The answers, for people, programs and continuous integration."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from as2fm_lsp.verification.expectations import Verdict
+from roaml.smc.lss import Extremes
+from roaml.smc.run import Answer
+
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+@dataclass(frozen=True, slots=True)
+class Exact:
+    """The least and the greatest value over all schedulers, and the number of states."""
+
+    least: float
+    greatest: float
+    states: int
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of one property.
+
+    Attributes:
+        answer: by traces; None if only exact values were asked for.
+        seconds: how long it took.
+        is_interrupted: whether somebody could not wait.
+    """
+
+    name: str
+    answer: Answer | None
+    verdicts: tuple[Verdict, ...]
+    seconds: float
+    is_interrupted: bool = False
+    extremes: Extremes | None = None
+    exact: Exact | None = None
+
+    @property
+    def is_met(self) -> bool:
+        return all(verdict.is_met for verdict in self.verdicts)
+
+
+def as_text(results: Sequence[Result], note: str) -> str:
+    """For people; `note` says what holds for all of them."""
+    blocks = [_block(result) for result in results]
+    return "".join(f"{block}\n" for block in blocks) + (f"{note}\n" if note else "")
+
+
+def _block(result: Result) -> str:
+    lines = []
+    if result.exact is not None:
+        exact = result.exact
+        both = _number(exact.least)
+        if exact.least != exact.greatest:
+            both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
+        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states")
+    if result.extremes is not None:
+        for what, found, by in (
+            ("least", result.extremes.least, result.extremes.least_by),
+            ("greatest", result.extremes.greatest, result.extremes.greatest_by),
+        ):
+            lines.append(f"{result.name}: {what} probability found {_estimate(found)} by scheduler {by}")
+    elif result.answer is not None:
+        lines.append(f"{result.name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
+        lines += _remarks(result)
+    for verdict in result.verdicts:
+        text = f"  expected {verdict.expectation.text}: {'met' if verdict.is_met else 'NOT MET'}"
+        if not verdict.is_certain and result.answer is not None:
+            text += f", though the interval reaches over {verdict.expectation.threshold.number:g}"
+        lines.append(text)
+    return "\n".join(lines)
+
+
+def _estimate(answer: Answer) -> str:
+    tally, (lower, upper) = answer.tally, answer.bounds
+    if tally.traces == 0:
+        return "nothing is known yet"
+    what = "infinite" if math.isinf(answer.value) else _number(answer.value)
+    interval = f" in [{_number(lower)}, {_number(upper)}]"
+    counts = f"{tally.traces:,} traces: {tally.successes:,} passed, {answer.failures:,} failed"
+    if tally.undecided:
+        counts += f", {tally.undecided:,} undecided"
+    return f"{what}{interval} from {counts}"
+
+
+def _remarks(result: Result) -> list[str]:
+    answer = result.answer
+    assert answer is not None
+    lines = []
+    if answer.question.is_reward and answer.failures:
+        lines.append("  infinite: some traces never reach what the reward is counted to")
+    if answer.tally.undecided:
+        steps = f"{answer.options.max_steps:,}"
+        lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
+    if result.is_interrupted:
+        lines.append("  interrupted; this is what was known by then")
+    elif not answer.is_complete:
+        lines.append("  the interval is wider than asked for (--epsilon)")
+    return lines
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "∞" if value > 0 else "-∞"
+    return f"{value:.6g}"
+
+
+def as_json(results: Sequence[Result], errors: Sequence[dict[str, Any]] = ()) -> str:
+    """For programs."""
+    value: dict[str, Any] = {"results": [_row(result) for result in results]}
+    if errors:
+        value["errors"] = list(errors)
+    return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
+
+
+def _row(result: Result) -> dict[str, Any]:
+    row: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+    if result.answer is not None:
+        row.update(_answer(result.answer))
+    if result.extremes is not None:
+        found = result.extremes
+        row["least"] = {**_answer(found.least), "scheduler": found.least_by}
+        row["greatest"] = {**_answer(found.greatest), "scheduler": found.greatest_by}
+    if result.exact is not None:
+        exact = result.exact
+        row["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
+    row["interrupted"] = result.is_interrupted
+    row["expectations"] = [
+        {"expected": verdict.expectation.text, "met": verdict.is_met, "certain": verdict.is_certain}
+        for verdict in result.verdicts
+    ]
+    return row
+
+
+def _answer(answer: Answer) -> dict[str, Any]:
+    tally, (lower, upper) = answer.tally, answer.bounds
+    return {
+        "expected_value" if answer.question.is_reward else "probability": _finite(answer.value),
+        "lower": _finite(lower),
+        "upper": _finite(upper),
+        "traces": tally.traces,
+        "passed": tally.successes,
+        "failed": answer.failures,
+        "undecided": tally.undecided,
+        "steps": tally.steps,
+        "complete": answer.is_complete,
+        "confidence": answer.options.confidence,
+        "epsilon": answer.options.epsilon,
+        "method": answer.options.method,
+        "seed": answer.options.seed,
+        "max_steps": answer.options.max_steps,
+    }
+
+
+def _finite(value: float) -> float | str | None:
+    """JSON has no infinite numbers."""
+    if math.isnan(value):
+        return None
+    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"
+
+
+def as_junit(results: Sequence[Result], title: str) -> str:
+    """A test for each property; it fails if an expectation is not met."""
+    failures = sum(not result.is_met for result in results)
+    counts = {"tests": str(len(results)), "failures": str(failures), "errors": "0"}
+    suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
+    suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
+    for result in results:
+        names = {"classname": _clean(title), "name": _clean(result.name), "time": f"{result.seconds:.3f}"}
+        case = ET.SubElement(suite, "testcase", names)
+        text = _clean(_block(result))
+        if result.is_met:
+            ET.SubElement(case, "system-out").text = text
+        else:
+            missed = [v.expectation.text for v in result.verdicts if not v.is_met]
+            ET.SubElement(case, "failure", {"message": f"expected {' and '.join(missed)}"}).text = text
+    ET.indent(suites)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
+
+
+def _clean(text: str) -> str:
+    return _FORBIDDEN.sub("\ufffd", text)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Traces as files: CSV for plotting, and JSON with the places that each step exists for.
+
+CSV has a line for each state, the first one included, and a column for its number, the time in seconds where the model
+has a clock, and each global variable; an array has a column for each of its elements; true is 1, false 0.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator
+
+from as2fm_lsp.verification.subject import Subject
+from as2fm_lsp.write import write_file
+from roaml.jani.node import Origin
+from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
+from roaml.smc.run import Answer, Seen
+
+LIMIT = 10
+"""Traces of each verdict, if nothing else is said."""
+_UNSAFE = re.compile(r"[^\w.-]")
+
+
+def write_traces(folder: str, subject: Subject, recorder: Recorder, answer: Answer, limit: int = LIMIT) -> list[str]:
+    """Write the first traces of each verdict, and the shortest; the files' names.
+
+    Raises:
+        OSError: a file cannot be written; it is not there then, those before are whole.
+    """
+    os.makedirs(folder, exist_ok=True)
+    written = []
+    for verdict, examples in answer.tally.examples.items():
+        chosen = dict.fromkeys(seen.trace for seen in examples[:limit])
+        shortest: Seen | None = answer.tally.shortest.get(verdict)
+        if shortest is not None and limit:
+            chosen[shortest.trace] = None
+        for trace in sorted(chosen):
+            name = f"{_UNSAFE.sub('_', answer.question.name)}-{trace:07}-{VERDICTS[verdict]}"
+            texts = {"csv": csv_lines(recorder, trace, subject.clock), "json": json_lines(subject, recorder, trace)}
+            for extension, lines in texts.items():
+                path = os.path.join(folder, f"{name}.{extension}")
+                write_file(path, lines)
+                written.append(path)
+    return written
+
+
+def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Iterator[str]:
+    """The lines of a trace."""
+    storages = recorder.shared
+    names = [storage.name for storage in storages]
+    places = None if clock is None else (names.index(clock[0]), names.index(clock[1]))
+
+    def row(number: int, values: list[Plain]) -> str:
+        cells = [str(number)]
+        if places is not None:
+            seconds, nanoseconds = values[places[0]], values[places[1]]
+            assert not isinstance(seconds, list)
+            assert not isinstance(nanoseconds, list)
+            cells.append(_cell(seconds + nanoseconds / 1e9))
+        cells += (_cell(each) for value in values for each in _cells(value))
+        return ",".join(cells) + "\n"
+
+    start = recorder.initial(storages)
+    header = ["step", *(() if places is None else ("time",))]
+    for name, value in zip(names, start, strict=True):
+        header += (_quoted(name + suffix) for suffix in _suffixes(value))
+    yield ",".join(header) + "\n"
+    yield row(0, start)
+    for step in recorder.walk(Recording(trace)):
+        yield row(step.number, recorder.values(storages))
+
+
+def json_lines(subject: Subject, recorder: Recorder, trace: int) -> Iterator[str]:
+    """The text of a trace: one line for each step."""
+    recording = Recording(trace)
+    start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
+    yield "{\n"
+    yield f' "property": {_json(recorder.asked.question.name)},\n "trace": {trace},\n "seed": {recorder.seed},\n'
+    yield f' "initial": {_json(start)},\n "steps": ['
+    comma = "\n  "
+    for step in recorder.walk(recording):
+        yield comma + _json(step_row(subject, recorder, step))
+        comma = ",\n  "
+    yield f'\n ],\n "verdict": {_json(VERDICTS.get(recording.verdict, "fault"))}\n}}\n'
+
+
+def step_row(subject: Subject, recorder: Recorder, step: TraceStep) -> dict[str, object]:
+    """A step as a value for JSON."""
+    automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
+    return {
+        "step": step.number,
+        "action": step.action,
+        "moves": [
+            {
+                "automaton": part.automaton,
+                "from": part.source,
+                "to": part.destination.location,
+                "action": part.edge.action,
+                **_place(subject, part.edge.origin),
+            }
+            for part in step.parts
+        ],
+        "changes": [
+            {
+                "variable": change.variable.name,
+                **({} if change.variable.instance < 0 else {"automaton": automata[change.variable.instance]}),
+                "value": change.after,
+            }
+            for change in step.changes
+        ],
+    }
+
+
+def _place(subject: Subject, origin: Origin | None) -> dict[str, object]:
+    place = subject.place(origin)
+    if place is None:
+        return {}
+    path, line, column = place
+    folder = os.path.dirname(os.path.abspath(subject.path))
+    return {"file": os.path.relpath(path, folder).replace(os.sep, "/"), "line": line, "column": column}
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _cells(value: Plain) -> Iterator[bool | int | float]:
+    if isinstance(value, list):
+        for each in value:
+            yield from _cells(each)
+    else:
+        yield value
+
+
+def _suffixes(value: Plain) -> Iterator[str]:
+    if isinstance(value, list):
+        for position, each in enumerate(value):
+            yield from (f"[{position}]{more}" for more in _suffixes(each))
+    else:
+        yield ""
+
+
+def _cell(value: bool | int | float) -> str:
+    return str(int(value)) if isinstance(value, bool) else repr(value)
+
+
+def _quoted(name: str) -> str:
+    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\n') else name

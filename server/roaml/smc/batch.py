@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Batches: pure functions of a compiled model, a seed and a range of trace numbers, for any executor."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import signal
+from array import array
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+from roaml.smc.kernel import Kernel
+from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
+
+SLICE = 200_000
+"""Steps after which Python has a moment, to see an interrupt: some hundredths of a second."""
+
+
+class Payload(NamedTuple):
+    """A compiled model and goal, packed once for all batches."""
+
+    digest: str
+    data: bytes
+
+
+class Problem(NamedTuple):
+    """What went wrong in a trace; see `Kernel.problem`."""
+
+    trace: int
+    code: int
+    at: int
+    value: int
+    size: int
+    real: float
+
+
+class Task(NamedTuple):
+    """The traces `first` to `first + size - 1`, none longer than `max_steps`, by `scheduler` (0: uniform)."""
+
+    payload: Payload
+    seed: int
+    first: int
+    size: int
+    max_steps: int
+    scheduler: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What came of a batch: for each trace FALSE, TRUE or UNKNOWN, its steps, and for questions about rewards its
+    reward. A problem ends the batch; the trace that has it is not counted."""
+
+    verdicts: bytes
+    steps: Ints
+    rewards: Reals
+    problem: Problem | None = None
+
+
+def pack(compiled: Compiled) -> Payload:
+    """A compiled model as a worker is sent it."""
+    digest = hashlib.sha256()
+    for part in (compiled.program, compiled.goal):
+        for field in fields(part):
+            value = getattr(part, field.name)
+            digest.update(value.tobytes() if isinstance(value, array) else repr(value).encode())
+            digest.update(field.name.encode())
+    return Payload(digest.hexdigest(), pickle.dumps(compiled))
+
+
+_kernels: dict[str, Kernel] = {}
+
+
+def kernel_of(payload: Payload) -> Kernel:
+    """The kernel of a payload; the last one is kept."""
+    if payload.digest not in _kernels:
+        compiled: Compiled = pickle.loads(payload.data)
+        _kernels.clear()
+        _kernels[payload.digest] = Kernel(compiled.program, compiled.goal)
+    return _kernels[payload.digest]
+
+
+def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
+    """Run the traces of a batch.
+
+    Args:
+        pulse: told now and then the number of the trace and its steps; what it raises ends the batch.
+    """
+    kernel = kernel_of(task.payload)
+    verdicts, steps, rewards = bytearray(), array("q"), array("d")
+    for trace in range(task.first, task.first + task.size):
+        verdict = kernel.begin(task.seed, trace, task.scheduler)
+        limit = 0
+        while verdict == UNKNOWN and limit < task.max_steps:
+            limit = min(limit + SLICE, task.max_steps)
+            verdict = kernel.advance(limit)
+            if pulse is not None and (limit > SLICE or not trace & 63):
+                pulse(trace, limit)
+        if verdict == FAULTY:
+            return Outcome(bytes(verdicts), steps, rewards, Problem(trace, *kernel.problem()))
+        length, _, reward = kernel.outcome()
+        verdicts.append(verdict)
+        steps.append(length)
+        rewards.append(reward)
+    return Outcome(bytes(verdicts), steps, rewards)
+
+
+def start_worker() -> None:
+    """Let the main process alone be interrupted by the keyboard: it ends its workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A property -> what is asked about each trace, and what is asked about all of them together.
+
+Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
+exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from dataclasses import dataclass, replace
+
+from roaml.jani.expressions import Expression, Unary
+from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.jani.properties import (
+    Accumulation,
+    BinaryFormula,
+    BinaryPath,
+    BinaryPathOperator,
+    Expectation,
+    Filter,
+    FilterFunction,
+    Formula,
+    Interval,
+    PathBounds,
+    Predicate,
+    Probability,
+    ProperFormula,
+    Property,
+    StatePredicate,
+    UnaryFormula,
+    UnaryPath,
+    UnaryPathOperator,
+    identifiers,
+)
+from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.smc.compile import Compilation
+from roaml.smc.fault import FaultError
+from roaml.smc.program import Goal
+from roaml.smc.registers import Operand
+
+TRUE, FALSE, DEADLOCK, NO_DEADLOCK = -1, -2, -3, -4
+NOT, AND, OR = -1, -2, -3
+
+COMPARISONS = {
+    BinaryOperator.LESS: BinaryOperator.GREATER,
+    BinaryOperator.LESS_EQUAL: BinaryOperator.GREATER_EQUAL,
+    BinaryOperator.GREATER: BinaryOperator.LESS,
+    BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
+}
+"""Each comparison -> the same with its sides exchanged."""
+
+_ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold:
+    """`relation number`, as in `P(...) ≥ 0.95`."""
+
+    relation: BinaryOperator
+    number: float
+
+    def met(self, value: float) -> bool:
+        return bool(self.relation.function(value, self.number))
+
+    @property
+    def is_lower(self) -> bool:
+        """Whether values above the threshold are the good ones."""
+        return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is asked about all traces.
+
+    Attributes:
+        name: of the property.
+        operator: `Pmin`, `Pmax`, `Emin` or `Emax`.
+        is_reward: whether an expected reward is asked for, not a probability.
+        threshold: what the value is compared with, if it is.
+        variables: what the property reads.
+    """
+
+    name: str
+    operator: str
+    is_reward: bool
+    threshold: Threshold | None
+    variables: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A property with its question and its goal."""
+
+    property: Property
+    question: Question
+    goal: Goal
+
+
+def ask(compilation: Compilation, property_: Property) -> Asked:
+    """Compile a property.
+
+    Raises:
+        FaultError: it is of a kind that sampling cannot answer, or not supported.
+    """
+    return _Writer(compilation, property_).asked()
+
+
+class _Writer:
+    def __init__(self, compilation: Compilation, property_: Property) -> None:
+        self.compilation = compilation
+        self.names = compilation.layout.names
+        self.property = property_
+        self.left: list[int] = []
+        self.right: list[int] = []
+        self.lower: list[int] = []
+        self.upper: list[int] = []
+        self.formula: list[int] = []
+        self.conditions: list[Formula] = []
+        self.is_bounded = 0
+
+    def asked(self) -> Asked:
+        formula, threshold = self.opened(self.property.expression)
+        step_reward = exit_reward = -1
+        match formula:
+            case Probability(operator, path):
+                self.path(path)
+                name = operator.value
+            case Expectation(operator):
+                step_reward, exit_reward = self.expectation(formula)
+                name = operator.value
+            case _:
+                raise FaultError(
+                    "this is neither a probability (`Pmin`, `Pmax`) nor an expected reward", formula.origin
+                )
+        variables = self.variables()
+        question = Question(self.property.name, name, isinstance(formula, Expectation), threshold, variables)
+        seen = [int(storage.name in variables) for storage in self.compilation.watched]
+        goal = Goal(
+            seen=array("i", seen),
+            left=array("i", self.left),
+            right=array("i", self.right),
+            lower=array("q", self.lower),
+            upper=array("q", self.upper),
+            formula=array("i", self.formula),
+            is_bounded=self.is_bounded,
+            step_reward=step_reward,
+            exit_reward=exit_reward,
+        )
+        return Asked(self.property, question, goal)
+
+    def variables(self) -> tuple[str, ...]:
+        found = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))
+        return tuple(name for name in found if not isinstance(self.names.values.get(name), Operand))
+
+    def opened(self, formula: Formula) -> tuple[Formula, Threshold | None]:
+        """The probability or reward inside of filters and comparisons."""
+        threshold: Threshold | None = None
+        while True:
+            match formula:
+                case Filter(function, values, states):
+                    if not isinstance(states, Predicate) or states.predicate is not StatePredicate.INITIAL:
+                        raise FaultError("only the initial states can be asked about", states.origin or formula.origin)
+                    if function in (FilterFunction.FORALL, FilterFunction.EXISTS):
+                        if not isinstance(values, BinaryFormula):
+                            raise FaultError("this is no comparison of a probability with a number", values.origin)
+                    elif function not in _ONE_STATE:
+                        raise FaultError(f"the filter `{function.value}` is not supported", formula.origin)
+                    formula = values
+                case BinaryFormula(operator, left, right) if operator in COMPARISONS and threshold is None:
+                    if isinstance(left, ProperFormula):
+                        formula, other = left, right
+                    else:
+                        formula, other, operator = right, left, COMPARISONS[operator]
+                    threshold = Threshold(operator, self.number(other))
+                case _:
+                    return formula, threshold
+
+    def number(self, formula: Formula) -> float:
+        """The value of an expression without variables."""
+        if isinstance(formula, ProperFormula):
+            raise FaultError("a number is needed here", formula.origin)
+        known = {n: m.value for n, m in self.names.values.items() if isinstance(m, Operand) and m.value is not None}
+        try:
+            value = evaluate(formula, known, self.names.functions)
+        except EvaluationError as error:
+            raise FaultError(error.message, error.origin or formula.origin) from None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise FaultError("a number is needed here", formula.origin)
+        return value
+
+    # ------------------------------------------------------------ paths
+
+    def path(self, formula: Formula) -> None:
+        """Write a formula over paths; its value is on top of the stack then."""
+        match formula:
+            case UnaryPath(operator=operator, operand=operand):
+                lower, upper = self.bounds(formula)
+                match operator:
+                    case UnaryPathOperator.FINALLY:
+                        self.until(TRUE, self.condition(operand), lower, upper)
+                    case UnaryPathOperator.GLOBALLY:
+                        self.until(TRUE, self.condition(operand, negated=True), lower, upper)
+                        self.formula.append(NOT)
+                    case UnaryPathOperator.NEXT:
+                        self.until(TRUE, self.condition(operand), 1, 1)
+            case BinaryPath(operator=operator, left=left, right=right):
+                lower, upper = self.bounds(formula)
+                match operator:
+                    case BinaryPathOperator.UNTIL:
+                        self.until(self.condition(left), self.condition(right), lower, upper)
+                    case BinaryPathOperator.WEAK_UNTIL:
+                        self.until(self.condition(left), self.condition(right), lower, upper)
+                        self.until(TRUE, self.condition(left, negated=True), 0, upper)
+                        self.formula += (NOT, OR)
+                    case BinaryPathOperator.RELEASE:
+                        condition = self.condition(left, negated=True)
+                        self.until(condition, self.condition(right, negated=True), lower, upper)
+                        self.formula.append(NOT)
+            case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
+                self.path(operand)
+                self.formula.append(NOT)
+            case BinaryFormula(operator, left, right) if operator in _COMBINE:
+                self.path(left)
+                if operator is BinaryOperator.IMPLIES:
+                    self.formula.append(NOT)
+                self.path(right)
+                self.formula.append(_COMBINE[operator])
+            case _:
+                self.until(TRUE, self.condition(formula), 0, 0)
+
+    def until(self, left: int, right: int, lower: int, upper: int | None) -> None:
+        if upper is not None and upper < lower:
+            left, right, upper = FALSE, FALSE, None
+        self.formula.append(len(self.left))
+        self.left.append(left)
+        self.right.append(right)
+        self.lower.append(lower)
+        self.upper.append(-1 if upper is None else upper)
+        if lower > 0 or upper is not None:
+            self.is_bounded = max(self.is_bounded, 1)
+
+    def condition(self, formula: Formula, negated: bool = False) -> int:
+        """The code of a formula about states."""
+        match formula:
+            case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
+                return self.condition(operand, not negated)
+            case Predicate(StatePredicate.DEADLOCK):
+                self.is_bounded = 2
+                return NO_DEADLOCK if negated else DEADLOCK
+            case _ if isinstance(formula, ProperFormula):
+                what = "this" if isinstance(formula, Predicate) else "a formula about paths inside another one"
+                raise FaultError(f"{what} is not supported here", formula.origin)
+            case _:
+                self.conditions.append(formula)
+                expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
+                return self.compilation.assembler.condition(
+                    expression, self.names, formula.origin or self.property.origin
+                )
+
+    def bounds(self, path: PathBounds) -> tuple[int, int | None]:
+        """The step bounds, both inclusive."""
+        if path.time_bounds is not None or path.reward_bounds:
+            raise FaultError("only step bounds are supported, not those of time and rewards", path.origin)
+        interval = path.step_bounds
+        if interval is None:
+            return 0, None
+        lower = self.end(interval, interval.lower)
+        upper = self.end(interval, interval.upper)
+        first = 0 if lower is None else max(0, math.floor(lower) + 1 if interval.lower_exclusive else math.ceil(lower))
+        last = None if upper is None else math.ceil(upper) - 1 if interval.upper_exclusive else math.floor(upper)
+        return first, last
+
+    def end(self, interval: Interval, expression: Expression | None) -> float | None:
+        if expression is None:
+            return None
+        value = self.number(expression)
+        if not abs(value) < 1 << 62:
+            raise FaultError("this bound is too large", expression.origin or interval.origin)
+        return value
+
+    # ------------------------------------------------------------ rewards
+
+    def expectation(self, formula: Expectation) -> tuple[int, int]:
+        others = (formula.step_instant, formula.time_instant, formula.reward_instants or None)
+        if formula.reach is None or formula.accumulate is None or any(other is not None for other in others):
+            raise FaultError(
+                "only rewards that are accumulated until something is reached are supported", formula.origin
+            )
+        if Accumulation.TIME in formula.accumulate:
+            raise FaultError("no time passes in this kind of model; accumulate on steps or exit", formula.origin)
+        self.until(TRUE, self.condition(formula.reach), 0, None)
+        code = self.compilation.assembler.real_register(formula.reward, self.names, formula.origin)
+        return (
+            code if Accumulation.STEPS in formula.accumulate else -1,
+            code if Accumulation.EXIT in formula.accumulate else -1,
+        )
+
+
+_COMBINE = {BinaryOperator.AND: AND, BinaryOperator.OR: OR, BinaryOperator.IMPLIES: OR}
+
+
+def with_threshold(question: Question, threshold: Threshold) -> Question:
+    """The same question, compared with a number."""
+    return replace(question, threshold=threshold)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+# The C types of kernel.py. Nothing but types stands here: without them the same code runs as plain Python.
+# cython: language_level=3
+
+cimport cython
+
+ctypedef unsigned long long u64
+ctypedef long long i64
+
+cdef u64 MASK, GOLDEN, MIX_1, MIX_2
+cdef i64 MOST, LEAST
+cdef double TO_UNIT
+cdef int FALSE, TRUE, UNKNOWN, FAULTY
+
+@cython.final
+cdef class Kernel:
+    cdef int[::1] code
+    cdef list functions
+    cdef list arguments
+    cdef i64[::1] ints_0, ints, ints_before
+    cdef double[::1] reals_0, reals, reals_before
+    cdef int int_count, real_count, instances, settle
+    cdef int[::1] place_0, place, first_location
+    cdef int[::1] group_start, group_slot, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
+    cdef double[::1] way_sum
+    cdef int[::1] move_start, move_slot, move_count
+    cdef int[::1] slot_instance, slot_gate, gate_start, gate_vector
+    cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
+    cdef int[::1] phase_start, phase_index, phase_read, phase_write
+    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, location_code
+    cdef int[::1] seen, left, right, formula, verdict, holds_left, holds_right, stack
+    cdef i64[::1] lower, upper
+    cdef int leaves, is_bounded, step_reward, exit_reward
+    cdef int[::1] ready, ready_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
+    cdef int[::1] enabled, enabled_0, position, position_0
+    cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
+    cdef int[::1] noted, notes, part_slot, part_way
+    cdef public int parts, vector
+    cdef int note_count, moved, must_look, fault, fault_at
+    cdef i64 fault_value, fault_size
+    cdef double fault_real
+    cdef u64 key, drawn, scheduler
+    cdef public i64 steps
+    cdef i64 still
+    cdef public double reward
+
+    @cython.locals(a=int, group=int, location=int, i=int)
+    cdef void _prepare(self) noexcept
+    @cython.locals(i=int)
+    cdef void _reset(self) noexcept
+    @cython.locals(z=u64)
+    cdef u64 _mixed(self, u64 value) noexcept
+    cdef u64 _draw(self) noexcept
+    @cython.locals(old=int, gate=int, i=int, vector=int, last=int, at=int)
+    cdef void _set_ready(self, int slot, int count) noexcept
+    @cython.locals(count=int, edge=int)
+    cdef int _count(self, int group) noexcept
+    @cython.locals(total=u64, i=int)
+    cdef u64 _total(self) noexcept
+    @cython.locals(weight=u64, i=int)
+    cdef u64 _weight(self, int vector) noexcept
+    @cython.locals(rest=u64, vector=int, total=u64, weight=u64, i=int)
+    cdef void _step(self) noexcept
+    @cython.locals(state=u64, i=int, best=int, best_rest=u64, greatest=u64, vector=int, rest=u64, value=u64)
+    cdef tuple _scheduled(self)
+    @cython.locals(i=int, slot=int, count=int, pick=int, edge=int, way=int)
+    cdef void _take(self, int vector, u64 rest) noexcept
+    @cython.locals(i=int, slot=int, edge=int)
+    cdef void _take_given(self, int vector, list picks, list ways) noexcept
+    @cython.locals(i=int, k=int, move=int, count=int)
+    cdef void _apply(self, int vector) noexcept
+    @cython.locals(location=int, group=int, edge=int)
+    cdef int _edge(self, int slot, int pick) noexcept
+    @cython.locals(first=int, end=int, unit=double, low=int, high=int, middle=int)
+    cdef int _way(self, int edge) noexcept
+    @cython.locals(first=int, end=int, unit=double, total=double, found=int, last=int, way=int, register=int, chance=double)
+    cdef int _way_computed(self, int edge) noexcept
+    @cython.locals(way=int, before=double)
+    cdef list _chances(self, int edge)
+    @cython.locals(index=i64, following=i64, i=int, k=int, way=int)
+    cdef void _execute_phases(self) noexcept
+    @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, group=int)
+    cdef void _look_around(self) noexcept
+    @cython.locals(code=int)
+    cdef void _settle_location(self, int instance) noexcept
+    @cython.locals(i=int, k=int, vector=int, slot=int, pick=int, edge=int, way=int)
+    cdef int _can_leave(self) noexcept
+    @cython.locals(register=int)
+    cdef int _is_possible(self, int way) noexcept
+    @cython.locals(i=int, changed=int)
+    cdef int _changes(self, int slot, int way) noexcept
+    @cython.locals(status=int)
+    cdef int _advance(self, i64 limit) noexcept
+    cdef int _finish(self, int status) noexcept
+    @cython.locals(i=int)
+    cdef int _look(self) noexcept
+    cdef int _holds(self, int code) noexcept
+    @cython.locals(i=int)
+    cdef int _ends(self, int repeats) noexcept
+    @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)
+    cdef int _combined(self) noexcept
+    @cython.locals(register=int)
+    cdef void _add_reward(self, int code) noexcept
+    cdef void _fail(self, int fault, int at) noexcept
+    cdef void _note(self, int variable) noexcept
+    cdef int _call(self, int function, int real, int target) noexcept
+    @cython.locals(op=int, d=int, a=int, b=int, c=int, x=i64, y=i64, z=i64, at=i64, i=int, changed=int)
+    cdef i64 _execute(self, int pc) noexcept

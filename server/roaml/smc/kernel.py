@@ -1,0 +1,1014 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Walks a compiled model: one trace after the other, as fast as it can.
+
+- Plain Python; with the types in `kernel.pxd` Cython makes an extension of it. Both do the same, number by number.
+- A trace starts from nothing but (seed, trace number): random number n of it is a hash of these and n.
+- Which synchronisation vectors are enabled is kept up to date. A *slot* is an automaton and one of its actions; it is
+  ready if one of the automaton's edges for it is enabled. Slots that take part in the same vectors share a *gate*,
+  which counts how many of them are not ready; a vector counts its gates. A step touches the slots of the locations
+  that are left and entered, and the guards that read a variable that has changed.
+- Nothing is raised for what a model does wrong: `fault` tells, with the place in the code.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from roaml.smc.program import Goal, Program
+
+MASK = 0xFFFFFFFFFFFFFFFF
+GOLDEN = 0x9E3779B97F4A7C15
+MIX_1 = 0xBF58476D1CE4E5B9
+MIX_2 = 0x94D049BB133111EB
+MOST = 0x7FFFFFFFFFFFFFFF
+LEAST = -MOST - 1
+TO_UNIT = 1.0 / 9007199254740992.0
+
+FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
+"""What becomes of a trace; UNKNOWN: it can go on."""
+
+
+def compiled() -> bool:
+    """Whether this is the extension."""
+    return not __file__.endswith(".py")
+
+
+class Kernel:
+    """A compiled model and a goal, and the state of one trace."""
+
+    def __init__(self, program: Program, goal: Goal) -> None:
+        self.code = program.code
+        self.functions = [operator.function for operator in program.functions]
+        self.ints_0 = program.ints[:]
+        self.reals_0 = program.reals[:]
+        self.ints = program.ints[:]
+        self.reals = program.reals[:]
+        self.ints_before = program.ints[:]
+        self.reals_before = program.reals[:]
+        self.int_count = program.int_count
+        self.real_count = program.real_count
+        self.instances = program.instances
+        self.place_0 = program.initial
+        self.place = program.initial[:]
+        self.first_location = program.first_location
+        self.group_start = program.group_start
+        self.group_slot = program.group_slot
+        self.edge_start = program.edge_start
+        self.guard = program.guard
+        self.way_start = program.way_start
+        self.way_target = program.way_target
+        self.way_code = program.way_code
+        self.way_sum = program.way_sum
+        self.way_chance = program.way_chance
+        self.way_move = program.way_move
+        self.move_start = program.move_start
+        self.move_slot = program.move_slot
+        self.move_count = program.move_count
+        self.slot_instance = program.slot_instance
+        self.slot_gate = program.slot_gate
+        self.gate_start = program.gate_start
+        self.gate_vector = program.gate_vector
+        self.active_start = program.active_start
+        self.active_slot = program.active_slot
+        self.all_start = program.all_start
+        self.all_slot = program.all_slot
+        self.entangled = program.entangled
+        self.phase_start = program.phase_start
+        self.phase_index = program.phase_index
+        self.phase_read = program.phase_read
+        self.phase_write = program.phase_write
+        self.watch_start = program.watch_start
+        self.watch_instance = program.watch_instance
+        self.watch_table = program.watch_table
+        self.watched_start = program.watched_start
+        self.watched_group = program.watched_group
+        self.settle = program.settle
+        self.location_code = program.location_code
+
+        self.seen = goal.seen
+        self.left = goal.left
+        self.right = goal.right
+        self.lower = goal.lower
+        self.upper = goal.upper
+        self.formula = goal.formula
+        self.leaves = len(goal.left)
+        self.is_bounded = goal.is_bounded
+        self.step_reward = goal.step_reward
+        self.exit_reward = goal.exit_reward
+        self.verdict = goal.left[:]
+        self.holds_left = goal.left[:]
+        self.holds_right = goal.left[:]
+        self.stack = goal.formula[:]
+
+        self.ready = program.zero_slots[:]
+        self.ready_0 = program.zero_slots[:]
+        self.gate_missing = program.gate_missing[:]
+        self.gate_missing_0 = program.gate_missing[:]
+        self.vector_missing = program.vector_missing[:]
+        self.vector_missing_0 = program.vector_missing[:]
+        self.enabled = program.zero_vectors[:]
+        self.enabled_0 = program.zero_vectors[:]
+        self.position = program.zero_vectors[:]
+        self.position_0 = program.zero_vectors[:]
+        self.enabled_count = 0
+        self.plural = 0
+        self.noted = program.zero_variables[:]
+        self.notes = program.zero_variables[:]
+        self.note_count = 0
+        self.part_slot = program.zero_instances[:]
+        self.part_way = program.zero_instances[:]
+        self.parts = 0
+        self.vector = -1
+        self.moved = 0
+        self.must_look = 0
+        self.fault = 0
+        self.fault_at = -1
+        self.fault_value = 0
+        self.fault_size = 0
+        self.fault_real = 0.0
+        self.arguments: list[Any] = []
+        self.key = 0
+        self.drawn = 0
+        self.scheduler = 0
+        self.steps = 0
+        self.still = 0
+        self.reward = 0.0
+        self._prepare()
+
+    # ------------------------------------------------------------ for callers
+
+    def begin(self, seed: int, trace: int, scheduler: int = 0) -> int:
+        """Go to the start of a trace, which `advance` continues.
+
+        Args:
+            scheduler: 0 draws uniformly among the choices; any other number stands for a memoryless scheduler.
+
+        Returns:
+            what is known of the goal there.
+        """
+        self.key = self._mixed((self._mixed(seed & MASK) + (trace & MASK) * GOLDEN) & MASK)
+        self.drawn = 0
+        self.scheduler = scheduler & MASK
+        self._reset()
+        return self._finish(self._look())
+
+    def advance(self, limit: int) -> int:
+        """Go on until the goal is decided or the trace has `limit` steps; what is known of the goal then."""
+        return self._advance(limit)
+
+    def step(self) -> int:
+        """One step, whatever the goal; FALSE if none is possible, FAULTY, else UNKNOWN. `vector` and the parts tell
+        what was done."""
+        if self.enabled_count == 0:
+            return FALSE
+        self._step()
+        if self.fault != 0:
+            return FAULTY
+        self.steps += 1
+        return UNKNOWN
+
+    def look(self) -> int:
+        """What is known of the goal in the state that is reached."""
+        return self._look()
+
+    def ended(self) -> bool:
+        """Whether no choice leaves the state."""
+        return self.enabled_count == 0 or self._can_leave() == 0
+
+    def taken(self) -> list[tuple[int, int]]:
+        """Instance and way of all parts of the last step that do something."""
+        return [(self.slot_instance[self.part_slot[i]], self.part_way[i]) for i in range(self.parts)]
+
+    def outcome(self) -> tuple[int, int, float]:
+        """Steps of the trace, its number of random draws, and the reward."""
+        return self.steps, self.drawn, self.reward
+
+    def problem(self) -> tuple[int, int, int, int, float]:
+        """The fault: its code, the place in the bytecode, and what belongs into the message."""
+        return self.fault, self.fault_at, self.fault_value, self.fault_size, self.fault_real
+
+    def integer(self, register: int) -> int:
+        """The value of an int or bool register."""
+        return self.ints[register]
+
+    def real(self, register: int) -> float:
+        """The value of a real register."""
+        return self.reals[register]
+
+    def snapshot(self) -> tuple[list[int], list[float]]:
+        """The values of all variables."""
+        return [self.ints[i] for i in range(self.int_count)], [self.reals[i] for i in range(self.real_count)]
+
+    def location(self, instance: int) -> int:
+        """The location, counted through all instances, where an instance is."""
+        return self.place[instance]
+
+    def restore(self, place: Sequence[int], ints: Sequence[int], reals: Sequence[float]) -> None:
+        """Go to a state."""
+        self._reset()
+        for i in range(self.instances):
+            self.place[i] = place[i]
+        for i in range(self.int_count):
+            self.ints[i] = ints[i]
+        for i in range(self.real_count):
+            self.reals[i] = reals[i]
+        for slot in range(len(self.ready)):
+            self._set_ready(slot, 0)
+        for i in range(self.instances):
+            for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
+                self._set_ready(self.group_slot[group], self._count(group))
+
+    def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
+        """All vectors that are enabled: the number, how many choices differ in nothing else, and for each slot that
+        does something the probabilities of the ways of each enabled edge."""
+        found = []
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            slots = []
+            combinations = 1
+            for k in range(self.active_start[vector], self.active_start[vector + 1]):
+                slot = self.active_slot[k]
+                combinations *= self.ready[slot]
+                edges = [self._chances(self._edge(slot, pick)) for pick in range(self.ready[slot])]
+                slots.append(edges)
+            found.append((vector, self._weight(vector) // combinations, slots))
+        return found
+
+    def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
+        """Take a choice: for each slot of the vector that does something the number of its enabled edge, and that of
+        the way. What `step` returns."""
+        self._take_given(vector, picks, ways)
+        if self.fault != 0:
+            return FAULTY
+        self.steps += 1
+        return UNKNOWN
+
+    # ------------------------------------------------------------ state
+
+    def _prepare(self) -> None:
+        """Find out what is enabled at first; every trace starts with a copy of it."""
+        for a in range(self.instances):
+            self._settle_location(a)
+            location = self.place[a]
+            for group in range(self.group_start[location], self.group_start[location + 1]):
+                self._set_ready(self.group_slot[group], self._count(group))
+        self.note_count = 0
+        for i in range(len(self.noted)):
+            self.noted[i] = 0
+        self.ints_0[:] = self.ints
+        self.reals_0[:] = self.reals
+        self.ready_0[:] = self.ready
+        self.gate_missing_0[:] = self.gate_missing
+        self.vector_missing_0[:] = self.vector_missing
+        self.enabled_0[:] = self.enabled
+        self.position_0[:] = self.position
+        self.enabled_count_0 = self.enabled_count
+        self.plural_0 = self.plural
+        self.fault_0 = self.fault
+
+    def _reset(self) -> None:
+        for i in range(self.int_count):
+            self.ints[i] = self.ints_0[i]
+        for i in range(self.real_count):
+            self.reals[i] = self.reals_0[i]
+        self.place[:] = self.place_0
+        self.ready[:] = self.ready_0
+        self.gate_missing[:] = self.gate_missing_0
+        self.vector_missing[:] = self.vector_missing_0
+        self.enabled[:] = self.enabled_0
+        self.position[:] = self.position_0
+        self.enabled_count = self.enabled_count_0
+        self.plural = self.plural_0
+        for i in range(self.note_count):
+            self.noted[self.notes[i]] = 0
+        self.note_count = 0
+        self.fault = self.fault_0
+        self.steps = 0
+        self.still = 0
+        self.reward = 0.0
+        self.parts = 0
+        self.must_look = 1
+        for i in range(self.leaves):
+            self.verdict[i] = UNKNOWN
+
+    # ------------------------------------------------------------ random numbers
+
+    def _mixed(self, value: int) -> int:
+        """The finalizer of splitmix64."""
+        z = value
+        z = ((z ^ (z >> 30)) * MIX_1) & MASK
+        z = ((z ^ (z >> 27)) * MIX_2) & MASK
+        return z ^ (z >> 31)
+
+    def _draw(self) -> int:
+        self.drawn += 1
+        return self._mixed((self.key + self.drawn * GOLDEN) & MASK)
+
+    # ------------------------------------------------------------ what is enabled
+
+    def _set_ready(self, slot: int, count: int) -> None:
+        """So many edges of the slot are enabled."""
+        old = self.ready[slot]
+        if old == count:
+            return
+        self.ready[slot] = count
+        self.plural += (count > 1) - (old > 1)
+        gate = self.slot_gate[slot]
+        if gate < 0:
+            return
+        if old == 0:
+            self.gate_missing[gate] -= 1
+            if self.gate_missing[gate] == 0:
+                for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
+                    vector = self.gate_vector[i]
+                    self.vector_missing[vector] -= 1
+                    if self.vector_missing[vector] == 0:
+                        self.position[vector] = self.enabled_count
+                        self.enabled[self.enabled_count] = vector
+                        self.enabled_count += 1
+        elif count == 0:
+            self.gate_missing[gate] += 1
+            if self.gate_missing[gate] == 1:
+                for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
+                    vector = self.gate_vector[i]
+                    self.vector_missing[vector] += 1
+                    if self.vector_missing[vector] == 1:
+                        self.enabled_count -= 1
+                        last = self.enabled[self.enabled_count]
+                        at = self.position[vector]
+                        self.enabled[at] = last
+                        self.position[last] = at
+
+    def _count(self, group: int) -> int:
+        """How many edges of a group are enabled."""
+        count = 0
+        for edge in range(self.edge_start[group], self.edge_start[group + 1]):
+            if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                count += 1
+        return count
+
+    def _total(self) -> int:
+        """The number of choices."""
+        if self.plural == 0:
+            return self.enabled_count
+        total = 0
+        for i in range(self.enabled_count):
+            total += self._weight(self.enabled[i])
+        return total
+
+    def _weight(self, vector: int) -> int:
+        """The number of combinations of edges with which a vector can be taken."""
+        weight = 1
+        for i in range(self.all_start[vector], self.all_start[vector + 1]):
+            weight *= self.ready[self.all_slot[i]]
+        return weight
+
+    # ------------------------------------------------------------ a step
+
+    def _step(self) -> None:
+        """Choose, take, and find out what is enabled then."""
+        rest = 0
+        if self.scheduler != 0:
+            vector, rest = self._scheduled()
+        elif self.plural == 0:
+            if self.enabled_count == 1:
+                vector = self.enabled[0]
+            else:
+                vector = self.enabled[((self._draw() >> 32) * self.enabled_count) >> 32]
+        else:
+            total = self._total()
+            if total > 1:
+                rest = ((self._draw() >> 32) * total) >> 32
+            i = 0
+            vector = self.enabled[0]
+            weight = self._weight(vector)
+            while rest >= weight:
+                rest -= weight
+                i += 1
+                vector = self.enabled[i]
+                weight = self._weight(vector)
+        self._take(vector, rest)
+
+    def _scheduled(self) -> tuple[int, int]:
+        """What the memoryless scheduler chooses in this state: of all choices the one with the greatest hash of
+        scheduler, state and choice."""
+        state = self.scheduler
+        for i in range(self.instances):
+            state = self._mixed((state + self.place[i] * GOLDEN) & MASK)
+        for i in range(self.int_count):
+            state = self._mixed((state + (self.ints[i] & MASK)) & MASK)
+        for i in range(self.real_count):
+            state = self._mixed((state + (hash(self.reals[i]) & MASK)) & MASK)
+        best = -1
+        best_rest = 0
+        greatest = 0
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            for rest in range(self._weight(vector)):
+                value = self._mixed((state ^ self._mixed((vector * GOLDEN + rest) & MASK)) & MASK)
+                if best < 0 or value > greatest:
+                    best = vector
+                    best_rest = rest
+                    greatest = value
+        return best, best_rest
+
+    def _take(self, vector: int, rest: int) -> None:
+        """Take combination number `rest` of a vector."""
+        self.vector = vector
+        self.parts = 0
+        self.moved = 0
+        if self.exit_reward >= 0:
+            self._add_reward(self.exit_reward)
+        for i in range(self.active_start[vector], self.active_start[vector + 1]):
+            slot = self.active_slot[i]
+            count = self.ready[slot]
+            pick = 0
+            if count > 1:
+                pick = rest % count
+                rest //= count
+            edge = self._edge(slot, pick)
+            way = self.way_start[edge]
+            if self.way_start[edge + 1] - way > 1:
+                way = self._way(edge)
+                if way < 0:
+                    return
+            self.part_slot[self.parts] = slot
+            self.part_way[self.parts] = way
+            self.parts += 1
+        self._apply(vector)
+
+    def _take_given(self, vector: int, picks: list[int], ways: list[int]) -> None:
+        self.vector = vector
+        self.parts = 0
+        self.moved = 0
+        for i in range(self.active_start[vector], self.active_start[vector + 1]):
+            slot = self.active_slot[i]
+            edge = self._edge(slot, picks[self.parts])
+            self.part_slot[self.parts] = slot
+            self.part_way[self.parts] = self.way_start[edge] + ways[self.parts]
+            self.parts += 1
+        self._apply(vector)
+
+    def _apply(self, vector: int) -> None:
+        """Execute the assignments of the chosen ways, move, and find out what is enabled then."""
+        if self.settle >= 0:
+            self._execute(self.settle)
+        if self.entangled[vector] == 0:
+            for i in range(self.parts):
+                if self.way_code[self.part_way[i]] >= 0:
+                    self._execute(self.way_code[self.part_way[i]])
+        else:
+            self._execute_phases()
+        if self.fault != 0:
+            return
+        if self.step_reward >= 0:
+            self._add_reward(self.step_reward)
+        for i in range(self.parts):
+            self.place[self.slot_instance[self.part_slot[i]]] = self.way_target[self.part_way[i]]
+        if self.settle >= 0:
+            self._execute(self.settle)
+            for i in range(self.instances):
+                self._settle_location(i)
+        for i in range(self.parts):
+            move = self.way_move[self.part_way[i]]
+            if move >= 0:
+                self.moved = 1
+                for k in range(self.move_start[move], self.move_start[move + 1]):
+                    count = self.move_count[k]
+                    if count < 0:
+                        count = self._count(-count - 1)
+                    self._set_ready(self.move_slot[k], count)
+        if self.note_count != 0:
+            self._look_around()
+
+    def _edge(self, slot: int, pick: int) -> int:
+        """The enabled edge number `pick` of a slot."""
+        location = self.place[self.slot_instance[slot]]
+        group = self.group_start[location]
+        while self.group_slot[group] != slot:
+            group += 1
+        edge = self.edge_start[group]
+        if self.edge_start[group + 1] - edge == 1:
+            return edge
+        while True:
+            if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if pick == 0:
+                    return edge
+                pick -= 1
+            edge += 1
+
+    def _way(self, edge: int) -> int:
+        """Draw one of an edge's ways; -1 if their probabilities are wrong."""
+        first = self.way_start[edge]
+        end = self.way_start[edge + 1]
+        if self.way_chance[first] >= 0:
+            return self._way_computed(edge)
+        unit = (self._draw() >> 11) * TO_UNIT
+        low = first
+        high = end - 1
+        while low < high:
+            middle = (low + high) // 2
+            if unit < self.way_sum[middle]:
+                high = middle
+            else:
+                low = middle + 1
+        return low
+
+    def _way_computed(self, edge: int) -> int:
+        """The same where the probabilities depend on the state."""
+        first = self.way_start[edge]
+        end = self.way_start[edge + 1]
+        unit = (self._draw() >> 11) * TO_UNIT
+        total = 0.0
+        found = -1
+        last = -1
+        for way in range(first, end):
+            register = self._execute(self.way_chance[way])
+            if self.fault != 0:
+                return -1
+            chance = self.reals[register]
+            if chance < 0.0:
+                self._fail(6, self.way_chance[way])
+                return -1
+            total += chance
+            if chance > 0.0:
+                last = way
+            if found < 0 and unit < total:
+                found = way
+        if total < 0.999999 or total > 1.000001:
+            self._fail(6, self.way_chance[first])
+            return -1
+        return last if found < 0 else found
+
+    def _chances(self, edge: int) -> list[float]:
+        """The probability of each way of an edge."""
+        found = []
+        before = 0.0
+        for way in range(self.way_start[edge], self.way_start[edge + 1]):
+            if self.way_chance[way] >= 0:
+                found.append(self.reals[self._execute(self.way_chance[way])])
+            else:
+                found.append(self.way_sum[way] - before)
+                before = self.way_sum[way]
+        return found
+
+    def _execute_phases(self) -> None:
+        """The assignments of ways that have to do with one another: of each index, first all values, then all
+        assignments."""
+        index = LEAST
+        while True:
+            following = MOST
+            for i in range(self.parts):
+                way = self.part_way[i]
+                for k in range(self.phase_start[way], self.phase_start[way + 1]):
+                    if self.phase_index[k] > index and self.phase_index[k] < following:
+                        following = self.phase_index[k]
+            if following == MOST:
+                return
+            index = following
+            for i in range(self.parts):
+                way = self.part_way[i]
+                for k in range(self.phase_start[way], self.phase_start[way + 1]):
+                    if self.phase_index[k] == index:
+                        self._execute(self.phase_read[k])
+                        if self.fault != 0:
+                            return
+            for i in range(self.parts):
+                way = self.part_way[i]
+                for k in range(self.phase_start[way], self.phase_start[way + 1]):
+                    if self.phase_index[k] == index:
+                        self._execute(self.phase_write[k])
+                        if self.fault != 0:
+                            return
+
+    def _look_around(self) -> None:
+        """Variables have changed: look again at the guards that read them, where automata stand."""
+        for i in range(self.note_count):
+            variable = self.notes[i]
+            self.noted[variable] = 0
+            if self.seen[variable] != 0:
+                self.must_look = 1
+            for k in range(self.watch_start[variable], self.watch_start[variable + 1]):
+                instance = self.watch_instance[k]
+                at = self.watch_table[k] + self.place[instance] - self.first_location[instance]
+                for m in range(self.watched_start[at], self.watched_start[at + 1]):
+                    group = self.watched_group[m]
+                    self._set_ready(self.group_slot[group], self._count(group))
+        self.note_count = 0
+
+    def _settle_location(self, instance: int) -> None:
+        """Give transient variables the values that they have in the location of an instance."""
+        code = self.location_code[self.place[instance]]
+        if code >= 0:
+            self._execute(code)
+
+    def _can_leave(self) -> int:
+        """Whether some choice changes anything."""
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            for k in range(self.active_start[vector], self.active_start[vector + 1]):
+                slot = self.active_slot[k]
+                for pick in range(self.ready[slot]):
+                    edge = self._edge(slot, pick)
+                    for way in range(self.way_start[edge], self.way_start[edge + 1]):
+                        if self._is_possible(way) != 0 and self._changes(slot, way) != 0:
+                            return 1
+        return 0
+
+    def _is_possible(self, way: int) -> int:
+        """Whether a way has a positive probability."""
+        if self.way_chance[way] >= 0:
+            register = self._execute(self.way_chance[way])
+            return 1 if self.fault != 0 or self.reals[register] > 0.0 else 0
+        return 1 if self.way_sum[way] > 0.0 else 0
+
+    def _changes(self, slot: int, way: int) -> int:
+        if self.way_move[way] >= 0:
+            return 1
+        if self.way_code[way] < 0:
+            return 0
+        for i in range(self.int_count):
+            self.ints_before[i] = self.ints[i]
+        for i in range(self.real_count):
+            self.reals_before[i] = self.reals[i]
+        self._execute(self.way_code[way])
+        if self.settle >= 0:
+            self._execute(self.settle)
+            for i in range(self.instances):
+                self._settle_location(i)
+        changed = 0
+        for i in range(self.int_count):
+            if self.ints_before[i] != self.ints[i]:
+                changed = 1
+            self.ints[i] = self.ints_before[i]
+        for i in range(self.real_count):
+            if self.reals_before[i] != self.reals[i]:
+                changed = 1
+            self.reals[i] = self.reals_before[i]
+        for i in range(self.note_count):
+            self.noted[self.notes[i]] = 0
+        self.note_count = 0
+        if self.fault != 0:
+            self.fault = 0
+            changed = 1
+        return changed
+
+    # ------------------------------------------------------------ the goal
+
+    def _advance(self, limit: int) -> int:
+        status = UNKNOWN
+        if self.fault != 0:
+            return FAULTY
+        while self.steps < limit:
+            if self.enabled_count == 0:
+                return self._finish(self._ends(0))
+            self._step()
+            if self.fault != 0:
+                return FAULTY
+            self.steps += 1
+            if self.is_bounded == 2:
+                self.must_look = 1
+            if self.must_look != 0 or self.is_bounded != 0:
+                status = self._look()
+                if status != UNKNOWN:
+                    return self._finish(status)
+            if self.moved != 0:
+                self.still = 0
+            else:
+                self.still += 1
+                if self.still & (self.still - 1) == 0 and self._can_leave() == 0:
+                    return self._finish(self._ends(1))
+        return UNKNOWN
+
+    def _finish(self, status: int) -> int:
+        return FAULTY if self.fault != 0 else status
+
+    def _look(self) -> int:
+        """Hold the goal against the state that is reached."""
+        for i in range(self.leaves):
+            if self.verdict[i] == UNKNOWN:
+                if self.must_look != 0:
+                    self.holds_left[i] = self._holds(self.left[i])
+                    self.holds_right[i] = self._holds(self.right[i])
+                    if self.fault != 0:
+                        return FAULTY
+                if self.holds_right[i] != 0 and self.steps >= self.lower[i]:
+                    self.verdict[i] = TRUE
+                elif self.holds_left[i] == 0 or (self.upper[i] >= 0 and self.steps >= self.upper[i]):
+                    self.verdict[i] = FALSE
+        self.must_look = 0
+        return self._combined()
+
+    def _holds(self, code: int) -> int:
+        """A condition: code, or one of those that `program.Goal` names."""
+        if code == -1:
+            return 1
+        if code == -2:
+            return 0
+        if code == -3:
+            return 1 if self.enabled_count == 0 else 0
+        if code == -4:
+            return 0 if self.enabled_count == 0 else 1
+        return 1 if self._execute(code) != 0 else 0
+
+    def _ends(self, repeats: int) -> int:
+        """The state will not change any more; with `repeats` steps go on all the same."""
+        for i in range(self.leaves):
+            if self.verdict[i] == UNKNOWN:
+                self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
+        return self._combined()
+
+    def _combined(self) -> int:
+        """The value of the formula over the leaves, in reverse Polish notation: -1 not, -2 and, -3 or."""
+        top = 0
+        for i in range(len(self.formula)):
+            item = self.formula[i]
+            if item >= 0:
+                self.stack[top] = self.verdict[item]
+                top += 1
+            elif item == -1:
+                if self.stack[top - 1] != UNKNOWN:
+                    self.stack[top - 1] = 1 - self.stack[top - 1]
+            else:
+                top -= 1
+                a = self.stack[top - 1]
+                b = self.stack[top]
+                decisive = FALSE if item == -2 else TRUE
+                if a == decisive or b == decisive:
+                    self.stack[top - 1] = decisive
+                elif a == UNKNOWN or b == UNKNOWN:
+                    self.stack[top - 1] = UNKNOWN
+                else:
+                    self.stack[top - 1] = a
+        return self.stack[0]
+
+    def _add_reward(self, code: int) -> None:
+        register = self._execute(code)
+        self.reward += self.reals[register]
+
+    # ------------------------------------------------------------ the bytecode
+
+    def _fail(self, fault: int, at: int) -> None:
+        if self.fault == 0:
+            self.fault = fault
+            self.fault_at = at
+
+    def _note(self, variable: int) -> None:
+        if self.noted[variable] == 0:
+            self.noted[variable] = 1
+            self.notes[self.note_count] = variable
+            self.note_count += 1
+
+    def _call(self, function: int, real: int, target: int) -> int:
+        """Call a Python function with the arguments that were collected; whether it has a value."""
+        arguments = self.arguments
+        self.arguments = []
+        try:
+            value = self.functions[function](*arguments)
+            if real != 0:
+                self.reals[target] = value
+            else:
+                if value > MOST or value < LEAST:
+                    self.fault = 1
+                    return 0
+                self.ints[target] = value
+        except ZeroDivisionError:
+            self.fault = 2
+            return 0
+        except OverflowError:
+            self.fault = 8
+            return 0
+        except Exception:
+            self.fault = 5
+            self.fault_real = arguments[0]
+            return 0
+        return 1
+
+    def _execute(self, pc: int) -> int:
+        """Execute the code from `pc` on; what it returns. Codes as in `opcodes.Op`."""
+        while True:
+            op = self.code[pc]
+            d = self.code[pc + 1]
+            a = self.code[pc + 2]
+            b = self.code[pc + 3]
+            c = self.code[pc + 4]
+            if op == 0:  # RETURN
+                return self.ints[a]
+            if op == 1:  # JUMP
+                pc = d
+                continue
+            if op == 2:  # JUMP_TRUE
+                if self.ints[a] != 0:
+                    pc = d
+                    continue
+            elif op == 3:  # JUMP_FALSE
+                if self.ints[a] == 0:
+                    pc = d
+                    continue
+            elif op == 4:  # JUMP_EQ
+                if self.ints[a] == self.ints[b]:
+                    pc = d
+                    continue
+            elif op == 5:  # JUMP_NE
+                if self.ints[a] != self.ints[b]:
+                    pc = d
+                    continue
+            elif op == 6:  # JUMP_LT
+                if self.ints[a] < self.ints[b]:
+                    pc = d
+                    continue
+            elif op == 7:  # JUMP_LE
+                if self.ints[a] <= self.ints[b]:
+                    pc = d
+                    continue
+            elif op == 8:  # MOVE
+                self.ints[d] = self.ints[a]
+            elif op == 9:  # SET
+                if self.ints[d] != self.ints[a]:
+                    self.ints[d] = self.ints[a]
+                    self._note(b)
+            elif op == 10:  # ADD
+                x = self.ints[a]
+                y = self.ints[b]
+                z = x + y
+                if z > MOST or z < LEAST or (y >= 0) != (z >= x):
+                    self._fail(1, pc)
+                    return 0
+                self.ints[d] = z
+            elif op == 11:  # SUB
+                x = self.ints[a]
+                y = self.ints[b]
+                z = x - y
+                if z > MOST or z < LEAST or (y >= 0) != (z <= x):
+                    self._fail(1, pc)
+                    return 0
+                self.ints[d] = z
+            elif op == 12:  # MUL
+                x = self.ints[a]
+                y = self.ints[b]
+                if x == 0 or y == 0:
+                    z = 0
+                elif (x == -1 and y == LEAST) or (y == -1 and x == LEAST):
+                    self._fail(1, pc)
+                    return 0
+                else:
+                    z = x * y
+                    if z > MOST or z < LEAST or z // y != x:
+                        self._fail(1, pc)
+                        return 0
+                self.ints[d] = z
+            elif op == 13:  # MIN
+                self.ints[d] = self.ints[a] if self.ints[a] <= self.ints[b] else self.ints[b]
+            elif op == 14:  # MAX
+                self.ints[d] = self.ints[a] if self.ints[a] >= self.ints[b] else self.ints[b]
+            elif op == 15:  # ABS
+                x = self.ints[a]
+                if x == LEAST:
+                    self._fail(1, pc)
+                    return 0
+                self.ints[d] = x if x >= 0 else -x
+            elif op == 16:  # REM
+                x = self.ints[a]
+                y = self.ints[b]
+                if y == 0:
+                    self._fail(2, pc)
+                    return 0
+                if y == LEAST:
+                    z = x if x >= 0 else (0 if x == LEAST else x - LEAST)
+                else:
+                    y = y if y > 0 else -y
+                    z = x - (x // y) * y  # 0 ≤ z < y in Python, -y < z < y in C
+                    if z < 0:
+                        z += y
+                self.ints[d] = z
+            elif op == 17:  # REAL
+                self.reals[d] = self.ints[a]
+            elif op == 18:  # INDEX
+                x = self.ints[a]
+                if x < 0 or x >= b:
+                    self._fail(3, pc)
+                    self.fault_value = x
+                    self.fault_size = b
+                    return 0
+            elif op == 19:  # OFFSET
+                self.ints[d] = self.ints[d] * b + self.ints[a]
+            elif op == 20:  # LOAD
+                self.ints[d] = self.ints[a + self.ints[b]]
+            elif op == 21:  # STORE
+                at = d + self.ints[a]
+                if self.ints[at] != self.ints[b]:
+                    self.ints[at] = self.ints[b]
+                    if c >= 0:
+                        self._note(c)
+            elif op == 22:  # COPY
+                changed = 0
+                for i in range(c):
+                    if self.ints[d + i] != self.ints[a + i]:
+                        self.ints[d + i] = self.ints[a + i]
+                        changed = 1
+                if changed != 0 and b >= 0:
+                    self._note(b)
+            elif op == 23:  # COPY_INDEXED
+                at = a + self.ints[b]
+                for i in range(c):
+                    self.ints[d + i] = self.ints[at + i]
+            elif op == 24:  # STORE_MANY
+                at = d + self.ints[a]
+                for i in range(c):
+                    self.ints[at + i] = self.ints[b + i]
+            elif op == 25:  # NOTE
+                self._note(d)
+            elif op == 26:  # RANGE
+                if self.ints[a] < self.ints[b] or self.ints[a] > self.ints[c]:
+                    self._fail(4, pc)
+                    self.fault_value = self.ints[a]
+                    return 0
+            elif op == 27:  # FAULT
+                self._fail(d, pc)
+                self.fault_value = a
+                self.fault_size = b
+                return 0
+            elif op == 28:  # JUMP_EQ_REAL
+                if self.reals[a] == self.reals[b]:
+                    pc = d
+                    continue
+            elif op == 29:  # JUMP_NE_REAL
+                if self.reals[a] != self.reals[b]:
+                    pc = d
+                    continue
+            elif op == 30:  # JUMP_LT_REAL
+                if self.reals[a] < self.reals[b]:
+                    pc = d
+                    continue
+            elif op == 31:  # JUMP_LE_REAL
+                if self.reals[a] <= self.reals[b]:
+                    pc = d
+                    continue
+            elif op == 32:  # MOVE_REAL
+                self.reals[d] = self.reals[a]
+            elif op == 33:  # SET_REAL
+                if self.reals[d] != self.reals[a]:
+                    self.reals[d] = self.reals[a]
+                    self._note(b)
+            elif op == 34:  # ADD_REAL
+                self.reals[d] = self.reals[a] + self.reals[b]
+            elif op == 35:  # SUB_REAL
+                self.reals[d] = self.reals[a] - self.reals[b]
+            elif op == 36:  # MUL_REAL
+                self.reals[d] = self.reals[a] * self.reals[b]
+            elif op == 37:  # MIN_REAL
+                self.reals[d] = self.reals[b] if self.reals[b] < self.reals[a] else self.reals[a]
+            elif op == 38:  # MAX_REAL
+                self.reals[d] = self.reals[b] if self.reals[b] > self.reals[a] else self.reals[a]
+            elif op == 39:  # ABS_REAL
+                self.reals[d] = -self.reals[a] if self.reals[a] < 0.0 else self.reals[a]
+            elif op == 40:  # DIVIDE
+                if self.reals[b] == 0.0:
+                    self._fail(2, pc)
+                    return 0
+                self.reals[d] = self.reals[a] / self.reals[b]
+            elif op == 41:  # LOAD_REAL
+                self.reals[d] = self.reals[a + self.ints[b]]
+            elif op == 42:  # STORE_REAL
+                at = d + self.ints[a]
+                if self.reals[at] != self.reals[b]:
+                    self.reals[at] = self.reals[b]
+                    if c >= 0:
+                        self._note(c)
+            elif op == 43:  # COPY_REAL
+                changed = 0
+                for i in range(c):
+                    if self.reals[d + i] != self.reals[a + i]:
+                        self.reals[d + i] = self.reals[a + i]
+                        changed = 1
+                if changed != 0 and b >= 0:
+                    self._note(b)
+            elif op == 44:  # COPY_INDEXED_REAL
+                at = a + self.ints[b]
+                for i in range(c):
+                    self.reals[d + i] = self.reals[at + i]
+            elif op == 45:  # STORE_MANY_REAL
+                at = d + self.ints[a]
+                for i in range(c):
+                    self.reals[at + i] = self.reals[b + i]
+            elif op == 46:  # RANGE_REAL
+                if self.reals[a] < self.reals[b] or self.reals[a] > self.reals[c]:
+                    self._fail(4, pc)
+                    self.fault_real = self.reals[a]
+                    return 0
+            elif op == 47:  # CALL_INT
+                if self._call(c, 0, d) == 0:
+                    self.fault_at = pc
+                    return 0
+            elif op == 48:  # CALL_REAL
+                if self._call(c, 1, d) == 0:
+                    self.fault_at = pc
+                    return 0
+            elif op == 49:  # ARGUMENT
+                self.arguments.append(self.ints[a])
+            elif op == 50:  # ARGUMENT_REAL
+                self.arguments.append(self.reals[a])
+            pc += 5

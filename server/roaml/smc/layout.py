@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where variables and constants live, and what names mean in each instance of an automaton."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, MutableSequence
+from dataclasses import dataclass
+from typing import Any
+
+from roaml.jani.expressions import ArrayAccess, Expression, Name
+from roaml.jani.model import Assignment, Automaton, Function, Model, Variable
+from roaml.jani.semantics import EvaluationError, Value, evaluate
+from roaml.jani.types import ArrayType, BoundedType, Type
+from roaml.smc.assemble import Assembler, Meaning, Names, Storage, kind_of, larger, shape_of
+from roaml.smc.fault import FaultError
+from roaml.smc.registers import INT, REAL, Number, Operand
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """An automaton as an element of the system; `own` are its variables."""
+
+    automaton: Automaton
+    names: Names
+    own: tuple[Storage, ...]
+    transient: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """All variables of a model.
+
+    Attributes:
+        names: what names mean outside of automata.
+        shared: the variables of the model.
+        initial: for each storage, by its identity, the first value.
+    """
+
+    names: Names
+    shared: tuple[Storage, ...]
+    instances: tuple[Instance, ...]
+    initial: Mapping[int, Value]
+
+    @property
+    def storages(self) -> tuple[Storage, ...]:
+        """All variables, in the order of their registers."""
+        return (*self.shared, *(storage for instance in self.instances for storage in instance.own))
+
+
+def lay_out(model: Model, assembler: Assembler) -> Layout:
+    """Give a place to everything that has a value; registers of variables come before all others.
+
+    Raises:
+        FaultError: a constant or variable has no value, or one that is not supported.
+    """
+    functions = {function.name: function for function in model.functions}
+    constants = _constants(model, functions)
+    initial: dict[int, Value] = {}
+    values: dict[str, Meaning] = {}
+    shared = _storages(model.variables, constants, functions, initial)
+    values.update({storage.name: storage for storage in shared})
+    arrays = {c.name: constants[c.name] for c in model.constants if isinstance(c.type, ArrayType)}
+    constant_arrays = []
+    for constant in model.constants:
+        if constant.name in arrays:
+            storage = _storage(constant.name, constant.type, constants[constant.name])
+            storage.is_constant = True
+            initial[id(storage)] = constants[constant.name]
+            constant_arrays.append(storage)
+            values[constant.name] = storage
+    drafts = []
+    by_name = {automaton.name: automaton for automaton in model.automata}
+    for element in model.system.elements:
+        automaton = by_name.get(element.automaton)
+        if automaton is None:
+            raise FaultError(f"there is no automaton `{element.automaton}`", element.origin)
+        inner = {**functions, **{function.name: function for function in automaton.functions}}
+        own = _storages(automaton.variables, constants, inner, initial)
+        drafts.append((automaton, inner, own))
+    scopes = [{**values, **{storage.name: storage for storage in own}} for _, _, own in drafts]
+    named = [(a, Names(scope, inner)) for (a, inner, _), scope in zip(drafts, scopes, strict=True)]
+    _grow(named, assembler, constants)
+    tape = assembler.tape
+    for storage in (*shared, *(storage for _, _, own in drafts for storage in own)):
+        _place(storage, initial[id(storage)], assembler)
+    for storage in constant_arrays:
+        _place(storage, initial[id(storage)], assembler)
+    for constant in model.constants:
+        if constant.name not in arrays:
+            value = constants[constant.name]
+            kind = kind_of(constant.type)
+            assert isinstance(value, (bool, int, float))
+            # In every scope: the same register.
+            operand = tape.constant(kind, float(value) if kind == REAL else value)
+            values[constant.name] = operand
+            for (_, _, own), scope in zip(drafts, scopes, strict=True):
+                if constant.name not in {storage.name for storage in own}:
+                    scope[constant.name] = operand
+    instances = tuple(
+        Instance(automaton, Names(scope, inner), own, frozenset(v.name for v in automaton.variables if v.transient))
+        for (automaton, inner, own), scope in zip(drafts, scopes, strict=True)
+    )
+    return Layout(Names(values, functions), shared, instances, initial)
+
+
+def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
+    known: dict[str, Value] = {}
+    for constant in model.constants:
+        if constant.value is None:
+            raise FaultError(f"the constant `{constant.name}` has no value", constant.origin)
+        known[constant.name] = _evaluated(constant.value, known, functions)
+    return known
+
+
+def _evaluated(expression: Expression, known: Mapping[str, Value], functions: Mapping[str, Function]) -> Value:
+    try:
+        value = evaluate(expression, known, functions)
+    except EvaluationError as error:
+        raise FaultError(error.message, error.origin or expression.origin) from None
+    if isinstance(value, int) and abs(value) >= 1 << 63:
+        raise FaultError("integer overflow: the result does not fit into 64 bits", expression.origin)
+    return value
+
+
+def _storages(
+    variables: Iterable[Variable],
+    constants: Mapping[str, Value],
+    functions: Mapping[str, Function],
+    initial: dict[int, Value],
+) -> tuple[Storage, ...]:
+    found = []
+    for variable in variables:
+        try:
+            kind_of(variable.type)
+        except FaultError as fault:
+            raise FaultError(f"`{variable.name}`: {fault.message}", variable.origin) from None
+        if variable.initial_value is None:
+            raise FaultError(f"the variable `{variable.name}` has no initial value", variable.origin)
+        value = _evaluated(variable.initial_value, constants, functions)
+        storage = _storage(variable.name, variable.type, value)
+        if isinstance(variable.type, BoundedType):
+            ends: list[Number | None] = []
+            for end in (variable.type.lower, variable.type.upper):
+                bound = None if end is None else _evaluated(end, constants, functions)
+                assert bound is None or isinstance(bound, (int, float))
+                ends.append(bound)
+            low, high = ends
+            storage.bounds = low, high
+            assert isinstance(value, (int, float))
+            if (low is not None and value < low) or (high is not None and value > high):
+                raise FaultError(f"the initial value of `{variable.name}` is outside of its bounds", variable.origin)
+        initial[id(storage)] = value
+        found.append(storage)
+    return tuple(found)
+
+
+def _storage(name: str, type_: Type, value: Value) -> Storage:
+    return Storage(name, type_, kind_of(type_), shape_of(value) if isinstance(type_, ArrayType) else ())
+
+
+def _grow(scopes: list[tuple[Automaton, Names]], assembler: Assembler, constants: Mapping[str, Value]) -> None:
+    """Make arrays as large as the largest value that is ever assigned to them."""
+    known: dict[str, Meaning] = {
+        name: Operand(INT, -1, value) for name, value in constants.items() if isinstance(value, (int, float))
+    }
+    assignments: list[tuple[Assignment, Names, Storage, int]] = []
+    for automaton, names in scopes:
+        wider = Names({**known, **names.values}, names.functions)
+        for assignment in _assignments(automaton):
+            depth = 0
+            target: Expression = assignment.target
+            while isinstance(target, ArrayAccess):
+                depth, target = depth + 1, target.array
+            storage = names.values.get(target.identifier) if isinstance(target, Name) else None
+            if isinstance(storage, Storage) and depth < len(storage.shape):
+                assignments.append((assignment, wider, storage, depth))
+    for _ in range(len(assignments) + 1):
+        changed = False
+        for assignment, names, storage, depth in assignments:
+            shape = assembler.shape(assignment.value, names)
+            inner = storage.shape[depth:]
+            if len(shape) == len(inner) and larger(inner, shape) != inner:
+                storage.shape = (*storage.shape[:depth], *larger(inner, shape))
+                changed = True
+        if not changed:
+            return
+    raise FaultError("the sizes of the arrays do not settle")
+
+
+def _assignments(automaton: Automaton) -> Iterator[Assignment]:
+    for edge in automaton.edges:
+        for destination in edge.destinations:
+            yield from destination.assignments
+
+
+def _place(storage: Storage, value: Value, assembler: Assembler) -> None:
+    size = 1
+    for length in storage.shape:
+        size *= length
+    storage.base = assembler.tape.room(storage.kind, size)
+    cells: MutableSequence[Any] = assembler.tape.reals if storage.kind == REAL else assembler.tape.ints
+    _fill(cells, storage.base, storage.shape, value)
+
+
+def _fill(cells: MutableSequence[Any], base: int, shape: tuple[int, ...], value: Value) -> None:
+    if not shape:
+        assert isinstance(value, (bool, int, float))
+        cells[base] = value if isinstance(value, float) else int(value)
+        return
+    assert isinstance(value, tuple)
+    size = 1
+    for length in shape[1:]:
+        size *= length
+    for position, each in enumerate(value):
+        _fill(cells, base + position * size, shape[1:], each)

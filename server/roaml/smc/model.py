@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A JANI model that is ready to be asked: the entrance to this package."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+
+from roaml.jani.model import Model
+from roaml.jani.properties import Property
+from roaml.smc.batch import Payload, Problem, pack
+from roaml.smc.compile import Compilation, Legend
+from roaml.smc.fault import FaultError
+from roaml.smc.goal import Asked, ask
+from roaml.smc.lss import Extremes, extremes
+from roaml.smc.opcodes import MESSAGES, FaultCode
+from roaml.smc.pool import Pool, Pulse
+from roaml.smc.program import Compiled, Program
+from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
+
+DEPTH = 15_000
+"""Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
+
+
+class Checker:
+    """A model, compiled for some of its properties.
+
+    Raises:
+        FaultError: the model or a property cannot be run.
+    """
+
+    def __init__(self, model: Model, properties: Iterable[Property] | None = None) -> None:
+        self.model = model
+        chosen = model.properties if properties is None else tuple(properties)
+        depth = sys.getrecursionlimit()
+        sys.setrecursionlimit(max(depth, DEPTH))
+        try:
+            self._compilation = Compilation(model, [property_.expression for property_ in chosen])
+            self.asked: tuple[Asked, ...] = tuple(ask(self._compilation, property_) for property_ in chosen)
+            self.program: Program = self._compilation.program()
+        except RecursionError:
+            raise FaultError("an expression of this model is nested too deeply", model.origin) from None
+        finally:
+            sys.setrecursionlimit(depth)
+
+    @property
+    def legend(self) -> Legend:
+        return self._compilation.legend
+
+    def compiled(self, asked: Asked) -> Compiled:
+        return Compiled(self.program, asked.goal)
+
+    def payload(self, asked: Asked) -> Payload:
+        """What workers need to answer a question."""
+        return pack(self.compiled(asked))
+
+    def answer(
+        self,
+        asked: Asked,
+        options: Options,
+        pool: Pool,
+        tally: Tally | None = None,
+        watch: Watch | None = None,
+        pulse: Pulse | None = None,
+    ) -> Answer:
+        """Answer a question by traces with uniform choices; see `roaml.smc.run.answer`.
+
+        Raises:
+            FaultError: a trace went wrong.
+        """
+        try:
+            return answer(self.payload(asked), asked.question, options, pool, tally, watch, pulse)
+        except TraceFaultError as error:
+            raise self.fault(error.problem) from None
+
+    def extremes(
+        self, asked: Asked, options: Options, pool: Pool, watch: Watch | None = None, pulse: Pulse | None = None
+    ) -> Extremes:
+        """The least and the greatest probability that memoryless schedulers were found to achieve.
+
+        Raises:
+            FaultError: a trace went wrong, or the question is about rewards.
+        """
+        if asked.question.is_reward:
+            raise FaultError("schedulers are sampled for probabilities only", asked.property.origin)
+        try:
+            return extremes(self.payload(asked), asked.question, options, pool, watch=watch, pulse=pulse)
+        except TraceFaultError as error:
+            raise self.fault(error.problem) from None
+
+    def fault(self, problem: Problem) -> FaultError:
+        """What went wrong in a trace, in words."""
+        code = FaultCode(problem.code)
+        value: float = problem.value
+        if code is FaultCode.DOMAIN or (code is FaultCode.RANGE and problem.value == 0 and problem.real != 0):
+            value = problem.real
+        message = MESSAGES[code].format(value=value, size=problem.size)
+        return FaultError(message, self._compilation.tape.origin_of(problem.at), problem.trace)

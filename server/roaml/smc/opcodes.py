@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The instructions of the bytecode, which `assemble` writes and `kernel` executes.
+
+An instruction is five numbers: its code and the operands d, a, b, c. `I` are the registers for ints and bools (0 or
+1), `D` those for reals; variables, constants and intermediate results all live there. The kernel writes the codes as
+numbers, since a C compiler makes a jump table of these; a test holds both together.
+"""
+
+from __future__ import annotations
+
+import enum
+
+WIDTH = 5
+"""Numbers in an instruction."""
+
+
+class Op(enum.IntEnum):
+    """What an instruction does; `v` is the number of a watched variable."""
+
+    RETURN = 0  # the value is I[a]
+    JUMP = 1  # to d
+    JUMP_TRUE = 2  # to d if I[a]
+    JUMP_FALSE = 3  # to d unless I[a]
+    JUMP_EQ = 4  # to d if I[a] = I[b]
+    JUMP_NE = 5
+    JUMP_LT = 6
+    JUMP_LE = 7
+    MOVE = 8  # I[d] := I[a]
+    SET = 9  # I[d] := I[a]; note v = b if that is a change
+    ADD = 10  # I[d] := I[a] + I[b]
+    SUB = 11
+    MUL = 12
+    MIN = 13
+    MAX = 14
+    ABS = 15
+    REM = 16
+    REAL = 17  # D[d] := I[a]
+    INDEX = 18  # fault unless 0 ≤ I[a] < b
+    OFFSET = 19  # I[d] := I[d] * b + I[a], an index that has been checked
+    LOAD = 20  # I[d] := I[a + I[b]]
+    STORE = 21  # I[d + I[a]] := I[b]; note v = c if c ≥ 0 and that is a change
+    COPY = 22  # c numbers from I[a...] to I[d...]; note v = b if b ≥ 0 and that is a change
+    COPY_INDEXED = 23  # c numbers from I[a + I[b]...] to I[d...]
+    STORE_MANY = 24  # c numbers from I[b...] to I[d + I[a]...]
+    NOTE = 25  # v = d has changed
+    RANGE = 26  # fault unless I[b] ≤ I[a] ≤ I[c]
+    FAULT = 27  # always; d says which
+    JUMP_EQ_REAL = 28  # to d if D[a] = D[b]
+    JUMP_NE_REAL = 29
+    JUMP_LT_REAL = 30
+    JUMP_LE_REAL = 31
+    MOVE_REAL = 32
+    SET_REAL = 33
+    ADD_REAL = 34
+    SUB_REAL = 35
+    MUL_REAL = 36
+    MIN_REAL = 37
+    MAX_REAL = 38
+    ABS_REAL = 39
+    DIVIDE = 40
+    LOAD_REAL = 41
+    STORE_REAL = 42
+    COPY_REAL = 43
+    COPY_INDEXED_REAL = 44
+    STORE_MANY_REAL = 45
+    RANGE_REAL = 46
+    CALL_INT = 47  # I[d] := functions[c](the numbers in the argument list b), a of them
+    CALL_REAL = 48
+    ARGUMENT = 49  # append I[a] to the arguments of the next call
+    ARGUMENT_REAL = 50
+
+
+class FaultCode(enum.IntEnum):
+    """Why a trace could not go on."""
+
+    NONE = 0
+    OVERFLOW = 1
+    DIVISION = 2
+    INDEX = 3
+    RANGE = 4
+    DOMAIN = 5
+    PROBABILITY = 6
+    EMPTY = 7
+    TOO_LARGE = 8
+
+
+MESSAGES = {
+    FaultCode.OVERFLOW: "integer overflow: the result does not fit into 64 bits",
+    FaultCode.DIVISION: "division by zero",
+    FaultCode.INDEX: "index {value} is outside of the array, which has {size} elements",
+    FaultCode.RANGE: "{value} is outside of the bounds of the variable's type",
+    FaultCode.DOMAIN: "this function has no value for {value}",
+    FaultCode.PROBABILITY: "the probabilities of this edge do not add up to 1, or one is negative",
+    FaultCode.EMPTY: "the array has no elements",
+    FaultCode.TOO_LARGE: "the result is too large for a number",
+}

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Batches on many processors or machines, in order, whatever happens to workers.
+
+The results of batches come in the order of the batches, so nothing depends on who was faster. A batch is a pure
+function: if a worker dies, what it had is run again.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from typing import TypeAlias
+
+from roaml.smc.batch import Outcome, Task, run, start_worker
+
+PATIENCE = 0.4
+"""Seconds that are worked alone before workers are started: most questions are answered by then."""
+ATTEMPTS = 5
+"""How often workers may be lost without any progress in between."""
+_TICK = 0.1
+
+Pulse: TypeAlias = Callable[[int, int], None]
+
+
+class WorkersLostError(Exception):
+    """Workers die again and again."""
+
+
+class Pool:
+    """Runs batches: alone at first, then on `jobs` processes; or on an executor that is given.
+
+    To be used in a `with` statement; leaving it by an exception ends the workers at once.
+    """
+
+    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float = PATIENCE) -> None:
+        self.jobs = jobs
+        self.executor = executor
+        self.is_own = executor is None
+        self.patience = patience
+
+    def __enter__(self) -> Pool:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._stop(at_once=True)
+
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+        """The outcome of each task, in their order. The caller may stop to ask at any time.
+
+        Raises:
+            WorkersLostError: the tasks cannot be run.
+        """
+        waiting = iter(tasks)
+        if self.executor is None:
+            started = time.monotonic()
+            for task in waiting:
+                yield task, run(task, pulse)
+                if self.jobs > 1 and time.monotonic() - started > self.patience:
+                    break
+            else:
+                return
+        yield from self._distributed(waiting, pulse)
+
+    def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, Outcome]]:
+        running: deque[tuple[Task, Future[Outcome] | None]] = deque()
+        lost = 0
+        try:
+            while True:
+                while len(running) < 2 * self.jobs:
+                    task = next(waiting, None)
+                    if task is None:
+                        break
+                    running.append((task, self._submit(task)))
+                if not running:
+                    return
+                task, future = running[0]
+                try:
+                    outcome = self._wait(task, future, pulse)
+                except Exception as error:
+                    if self.is_own and not isinstance(error, BrokenExecutor):
+                        raise
+                    lost += 1
+                    if lost > ATTEMPTS:
+                        raise WorkersLostError(f"workers are lost again and again: {error}") from error
+                    if self.is_own:
+                        self._stop(at_once=True)
+                    again = [each for each, _ in running]
+                    running.clear()
+                    running.extend((each, self._submit(each)) for each in again)
+                    continue
+                lost = 0
+                running.popleft()
+                yield task, outcome
+        finally:
+            for _, each in running:
+                if each is not None:
+                    each.cancel()
+
+    def _submit(self, task: Task) -> Future[Outcome] | None:
+        """None if workers are being lost right now."""
+        if self.executor is None:
+            methods = multiprocessing.get_all_start_methods()
+            context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+            self.executor = ProcessPoolExecutor(self.jobs, mp_context=context, initializer=start_worker)
+        try:
+            return self.executor.submit(run, task)
+        except BrokenExecutor:
+            return None
+
+    def _wait(self, task: Task, future: Future[Outcome] | None, pulse: Pulse | None) -> Outcome:
+        if future is None:
+            raise BrokenExecutor("a worker has ended")
+        while True:
+            try:
+                return future.result(timeout=_TICK)
+            except (FutureTimeoutError, TimeoutError):
+                if future.done():
+                    raise
+                if pulse is not None:
+                    pulse(task.first, 0)
+
+    def _stop(self, at_once: bool) -> None:
+        if self.executor is None or not self.is_own:
+            return
+        processes = list((getattr(self.executor, "_processes", None) or {}).values())
+        self.executor.shutdown(wait=not at_once, cancel_futures=True)
+        if at_once:
+            for process in processes:
+                process.terminate()
+        self.executor = None

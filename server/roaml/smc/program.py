@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model and a goal as flat arrays: what the kernel walks, what workers are sent.
+
+Numbers: an *instance* is an automaton as an element of the system; *locations*, *groups* (the edges of a location for
+one slot), *edges* and *ways* (destinations) are counted through all instances. `x_start[i]` to `x_start[i + 1]` is the
+range of what belongs to `i`. Code is given by the place of its first instruction, -1 for none.
+"""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.jani.operators import Operator
+
+FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
+"""What becomes of a trace. The kernel has the same numbers; UNKNOWN: it can go on, and undecided if it does not."""
+
+Ints: TypeAlias = "array[int]"
+Reals: TypeAlias = "array[float]"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Program:
+    """A compiled model.
+
+    Attributes:
+        code, functions: the bytecode, and the operators whose functions it calls.
+        ints, reals: all registers at first: variables, then constants, then room for intermediate results.
+        int_count, real_count: the registers that are variables.
+        initial: the first location of each instance.
+        way_sum: the sum of the probabilities up to a way; way_chance: code that gives the register of the probability
+            where it depends on the state.
+        move_slot, move_count: what changes between two locations: so many edges of a slot are enabled; below zero,
+            `-1 - group` is to be looked at.
+        active_slot: the slots of a vector that do something; all_slot: all of them.
+        entangled: whether assignments of several parts of a vector have to do with one another.
+        phase_*: for these, the code of each way by the index of its assignments.
+        watch_*: where variables are read by guards; watched_*: the groups for each location of an instance.
+        settle: code that resets transient variables, location_code: what they are in a location.
+    """
+
+    code: Ints
+    functions: list[Operator]
+    ints: Ints
+    reals: Reals
+    int_count: int
+    real_count: int
+    instances: int
+    initial: Ints
+    first_location: Ints
+    group_start: Ints
+    group_slot: Ints
+    edge_start: Ints
+    guard: Ints
+    way_start: Ints
+    way_target: Ints
+    way_code: Ints
+    way_sum: Reals
+    way_chance: Ints
+    way_move: Ints
+    move_start: Ints
+    move_slot: Ints
+    move_count: Ints
+    slot_instance: Ints
+    slot_gate: Ints
+    gate_start: Ints
+    gate_vector: Ints
+    gate_missing: Ints
+    vector_missing: Ints
+    active_start: Ints
+    active_slot: Ints
+    all_start: Ints
+    all_slot: Ints
+    entangled: Ints
+    phase_start: Ints
+    phase_index: Ints
+    phase_read: Ints
+    phase_write: Ints
+    watch_start: Ints
+    watch_instance: Ints
+    watch_table: Ints
+    watched_start: Ints
+    watched_group: Ints
+    settle: int
+    location_code: Ints
+    zero_slots: Ints
+    zero_vectors: Ints
+    zero_variables: Ints
+    zero_instances: Ints
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Goal:
+    """What is asked about a trace: a formula over untils, and rewards.
+
+    Attributes:
+        seen: for each watched variable, whether a condition reads it.
+        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite.
+        lower, upper: its step bounds, both inclusive; -1 is none.
+        formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
+        is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.
+        step_reward, exit_reward: code that gives the register of the reward of a step.
+    """
+
+    seen: Ints
+    left: Ints
+    right: Ints
+    lower: Ints
+    upper: Ints
+    formula: Ints
+    is_bounded: int
+    step_reward: int
+    exit_reward: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Compiled:
+    """A program with its goal: all that a worker needs."""
+
+    program: Program
+    goal: Goal

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A trace again, step by step: what was taken, what has changed, and the places that it all exists for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+from roaml.jani.expressions import ArrayAccess, Expression
+from roaml.jani.model import Destination, Edge
+from roaml.smc.assemble import Storage, variables_in
+from roaml.smc.batch import Problem
+from roaml.smc.goal import Asked
+from roaml.smc.kernel import Kernel
+from roaml.smc.model import Checker
+from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
+from roaml.smc.registers import BOOL, REAL
+
+Plain: TypeAlias = "bool | int | float | list[Plain]"
+
+VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
+
+
+class Variable(NamedTuple):
+    """A variable of the model (`instance` is -1) or of an instance."""
+
+    instance: int
+    name: str
+
+
+class Part(NamedTuple):
+    """What one automaton does in a step."""
+
+    instance: int
+    automaton: str
+    source: str
+    edge: Edge
+    destination: Destination
+
+
+class Change(NamedTuple):
+    variable: Variable
+    before: Plain
+    after: Plain
+
+
+@dataclass(frozen=True, slots=True)
+class TraceStep:
+    """A step; `number` is 1 for the first. `action` is None if it is silent."""
+
+    number: int
+    action: str | None
+    parts: tuple[Part, ...]
+    changes: tuple[Change, ...]
+
+
+@dataclass(slots=True)
+class Recording:
+    """A trace that is walked again. `verdict` is known at the end, `problem` if it went wrong."""
+
+    trace: int
+    verdict: int = UNKNOWN
+    problem: Problem | None = None
+
+
+class Recorder:
+    """Walks single traces of a question."""
+
+    def __init__(self, checker: Checker, asked: Asked, seed: int, max_steps: int, scheduler: int = 0) -> None:
+        compiled = checker.compiled(asked)
+        self.legend = checker.legend
+        self.asked = asked
+        self.seed = seed
+        self.max_steps = max_steps
+        self.scheduler = scheduler
+        self._kernel = Kernel(compiled.program, compiled.goal)
+        layout = self.legend.layout
+        self.variables: list[tuple[Variable, Storage]] = [(Variable(-1, s.name), s) for s in layout.shared]
+        for number, instance in enumerate(layout.instances):
+            self.variables += [(Variable(number, s.name), s) for s in instance.own]
+        self._owner_of_int: dict[int, int] = {}
+        self._owner_of_real: dict[int, int] = {}
+        for position, (_, storage) in enumerate(self.variables):
+            size = 1
+            for length in storage.shape:
+                size *= length
+            owner = self._owner_of_real if storage.kind == REAL else self._owner_of_int
+            owner.update((register, position) for register in range(storage.base, storage.base + size))
+
+    @property
+    def shared(self) -> list[Storage]:
+        """The variables of the model."""
+        return list(self.legend.layout.shared)
+
+    def values(self, storages: Sequence[Storage]) -> list[Plain]:
+        """Their values in the state that is reached."""
+        ints, reals = self._kernel.snapshot()
+        return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
+
+    def initial(self, storages: Sequence[Storage]) -> list[Plain]:
+        """Their values at first."""
+        self._kernel.begin(self.seed, 0)
+        return self.values(storages)
+
+    def walk(self, recording: Recording) -> Iterator[TraceStep]:
+        """The steps of a trace; `values` tells what holds after each."""
+        kernel, done = self._kernel, 0
+        verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
+        ints, reals = kernel.snapshot()
+        while verdict == UNKNOWN and done < self.max_steps:
+            places = [kernel.location(i) for i in range(len(self.legend.layout.instances))]
+            verdict = kernel.advance(done + 1)
+            if verdict == FAULTY:
+                recording.problem = Problem(recording.trace, *kernel.problem())
+                break
+            if kernel.outcome()[0] == done:
+                break
+            done += 1
+            ints_after, reals_after = kernel.snapshot()
+            changes = self._changes(ints, reals, ints_after, reals_after)
+            ints, reals = ints_after, reals_after
+            _, action = self.legend.vectors[kernel.vector]
+            parts = tuple(self._part(instance, way, places) for instance, way in kernel.taken())
+            yield TraceStep(done, action, parts, changes)
+        recording.verdict = verdict
+
+    def reads(self, part: Part) -> set[Variable]:
+        """The variables that a part of a step depends on."""
+        layout = self.legend.layout.instances[part.instance]
+        found = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
+        for assignment in part.destination.assignments:
+            found |= variables_in(assignment.value, layout.names.functions)
+            target: Expression = assignment.target
+            while isinstance(target, ArrayAccess):
+                found |= variables_in(target.index, layout.names.functions)
+                target = target.array
+        own = {storage.name for storage in layout.own}
+        return {Variable(part.instance if name in own else -1, name) for name in found}
+
+    def _part(self, instance: int, way: int, places: list[int]) -> Part:
+        edge, destination = self.legend.ways[way]
+        _, source = self.legend.locations[places[instance]]
+        return Part(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
+
+    def _changes(
+        self, ints: list[int], reals: list[float], ints_after: list[int], reals_after: list[float]
+    ) -> tuple[Change, ...]:
+        changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
+        changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
+        found = []
+        for position in sorted(changed):
+            variable, storage = self.variables[position]
+            before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
+            found.append(Change(variable, _value(storage, before), _value(storage, after)))
+        return tuple(found)
+
+
+def _value(storage: Storage, cells: Sequence[int] | Sequence[float]) -> Plain:
+    return _part_of(cells, storage.base, storage.shape, storage.kind)
+
+
+def _part_of(cells: Sequence[int] | Sequence[float], base: int, shape: tuple[int, ...], kind: str) -> Plain:
+    if not shape:
+        return bool(cells[base]) if kind == BOOL else cells[base]
+    size = 1
+    for length in shape[1:]:
+        size *= length
+    return [_part_of(cells, base + i * size, shape[1:], kind) for i in range(shape[0])]

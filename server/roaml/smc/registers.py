@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Registers and instructions as they are handed out while a model is compiled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.jani.node import Origin
+from roaml.jani.operators import Operator
+from roaml.smc.opcodes import WIDTH, Op
+
+BOOL, INT, REAL = "bool", "int", "real"
+"""Kinds of values. Bools and ints live in the same registers."""
+
+Number: TypeAlias = "bool | int | float"
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """A scalar in a register; `value` is known for constants."""
+
+    kind: str
+    register: int
+    value: Number | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Consecutive registers of an array, row by row. `offset` is an int register that is added to `base`, or -1."""
+
+    kind: str
+    shape: tuple[int, ...]
+    base: int
+    offset: int = -1
+
+    @property
+    def size(self) -> int:
+        return product(self.shape)
+
+
+def product(shape: tuple[int, ...]) -> int:
+    """The number of elements of an array."""
+    size = 1
+    for length in shape:
+        size *= length
+    return size
+
+
+class Label:
+    """A place in the code that is known later."""
+
+    def __init__(self) -> None:
+        self.at = -1
+        self.uses: list[int] = []
+
+
+class Tape:
+    """The code so far, and the registers that it uses."""
+
+    def __init__(self) -> None:
+        self.code: list[int] = []
+        self.ints: list[int] = []
+        self.reals: list[float] = []
+        self.functions: list[Operator] = []
+        self.origins: list[tuple[int, Origin | None]] = []
+        self._constants: dict[tuple[str, Number], Operand] = {}
+        self._functions: dict[Operator, int] = {}
+        self._free_ints: list[int] = []
+        self._free_reals: list[int] = []
+        self._used_ints = 0
+        self._used_reals = 0
+
+    @property
+    def here(self) -> int:
+        return len(self.code)
+
+    def emit(self, op: Op, d: int = 0, a: int = 0, b: int = 0, c: int = 0) -> None:
+        self.code += (op, d, a, b, c)
+
+    def place(self, origin: Origin | None) -> None:
+        """What follows exists for `origin`."""
+        if origin is not None:
+            self.origins.append((len(self.code), origin))
+
+    def jump(self, op: Op, label: Label, a: int = 0, b: int = 0) -> None:
+        label.uses.append(len(self.code) + 1)
+        self.emit(op, label.at, a, b)
+
+    def mark(self, label: Label) -> None:
+        label.at = len(self.code)
+        for use in label.uses:
+            self.code[use] = label.at
+
+    def constant(self, kind: str, value: Number) -> Operand:
+        """A register that always has this value."""
+        # The sign tells -0.0 from 0.0, which are equal.
+        key = (f"{kind}{str(value)[0]}", value)
+        found = self._constants.get(key)
+        if found is None:
+            found = Operand(kind, self.room(kind, 1, value), value)
+            self._constants[key] = found
+        return found
+
+    def room(self, kind: str, size: int, value: Number = 0) -> int:
+        """New registers, one after the other, that nothing else uses."""
+        if kind == REAL:
+            self.reals += [float(value)] * size
+            return len(self.reals) - size
+        self.ints += [int(value)] * size
+        return len(self.ints) - size
+
+    def begin(self, origin: Origin | None = None) -> int:
+        """A new piece of code, which exists for `origin`; all temporary registers are free in it. Where it begins."""
+        self._used_ints = self._used_reals = 0
+        self.origins.append((len(self.code), origin))
+        return len(self.code)
+
+    def temporary(self, kind: str) -> int:
+        """A register for an intermediate result of this piece of code."""
+        if kind == REAL:
+            if self._used_reals == len(self._free_reals):
+                self._free_reals.append(self.room(kind, 1))
+            self._used_reals += 1
+            return self._free_reals[self._used_reals - 1]
+        if self._used_ints == len(self._free_ints):
+            self._free_ints.append(self.room(kind, 1))
+        self._used_ints += 1
+        return self._free_ints[self._used_ints - 1]
+
+    def function(self, operator: Operator) -> int:
+        """The number under which code calls the function of an operator."""
+        if operator not in self._functions:
+            self._functions[operator] = len(self.functions)
+            self.functions.append(operator)
+        return self._functions[operator]
+
+    def origin_of(self, at: int) -> Origin | None:
+        """What the instruction at a place of the code exists for."""
+        found = None
+        for place, origin in self.origins:
+            if place > at:
+                break
+            found = origin
+        return found
+
+
+assert WIDTH == 5

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a question to its answer: how many traces, and what they say.
+
+- Whether more traces are needed is decided after whole batches, in the order of their numbers, and the size of a batch
+  depends on the traces before it only. So the answer is a function of model, property, seed and options.
+- What must be known to go on after an interruption is a `Tally`: a few numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from roaml.smc.batch import Outcome, Payload, Problem, Task
+from roaml.smc.goal import Question
+from roaml.smc.pool import Pool, Pulse
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, okamoto
+
+ADAPTIVE, OKAMOTO, SPRT, FIXED = "adaptive", "okamoto", "sprt", "fixed"
+METHODS = (ADAPTIVE, OKAMOTO, SPRT, FIXED)
+
+FIRST_BATCH = 100
+LARGEST_BATCH = 5000
+GROWTH = 0.1
+PEEKING = 0.75
+"""Stopping as soon as the interval is narrow enough makes it miss a bit more often; so it is computed for this part of
+the error that is allowed. The test computes that the whole then keeps what it promises."""
+NO_MORE_FOR_REWARDS = 10_000_000
+KEPT = 1000
+"""So many trace numbers of each verdict are remembered."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How to answer.
+
+    Attributes:
+        confidence: the probability with which the interval holds the true value.
+        epsilon: half the width of the interval; for rewards in parts of the value.
+        max_traces: no more than that; with the method "fixed", exactly that.
+        max_steps: traces that are not decided by then stay undecided.
+    """
+
+    confidence: float = 0.95
+    epsilon: float = 0.01
+    max_traces: int | None = None
+    max_steps: int = 1_000_000
+    seed: int = 0
+    method: str = ADAPTIVE
+
+
+class Seen(NamedTuple):
+    """A trace that is remembered: its number and its steps."""
+
+    trace: int
+    steps: int
+
+
+@dataclass(slots=True)
+class Tally:
+    """What is known after some batches; all that is needed to go on.
+
+    Attributes:
+        accepted: what a sequential test has decided.
+        examples: for each verdict the first traces; shortest: for each the shortest one.
+    """
+
+    traces: int = 0
+    successes: int = 0
+    undecided: int = 0
+    steps: int = 0
+    mean: Mean = field(default_factory=Mean)
+    accepted: bool | None = None
+    is_finished: bool = False
+    examples: dict[int, list[Seen]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
+    shortest: dict[int, Seen] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, object]:
+        """As a value for JSON."""
+        return {
+            "traces": self.traces,
+            "successes": self.successes,
+            "undecided": self.undecided,
+            "steps": self.steps,
+            "mean": [self.mean.number, self.mean.mean.hex(), self.mean.squares.hex()],
+            "accepted": self.accepted,
+            "finished": self.is_finished,
+            "examples": {str(verdict): seen for verdict, seen in self.examples.items()},
+            "shortest": {str(verdict): seen for verdict, seen in self.shortest.items()},
+        }
+
+    @staticmethod
+    def from_json(value: dict) -> Tally:  # type: ignore[type-arg]
+        """
+        Raises:
+            KeyError, TypeError, ValueError, AttributeError: this was not written by `to_json`.
+        """
+        count, mean, squares = value["mean"]
+        return Tally(
+            traces=int(value["traces"]),
+            successes=int(value["successes"]),
+            undecided=int(value["undecided"]),
+            steps=int(value["steps"]),
+            mean=Mean(int(count), float.fromhex(mean), float.fromhex(squares)),
+            accepted=value["accepted"],
+            is_finished=bool(value["finished"]),
+            examples={int(v): [Seen(*each) for each in seen] for v, seen in value["examples"].items()},
+            shortest={int(v): Seen(*each) for v, each in value["shortest"].items()},
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the traces say.
+
+    Attributes:
+        value: the estimate: of a probability, the middle of what undecided traces leave open; of a reward, infinity if
+            some trace never reaches what it is counted to.
+        bounds: the interval for the true value.
+        is_complete: whether the interval is as narrow as was asked for, or the test has decided.
+    """
+
+    question: Question
+    options: Options
+    tally: Tally
+    value: float
+    bounds: Bounds
+    is_complete: bool
+
+    @property
+    def failures(self) -> int:
+        return self.tally.traces - self.tally.successes - self.tally.undecided
+
+
+Watch = Callable[[Tally], None]
+
+
+class TraceFaultError(Exception):
+    """A trace did something that has no meaning; who knows the code tells what and where."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem)
+        self.problem = problem
+
+
+def answer(
+    payload: Payload,
+    question: Question,
+    options: Options,
+    pool: Pool,
+    tally: Tally | None = None,
+    watch: Watch | None = None,
+    pulse: Pulse | None = None,
+    first: int = 0,
+    scheduler: int = 0,
+) -> Answer:
+    """Run traces until the question is answered.
+
+    Args:
+        tally: where to go on; it is changed as batches come in, so that it tells what is known if this is interrupted.
+        watch: told after each batch.
+        first: the number of the first trace.
+
+    Raises:
+        TraceFaultError: a trace went wrong.
+    """
+    tally = Tally() if tally is None else tally
+    if not tally.is_finished:
+        tasks = _tasks(payload, options, tally.traces, first, scheduler)
+        for _, outcome in pool.outcomes(tasks, pulse):
+            _add(tally, outcome, question, options, first)
+            if outcome.problem is not None:
+                raise TraceFaultError(outcome.problem)
+            tally.is_finished = _is_enough(tally, question, options)
+            if watch is not None:
+                watch(tally)
+            if tally.is_finished:
+                break
+        tally.is_finished = True
+    return summary(question, options, tally)
+
+
+def summary(question: Question, options: Options, tally: Tally) -> Answer:
+    """What a tally says, finished or not."""
+    bounds = bounds_of(tally, question, options)
+    if question.is_reward:
+        failures = tally.traces - tally.successes - tally.undecided
+        value = math.inf if failures else tally.mean.mean
+        complete = _is_narrow(tally, question, options, bounds)
+    else:
+        value = (tally.successes + tally.undecided / 2) / tally.traces if tally.traces else math.nan
+        complete = tally.accepted is not None or _is_narrow(tally, question, options, bounds)
+    return Answer(question, options, tally, value, bounds, complete)
+
+
+def bounds_of(tally: Tally, question: Question, options: Options) -> Bounds:
+    """The interval that a tally gives."""
+    error = 1 - options.confidence
+    confidence = 1 - error * PEEKING if options.method == ADAPTIVE else options.confidence
+    if question.is_reward:
+        lower, upper = tally.mean.bounds(confidence)
+        if tally.traces - tally.successes:
+            upper = math.inf
+            lower = math.inf if tally.traces - tally.successes - tally.undecided else lower
+        return Bounds(lower, upper)
+    return clopper_pearson(tally.successes, tally.traces, confidence, tally.undecided)
+
+
+def wanted_traces(options: Options) -> int | None:
+    """How many traces a method without adaption takes."""
+    if options.method == OKAMOTO:
+        return okamoto(options.confidence, options.epsilon)
+    return options.max_traces if options.method == FIXED else None
+
+
+def _tasks(payload: Payload, options: Options, done: int, first: int, scheduler: int) -> Iterator[Task]:
+    limits = [limit for limit in (options.max_traces, wanted_traces(options)) if limit is not None]
+    limit = min(limits) if limits else None
+    while limit is None or done < limit:
+        size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
+        if limit is not None:
+            size = min(size, limit - done)
+        yield Task(payload, options.seed, first + done, size, options.max_steps, scheduler)
+        done += size
+
+
+def _add(tally: Tally, outcome: Outcome, question: Question, options: Options, first: int) -> None:
+    ratio = ratio_of(question, options)
+    for verdict, steps, reward in zip(outcome.verdicts, outcome.steps, outcome.rewards, strict=True):
+        trace = first + tally.traces
+        tally.traces += 1
+        tally.steps += steps
+        if verdict == TRUE:
+            tally.successes += 1
+            if question.is_reward:
+                tally.mean = tally.mean.add(reward)
+        elif verdict == UNKNOWN:
+            tally.undecided += 1
+        examples = tally.examples[verdict]
+        if len(examples) < KEPT:
+            examples.append(Seen(trace, steps))
+        if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
+            tally.shortest[verdict] = Seen(trace, steps)
+        if ratio is not None and question.threshold is not None:
+            good = tally.successes + (0 if question.threshold.is_lower else tally.undecided)
+            above = ratio.decision(good, tally.traces)
+            if above is not None:
+                tally.accepted = above is question.threshold.is_lower
+                return
+
+
+def ratio_of(question: Question, options: Options) -> Ratio | None:
+    """The sequential test, where one is to be made."""
+    if options.method != SPRT or question.threshold is None or question.is_reward:
+        return None
+    return Ratio(question.threshold.number, options.epsilon, 1 - options.confidence)
+
+
+def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
+    if options.method in (OKAMOTO, FIXED):
+        return False
+    if options.method == SPRT and ratio_of(question, options) is not None:
+        return tally.accepted is not None
+    if question.is_reward and tally.traces - tally.successes - tally.undecided:
+        return True
+    if tally.traces >= NO_MORE_FOR_REWARDS:
+        return True
+    return _is_narrow(tally, question, options) or _is_hopeless(tally, options)
+
+
+def _is_narrow(tally: Tally, question: Question, options: Options, bounds: Bounds | None = None) -> bool:
+    bounds = bounds_of(tally, question, options) if bounds is None else bounds
+    if question.is_reward:
+        if math.isinf(tally.mean.mean) or tally.traces == 0:
+            return False
+        if math.isinf(bounds.lower):
+            return bounds.lower > 0
+        return bounds.half_width <= options.epsilon * max(abs(tally.mean.mean), 1e-9)
+    return bounds.half_width <= options.epsilon + 1e-12
+
+
+def _is_hopeless(tally: Tally, options: Options) -> bool:
+    """Whether so many traces stay undecided that no number of traces makes the interval narrow enough."""
+    if tally.undecided == 0:
+        return False
+    share = clopper_pearson(tally.undecided, tally.traces, options.confidence)
+    return share.lower > 2 * options.epsilon

@@ -1,0 +1,507 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp verify MAIN.xml|MODEL.jani`"""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from command import Command
+from smc_models import Json, at, automaton, document, edge, op, probability, variable, way
+
+import as2fm_lsp.verification.traces
+from as2fm_lsp.verification.bar import line
+from as2fm_lsp.verification.expectations import parse
+from roaml import api
+from roaml.smc.goal import Question
+from roaml.smc.run import FIXED, Options, Tally
+
+
+@pytest.fixture
+def robot(command: Command, tmp_path: Path) -> Path:
+    """The system that `init` writes, the working directory of the command."""
+    command("init", ".")
+    return tmp_path
+
+
+def write(folder: Path, written: Json, name: str = "model.jani") -> str:
+    (folder / name).write_text(json.dumps(written, indent=1), encoding="utf-8")
+    return name
+
+
+def coin(p: float = 0.3, **more: Any) -> Json:
+    goal = op("F", op("=", "x", 1))
+    properties = {"heads": probability(goal), "never": probability(op("G", op("≤", "x", 1)))}
+    steps = [edge("s", way("e", p, x=1), way("e", 1 - p))]
+    return document(automaton("a", "s e", steps), variables=[variable("x")], properties=properties, **more)
+
+
+def rows(text: str) -> dict[str, dict[str, Any]]:
+    return {row["property"]: row for row in json.loads(text)["results"]}
+
+
+def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
+    done = command("verify", "main.xml", "--format", "json", "--seed", 1)
+    assert (done.status, done.err) == (0, "")
+    found = rows(done.out)
+    assert {name: row["probability"] for name, row in found.items()} == {"all_delivered": 1.0, "never_empty": 1.0}
+    assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
+    assert not (robot / "main.jani").exists()
+
+
+def test_text_says_how_choices_were_made(command: Command, robot: Path) -> None:
+    done = command("verify", "main.xml", "--property", "never_empty")
+    assert done.status == 0
+    assert done.out.startswith("never_empty: 1 in [0.98")
+    assert "choices were made uniformly at random" in done.out
+    assert "all_delivered" not in done.out
+
+
+def test_expectations_decide_the_exit_status(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    met = command("verify", name, "--expect", "heads <= 0.4", "--expect", "never >= 1")
+    assert (met.status, "expected ≤ 0.4: met" in met.out) == (0, True)
+    missed = command("verify", name, "--expect", "heads >= 0.4", "--format", "json")
+    assert missed.status == 1
+    assert rows(missed.out)["heads"]["expectations"] == [{"expected": "≥ 0.4", "met": False, "certain": True}]
+    assert command("verify", name, "--expect", "heads = 0.3").status == 0
+
+
+def test_a_threshold_of_the_property_is_an_expectation(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    for number, status in ((0.2, 0), (0.4, 1)):
+        value = op("≥", {"op": "Pmin", "exp": op("F", op("=", "x", 1))}, number)
+        written["properties"] = [{"name": "p", "expression": value}]
+        for method in ("adaptive", "sprt"):
+            done = command("verify", write(tmp_path, written), "--method", method)
+            assert done.status == status
+            assert f"expected ≥ {number}" in done.out
+
+
+def test_undecided_traces_count_against_an_expectation(command: Command, tmp_path: Path) -> None:
+    steps = [edge("s", way("e", 0.9, x=1), way("l", 0.1)), edge("l", "m"), edge("m", "l")]
+    goal = {"p": probability(op("F", op("=", "x", 1)))}
+    name = write(tmp_path, document(automaton("a", "s e l m", steps), variables=[variable("x")], properties=goal))
+    options = ("--max-steps", 100, "--method", "fixed", "--max-traces", 1000)
+    done = command("verify", name, *options, "--expect", "p >= 0.94")
+    assert done.status == 1
+    assert "undecided traces were cut after 100 steps" in done.out
+    assert command("verify", name, *options, "--expect", "p <= 0.94").status == 1
+
+
+def test_junit(command: Command, tmp_path: Path) -> None:
+    done = command("verify", write(tmp_path, coin()), "--expect", "heads >= 0.9", "--format", "junit")
+    suites = ET.fromstring(done.out)
+    cases = {case.get("name"): case for case in suites.iter("testcase")}
+    assert set(cases) == {"heads", "never"}
+    assert cases["heads"].find("failure") is not None
+    assert cases["never"].find("failure") is None
+
+
+def test_results_do_not_depend_on_jobs(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+
+    def numbers(*options: object) -> dict[str, dict[str, Any]]:
+        found = rows(command("verify", name, "--format", "json", *options).out)
+        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in found.items()}
+
+    assert numbers("--jobs", 1) == numbers("--jobs", 2) == numbers()
+    assert numbers("--seed", 1) != numbers()
+
+
+# ------------------------------------------------------------------ why
+
+
+def late(command: Command, folder: Path) -> None:
+    """The system that `init` writes, in a hurry: three parcels in five seconds."""
+    main = (folder / "main.xml").read_text()
+    (folder / "main.xml").write_text(main.replace('value="60"', 'value="7"'))
+
+
+def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
+    late(command, robot)
+    done = command("verify", "main.xml", "--property", "all_delivered", "--explain")
+    assert done.status == 0
+    story = done.out.partition("all_delivered failed in trace ")[2]
+    assert "it reads bt_1000_response__status" in story
+    # Each line has its time and place, and what has moved below it.
+    lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
+    number = next(n for n, text in enumerate(lines, 1) if "ros_service_send_request" in text)
+    (first, *_) = [text for text in story.splitlines() if "_Deliver  " in text and "sends srv_hand_over" in text]
+    assert f"plugins/deliver.ascxml:{number}" in first
+    assert ".000 s  BT_plugin_1004_Deliver " in first
+    assert re.search(r"\n +\w+: \S+ → \S+", story)
+
+
+def test_explains_as_diagram_and_page(command: Command, robot: Path) -> None:
+    late(command, robot)
+    done = command("verify", "main.xml", "--explain", "why.mmd", "--explain", "why.html", "--format", "json")
+    assert "there is no trace in which it fails" in done.err
+    diagram = (robot / "why.mmd").read_text()
+    assert diagram.startswith("sequenceDiagram\n")
+    participants = {row.split()[1]: row.split()[3] for row in diagram.splitlines() if "participant" in row}
+    assert {"Building", "BT_plugin_1004_Deliver"} <= set(participants.values())
+    arrows = [row for row in diagram.splitlines() if "->>" in row]
+    assert arrows
+    for row in arrows:
+        source, _, rest = row.strip().partition("->>")
+        assert {source, rest.partition(":")[0]} <= participants.keys()
+    page = (robot / "why.html").read_text()
+    assert "<html" in page
+    assert "Building" in page
+    assert "http" not in page.replace("http-equiv", "")
+
+
+def test_explains_why_something_bad_happens(command: Command, tmp_path: Path) -> None:
+    """Where little is expected, the trace in which it holds tells why."""
+    done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.1", "--explain")
+    assert done.status == 1
+    assert "heads passed in trace " in done.out
+    assert "x: 0 → 1" in done.out
+
+
+def test_writes_traces(command: Command, robot: Path) -> None:
+    late(command, robot)
+    options = ("--property", "all_delivered", "--traces", "out", "--traces-limit", 2)
+    assert command("verify", "main.xml", *options).status == 0
+    names = sorted(path.name for path in (robot / "out").iterdir())
+    assert {name.rpartition("-")[2] for name in names} <= {"failed.csv", "failed.json", "passed.csv", "passed.json"}
+    (first, *_) = [name for name in names if name.endswith("failed.csv")]
+    table = list(csv.DictReader(io.StringIO((robot / "out" / first).read_text())))
+    written = json.loads((robot / "out" / first.replace(".csv", ".json")).read_text())
+    assert [row["step"] for row in table] == [str(n) for n in range(len(written["steps"]) + 1)]
+    assert written["verdict"] == "failed"
+    times = [float(row["time"]) for row in table]
+    assert times == sorted(times)
+    assert times[-1] >= 6
+    levels = {row["topic_battery_msg__ros_fields__data"] for row in table}
+    assert levels >= {"0", "40", "100"}
+    moves = [move for step in written["steps"] for move in step["moves"]]
+    places = {(move["file"], move["line"]) for move in moves if move["automaton"] == "Battery"}
+    assert {file for file, _ in places} == {"nodes/battery.ascxml"}
+    values = dict(written["initial"])
+    for step in written["steps"]:
+        values.update({c["variable"]: c["value"] for c in step["changes"] if "automaton" not in c})
+    last = table[-1]
+    assert {name: str(int(v)) for name, v in values.items() if isinstance(v, (bool, int))}.items() <= last.items()
+
+
+def test_a_full_disk_leaves_whole_traces(command: Command, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_whole = as2fm_lsp.verification.traces.write_file
+    written: list[str] = []
+
+    def write_file(path: str, lines: Iterable[str]) -> None:
+        if len(written) == 3:
+            raise OSError(errno.ENOSPC, "No space left on device", path)
+        written.append(path)
+        write_whole(path, lines)
+
+    monkeypatch.setattr(as2fm_lsp.verification.traces, "write_file", write_file)
+    done = command("verify", "main.xml", "--traces", "out")
+    assert done.status == 2
+    assert "No space left on device" in done.err
+    assert "never_empty: 1 in" in done.out
+    assert sorted(written) == sorted(f"out/{path.name}" for path in (robot / "out").iterdir())
+
+
+# ------------------------------------------------------------------ long runs
+
+
+def test_resume(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    whole = rows(command("verify", name, "--method", "fixed", "--max-traces", 5000, "--format", "json").out)
+    first = command("verify", name, "--method", "fixed", "--max-traces", 1000, "--resume", "state.json")
+    assert first.status == 0
+    state = json.loads((tmp_path / "state.json").read_text())
+    assert state["properties"]["heads"]["tally"]["traces"] == 1000
+    again = command(
+        "verify", name, "--method", "fixed", "--max-traces", 5000, "--resume", "state.json", "--format", "json"
+    )
+    keys = ("probability", "lower", "upper", "traces", "steps")
+    for each in ("heads", "never"):
+        assert [rows(again.out)[each][key] for key in keys] == [whole[each][key] for key in keys]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda folder: write(folder, coin(0.4)), "another model"),
+        (lambda folder: (folder / "state.json").write_text("{}"), "no state of a verification"),
+        (lambda folder: (folder / "state.json").write_text("nonsense"), "no state of a verification"),
+    ],
+)
+def test_a_state_that_does_not_fit(command: Command, tmp_path: Path, change: Any, message: str) -> None:
+    name = write(tmp_path, coin())
+    command("verify", name, "--resume", "state.json")
+    change(tmp_path)
+    before = (tmp_path / "state.json").read_bytes()
+    done = command("verify", name, "--resume", "state.json")
+    assert done.status == 2
+    assert message in done.err
+    assert (tmp_path / "state.json").read_bytes() == before
+    assert command("verify", write(tmp_path, coin()), "--resume", "other.json").status == 0
+    assert command("verify", write(tmp_path, coin()), "--resume", "other.json", "--seed", 5).status == 2
+
+
+def started(folder: Path, *arguments: str, **more: Any) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "as2fm_lsp", "verify", *arguments]
+    return subprocess.Popen(command, cwd=folder, text=True, stdout=subprocess.PIPE, **more)
+
+
+def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
+    """What is known so far is told and kept, and a further run goes on from there."""
+    name = write(tmp_path, coin())
+    options = (name, "--property", "heads", "--method", "fixed", "--max-traces", "900000000", "--jobs", "2")
+    options += ("--resume", "state.json")
+    running = started(tmp_path, *options, "--format", "json", stderr=subprocess.PIPE, start_new_session=True)
+    while not (tmp_path / "state.json").exists():
+        assert running.poll() is None
+        time.sleep(0.05)
+    os.killpg(running.pid, signal.SIGINT)
+    out, err = running.communicate(timeout=30)
+    assert (running.returncode, err) == (130, "")
+    row = rows(out)["heads"]
+    assert row["interrupted"]
+    assert row["lower"] < 0.3 < row["upper"]
+    kept = json.loads((tmp_path / "state.json").read_text())["properties"]["heads"]["tally"]
+    assert kept["traces"] == row["traces"] > 0
+
+
+def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    ours, theirs = pty.openpty()
+    running = started(tmp_path, name, "--method", "fixed", "--max-traces", "900000000", "--jobs", "1", stderr=theirs)
+    os.close(theirs)
+    seen = b""
+    while b"traces" not in seen:
+        seen += os.read(ours, 1000)
+    running.send_signal(signal.SIGINT)
+    out, _ = running.communicate(timeout=30)
+    os.close(ours)
+    assert b"heads" in seen
+    assert "interrupted; this is what was known by then" in out
+
+
+def test_what_the_bar_shows() -> None:
+    question = Question("p", "Pmin", False, None, ())
+    text = line(question, Options(method=FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0)
+    assert text.startswith("p ━━━━━───────────────  25%  250 traces  0.4 [0.33")
+    assert text.endswith("30 s left")
+    assert line(question, Options(), Tally(), 1.0) == "p …"
+
+
+# ------------------------------------------------------------------ other answers
+
+
+def test_exact(command: Command, tmp_path: Path) -> None:
+    found = rows(command("verify", write(tmp_path, coin()), "--exact", "--format", "json").out)
+    assert found["heads"]["exact"] == {"least": pytest.approx(0.3), "greatest": pytest.approx(0.3), "states": 3}
+    refused = command("verify", write(tmp_path, coin()), "--exact", "--max-states", 2)
+    assert refused.status == 2
+    assert "more than 2 states" in refused.err
+
+
+def test_schedulers(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    written["automata"][0]["edges"].append(edge("s", way("e", 0.8, x=1), way("e", 0.2)))
+    name = write(tmp_path, written)
+    options = ("--scheduler", "lss", "--epsilon", 0.03, "--property", "heads")
+    found = rows(command("verify", name, *options, "--format", "json").out)["heads"]
+    assert found["least"]["probability"] == pytest.approx(0.3, abs=0.05)
+    assert found["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
+    assert "least probability found 0." in command("verify", name, *options).out
+
+
+def test_expected_rewards(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    value = {"op": "Emin", "exp": 2, "accumulate": ["steps"], "reach": op("≤", "x", 1)}
+    written["properties"] = [{"name": "cost", "expression": value}]
+    written["properties"][0]["expression"]["reach"] = op("=", "x", 1)
+    done = command("verify", write(tmp_path, written), "--format", "json")
+    assert rows(done.out)["cost"]["expected_value"] == "infinity"
+    written["automata"][0]["edges"] = [edge("s", way("e", 0.5, x=1), way("s", 0.5))]
+    row = rows(command("verify", write(tmp_path, written), "--format", "json", "--epsilon", 0.05).out)["cost"]
+    assert row["lower"] < 4 < row["upper"]
+
+
+# ------------------------------------------------------------------ what is wrong
+
+
+def errors(text: str) -> list[dict[str, Any]]:
+    found = json.loads(text)["errors"]
+    assert isinstance(found, list)
+    return found
+
+
+def place(folder: Path, text: str, name: str = "model.jani") -> int:
+    """The line on which a text stands first."""
+    lines = (folder / name).read_text(encoding="utf-8").splitlines()
+    return next(number for number, line in enumerate(lines, 1) if text in line)
+
+
+def test_what_cannot_be_read(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "nonsense.jani").write_text("this is no JSON")
+    (tmp_path / "bytes.jani").write_bytes(b"\xff\xfe\x00\xd8")
+    (tmp_path / "other.jani").write_text('{"some": "thing"}')
+    (tmp_path / "list.jani").write_text("[]")
+    for name, status in (("nonsense", 1), ("other", 1), ("list", 1), ("bytes", 2), ("missing", 2)):
+        done = command("verify", f"{name}.jani")
+        assert (done.status, done.out) == (status, ""), done
+        assert f"{name}.jani" in done.err
+        assert "Traceback" not in done.err
+
+
+@pytest.mark.parametrize(
+    ("change", "message", "at_text"),
+    [
+        ({"ref": "x", "value": "y"}, "no variable `y`", '"y"'),
+        ({"ref": "x", "value": True}, "`x` is an int, but this is a bool", '"value": true'),
+        ({"ref": "x", "value": at("v", 7)}, "index 7 is outside of the array, which has 2 elements", '"op": "aa"'),
+        ({"ref": "x", "value": op("%", 1, "x")}, "division by zero", '"op": "%"'),
+        ({"ref": "x", "value": op("+", "big", 1)}, "integer overflow", '"op": "+"'),
+        ({"ref": at("v", op("-", "x", 1)), "value": 1}, "index -1 is outside of the array", '"op": "aa"'),
+        ({"ref": "small", "value": op("+", "x", 5)}, "5 is outside of the bounds", '"op": "+"'),
+        ({"ref": "x", "value": op("floor", op("log", "x", 2))}, "no value", '"op": "log"'),
+    ],
+)
+def test_what_a_model_does_wrong(command: Command, tmp_path: Path, change: Json, message: str, at_text: str) -> None:
+    written = coin()
+    bounded = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 3}
+    array = {"op": "av", "elements": [1, 2]}
+    written["variables"] += [
+        variable("v", {"kind": "array", "base": "int"}, array),
+        variable("big", initial=(1 << 63) - 1),
+        variable("small", bounded),
+    ]
+    written["automata"][0]["edges"][0]["destinations"][1]["assignments"] = [change]
+    name = write(tmp_path, written)
+    done = command("verify", name, "--format", "json", "--traces", "out", "--resume", "state.json")
+    assert done.status == 1
+    (row, *_) = errors(done.out)
+    assert message in row["message"]
+    # An operator is written below the bracket with which it begins.
+    assert (row["file"], row["line"]) == (name, place(tmp_path, at_text) - ('"op"' in at_text))
+    assert not (tmp_path / "out").exists()
+    text = command("verify", name)
+    assert (text.status, text.out) == (1, "")
+    assert f"{name}:{row['line']}:{row['column']}: error: " in text.err
+
+
+def test_what_is_wrong_in_a_system_is_told_at_its_line(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "a.ascxml").write_text(
+        """<ascxml name="a" version="1.0" initial="s">
+<datamodel><data id="n" type="int32" expr="2" /><data id="m" type="int32" expr="0" /></datamodel>
+<state id="s">
+<transition cond="m &gt;= 0" target="s"><assign location="n" expr="n - 1" />
+<assign location="m" expr="7 % n" /></transition>
+</state>
+</ascxml>"""
+    )
+    goal = {"properties": [{"name": "p", "expression": probability(op("F", False))}]}
+    (tmp_path / "p.jani").write_text(json.dumps(goal))
+    (tmp_path / "main.xml").write_text(
+        '<roaml><parameters><max_time value="1" unit="s" /></parameters><node_models>'
+        '<input type="node-ascxml" src="a.ascxml" /></node_models>'
+        '<properties><input type="jani" src="p.jani" /></properties></roaml>'
+    )
+    done = command("verify", "main.xml")
+    assert done.status == 1
+    assert "a.ascxml:5:" in done.err
+    assert "division by zero (in trace 0 of seed 0)" in done.err
+
+
+def test_constants_without_value_and_other_kinds_of_models(command: Command, tmp_path: Path) -> None:
+    written = coin(constants=[{"name": "N", "type": "int"}])
+    done = command("verify", write(tmp_path, written))
+    assert (done.status, "the constant `N` has no value" in done.err) == (1, True)
+    done = command("verify", write(tmp_path, coin(type_="ctmc")))
+    assert (done.status, "models of type ctmc are not supported" in done.err) == (1, True)
+    written = coin()
+    del written["variables"][0]["initial-value"]
+    done = command("verify", write(tmp_path, written))
+    assert (done.status, "`x` has no initial value" in done.err) == (1, True)
+
+
+def test_a_property_on_an_unknown_variable(command: Command, tmp_path: Path, robot: Path) -> None:
+    written = coin()
+    written["properties"][0]["expression"] = probability(op("F", "unknown"))
+    name = write(tmp_path, written)
+    done = command("verify", name, "--format", "json")
+    assert done.status == 1
+    assert errors(done.out)[0]["line"] == place(tmp_path, '"unknown"')
+    text = (robot / "properties.jani").read_text()
+    (robot / "properties.jani").write_text(text.replace("bt_1000_response__status", "bt_1000_response__statu"))
+    done = command("verify", "main.xml")
+    assert (done.status, "properties.jani:" in done.err) == (1, True)
+
+
+def test_deep_expressions(command: Command, tmp_path: Path) -> None:
+    """What can be read can be run."""
+    total: Any = "x"
+    for _ in range(250):
+        total = op("+", total, 0)
+    written = coin()
+    written["automata"][0]["edges"][0]["destinations"][1]["assignments"] = [{"ref": "x", "value": total}]
+    (tmp_path / "deep.jani").write_text(json.dumps(written))
+    assert command("verify", "deep.jani").status == 0
+    nested: Any = "x"
+    for _ in range(250):
+        nested = op("abs", op("-", 0, nested))
+    written["automata"][0]["edges"][0]["destinations"][1]["assignments"] = [{"ref": "x", "value": nested}]
+    (tmp_path / "deep.jani").write_text(json.dumps(written))
+    done = command("verify", "deep.jani")
+    assert (done.status, done.err) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--property", "unknown"), "there is no property unknown"),
+        (("--expect", "unknown >= 1"), "there is no property unknown"),
+        (("--expect", "heads is good"), "an expectation is written like"),
+        (("--expect", "heads >= many"), "an expectation is written like"),
+        (("--epsilon", "2"), "between 0 and 1"),
+        (("--confidence", "0"), "between 0 and 1"),
+        (("--max-traces", "0"), "from 1 on"),
+        (("--seed", "-1"), "from 0"),
+        (("--method", "sprt"), "compared with no number"),
+        (("--explain", "story.doc"), "does not end in"),
+        (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),
+    ],
+)
+def test_wrong_use(command: Command, tmp_path: Path, options: tuple[str, ...], message: str) -> None:
+    done = command("verify", write(tmp_path, coin()), *options)
+    assert (done.status, done.out) == (2, "")
+    assert message in done.err
+
+
+def test_expectations_are_read_as_people_write_them() -> None:
+    for text, symbol in (("p>=0.5", "≥"), ("p ≤ 0.5", "≤"), ("a b == 0.5", "="), ("p.q < 0.5", "<")):
+        found = parse(text)
+        assert (found.threshold.relation.symbol, found.threshold.number) == (symbol, 0.5)
+    assert parse("a b == 0.5").name == "a b"
+
+
+def test_from_python(robot: Path) -> None:
+    found = api.to_jani(api.load("main.xml"))
+    answers = {answer.question.name: answer for answer in api.verify(found, ["never_empty"], Options(epsilon=0.05))}
+    assert answers["never_empty"].value == 1
+    with pytest.raises(api.PropertyError, match="there is no property x"):
+        list(api.verify(found, ["x"]))
+    (robot / "bad.jani").write_text("{")
+    with pytest.raises(api.JaniError):
+        api.read_jani("bad.jani")

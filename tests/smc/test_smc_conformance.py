@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The engine on what another translator has made of the conformance models: it must find the expected probabilities."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import conformance
+from roaml.jani.model import Model
+from roaml.jani.reader import read_model
+from roaml.json import parse
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool
+from roaml.smc.run import Options
+
+CASES = conformance.verified()
+
+
+def reference(case: dict[str, Any]) -> Path:
+    path = Path(case["model"])
+    return conformance.ROOT / "reference" / f"{path.parts[1]}.{path.stem}.jani.gz"
+
+
+def load(path: Path) -> Model:
+    value, _ = parse(gzip.decompress(path.read_bytes()).decode())
+    found, _ = read_model(value, str(path))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("path", sorted({reference(case) for case in CASES}), ids=lambda path: path.name)
+def test_reference_translations(path: Path) -> None:
+    found = load(path)
+    wanted = {case["property"]: case for case in CASES if reference(case) == path}
+    checker = Checker(found, [each for each in found.properties if each.name in wanted])
+    with Pool() as pool:
+        for asked in checker.asked:
+            case = wanted[asked.question.name]
+            answer = checker.answer(asked, Options(seed=1), pool)
+            assert answer.value == pytest.approx(case["probability"], abs=case["tolerance"] + 1e-12)

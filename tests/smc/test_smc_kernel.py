@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The kernel: compiled and as plain Python it does the same, number by number."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from smc_models import answers, automaton, document, edge, model, op, plain_kernel, probability, variable, way
+from smc_random import networks
+
+import roaml.smc
+from roaml import api
+from roaml.smc import kernel, program
+from roaml.smc.model import Checker
+from roaml.smc.opcodes import Op
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = Path(roaml.smc.__file__).parent
+
+
+def test_codes_are_those_of_the_kernel() -> None:
+    text = (FOLDER / "kernel.py").read_text(encoding="utf-8")
+    written = {name: int(number) for number, name in re.findall(r"if op == (\d+):  # ([A-Z_]+)\n", text)}
+    assert written == {op.name: op.value for op in Op}
+    assert (program.FALSE, program.TRUE, program.UNKNOWN, program.FAULTY) == (
+        plain_kernel().FALSE,
+        plain_kernel().TRUE,
+        plain_kernel().UNKNOWN,
+        plain_kernel().FAULTY,
+    )
+
+
+def test_every_attribute_has_a_c_type() -> None:
+    """A name that the declarations lack would fail in the extension only."""
+    text = (FOLDER / "kernel.py").read_text(encoding="utf-8")
+    declared = (FOLDER / "kernel.pxd").read_text(encoding="utf-8")
+    for name in set(re.findall(r"self\.(\w+)(?: =|\[)", text)):
+        assert re.search(rf"\b{name}\b", declared), name
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_is_compiled_where_there_is_a_compiler() -> None:
+    assert kernel.compiled(), "pip install -e . compiles it"
+    assert not plain_kernel().compiled()
+
+
+def same_traces(checker: Checker, traces: int, steps: int) -> None:
+    for asked in checker.asked:
+        compiled = checker.compiled(asked)
+        first, second = (m.Kernel(compiled.program, compiled.goal) for m in (kernel, plain_kernel()))
+        for trace in range(traces):
+            for scheduler in (0, 5):
+                found: list[Any] = []
+                for each in (first, second):
+                    verdict = each.begin(11, trace, scheduler)
+                    if verdict == program.UNKNOWN:
+                        verdict = each.advance(steps)
+                    found.append((verdict, each.outcome(), each.snapshot(), each.problem(), each.taken()))
+                assert found[0] == found[1]
+
+
+def test_same_traces_of_the_example() -> None:
+    loaded = api.load(str(ROOT / "examples/delivery_robot/main.xml"))
+    same_traces(api.checker(api.to_jani(loaded)), traces=3, steps=400)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(networks())
+def test_same_traces_of_random_models(written: dict[str, Any]) -> None:
+    same_traces(Checker(model(written)), traces=4, steps=40)
+
+
+LARGE = (1 << 63) - 1
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (op("+", "x", 1), "integer overflow"),
+        (op("*", "x", 2), "integer overflow"),
+        (op("-", op("-", 0, "x"), 2), "integer overflow"),
+        (op("*", op("-", op("-", 0, "x"), 1), op("-", 0, "one")), "integer overflow"),
+        (op("abs", op("-", op("-", 0, "x"), 1)), "integer overflow"),
+        (op("%", "x", op("-", "one", 1)), "division by zero"),
+        (op("floor", op("/", "x", op("-", "one", 1))), "division by zero"),
+        (op("floor", op("*", op("*", "x", 1.0), 4.0)), "integer overflow"),
+        (op("ceil", op("log", op("-", "one", 2), 2)), "no value"),
+        (op("%", 1, 0), "division by zero"),
+    ],
+)
+def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
+    written = document(
+        automaton("a", "l", [edge("l", way("l", y=value))]),
+        variables=[variable("x", initial=LARGE), variable("y"), variable("one", initial=1)],
+        properties={"p": probability(op("F", op("=", "y", 77)))},
+    )
+    compiled = Checker(model(written)).compiled(Checker(model(written)).asked[0])
+    for each in (kernel, plain_kernel()):
+        found = each.Kernel(compiled.program, compiled.goal)
+        assert found.begin(0, 0) == program.UNKNOWN
+        assert found.advance(5) == program.FAULTY
+    with pytest.raises(Exception, match=message):
+        answers(written)
+
+
+def test_numbers_that_just_fit() -> None:
+    value = op("-", op("-", 0, "x"), 1)
+    written = document(
+        automaton("a", "l", [edge("l", way("l", y=value), guard=op("=", "y", 0))]),
+        variables=[variable("x", initial=LARGE), variable("y")],
+        properties={"p": probability(op("F", op("=", op("+", "y", 1), op("-", 0, "x"))))},
+    )
+    assert answers(written)["p"].value == 1
+
+
+def test_python_version_is_named_in_the_build() -> None:
+    """The extension belongs to this Python, or it would not have been found."""
+    if kernel.compiled():
+        assert f"{sys.version_info[0]}{sys.version_info[1]}" in Path(kernel.__file__).name
+
+
+@given(st.integers(0, (1 << 64) - 1), st.integers(0, 1 << 40))
+def test_random_numbers_are_those_of_splitmix(seed: int, trace: int) -> None:
+    """A draw depends on seed, trace and its number only: two kernels agree without having done the same before."""
+    written = document(
+        automaton("a", "l m", [edge("l", way("l", 0.5, x=0), way("m", 0.5, x=1))]),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    checker = Checker(model(written))
+    compiled = checker.compiled(checker.asked[0])
+    first, second = (kernel.Kernel(compiled.program, compiled.goal) for _ in range(2))
+    second.begin(1, 1)
+    second.advance(100)
+    results = []
+    for each in (first, second):
+        each.begin(seed, trace)
+        each.advance(100)
+        results.append(each.outcome())
+    assert results[0] == results[1]

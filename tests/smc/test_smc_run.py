@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How many traces, on how many workers, and what happens when something goes wrong."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import signal
+import tracemalloc
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from typing import Any
+
+import pytest
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+
+from roaml.smc.batch import Outcome, Task, run
+from roaml.smc.fault import FaultError
+from roaml.smc.model import Checker
+from roaml.smc.pool import ATTEMPTS, Pool, WorkersLostError
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.run import ADAPTIVE, FIXED, OKAMOTO, SPRT, Answer, Options, Tally
+from roaml.smc.statistics import okamoto
+
+
+def coin(p: float = 0.3, extra: int = 0) -> Json:
+    """Heads with probability `p`, after so many steps."""
+    steps = [edge("count", way("count", n=op("+", "n", 1)), guard=op("<", "n", extra))]
+    steps += [edge("count", way("end", p, x=1), way("end", 1 - p), guard=op("=", "n", extra))]
+    return document(
+        automaton("a", "count end", steps),
+        variables=[variable("x"), variable("n")],
+        properties={"heads": probability(op("F", op("=", "x", 1)))},
+    )
+
+
+def ask(options: Options, written: Json | None = None, pool: Pool | None = None, **more: Any) -> Answer:
+    checker = Checker(model(written or coin()))
+    with pool or Pool() as used:
+        return checker.answer(checker.asked[0], options, used, **more)
+
+
+def numbers(answer: Answer) -> tuple[Any, ...]:
+    return answer.value, answer.bounds, json.dumps(answer.tally.to_json())
+
+
+def test_the_interval_gets_as_narrow_as_asked_for() -> None:
+    for epsilon in (0.05, 0.02):
+        answer = ask(Options(epsilon=epsilon))
+        assert answer.is_complete
+        assert answer.bounds.half_width <= epsilon
+        assert answer.bounds.lower <= 0.3 <= answer.bounds.upper
+        assert answer.tally.traces < okamoto(0.95, epsilon)
+
+
+def test_methods_with_a_fixed_number_of_traces() -> None:
+    assert ask(Options(method=OKAMOTO, epsilon=0.05)).tally.traces == okamoto(0.95, 0.05)
+    assert ask(Options(method=FIXED, max_traces=123)).tally.traces == 123
+    limited = ask(Options(method=ADAPTIVE, max_traces=150))
+    assert (limited.tally.traces, limited.is_complete) == (150, False)
+
+
+@pytest.mark.parametrize(("relation", "number", "accepted"), [("≥", 0.2, True), ("≥", 0.4, False), ("<", 0.4, True)])
+def test_sequential_test(relation: str, number: float, accepted: bool) -> None:
+    written = coin()
+    written["properties"][0]["expression"] = op(relation, {"op": "Pmax", "exp": op("F", op("=", "x", 1))}, number)
+    answer = ask(Options(method=SPRT, epsilon=0.02), written)
+    assert answer.tally.accepted is accepted
+    assert answer.tally.traces < 2000
+
+
+def test_another_seed_gives_other_traces_the_same_seed_the_same() -> None:
+    first, again, other = (ask(Options(seed=seed, method=FIXED, max_traces=1000)) for seed in (7, 7, 8))
+    assert numbers(first) == numbers(again)
+    assert first.tally.examples != other.tally.examples
+
+
+@pytest.mark.parametrize("jobs", [2, 3])
+def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
+    options = Options(epsilon=0.02)
+    alone = ask(options)
+    assert numbers(ask(options, pool=Pool(jobs, patience=0))) == numbers(alone)
+    with ThreadPoolExecutor(jobs) as executor:
+        assert numbers(ask(options, pool=Pool(jobs, executor))) == numbers(alone)
+
+
+def test_going_on_after_an_interruption() -> None:
+    """Whatever was interrupted, the answer is that of a run without interruption."""
+    options = Options(epsilon=0.015)
+    whole = ask(options)
+    saved: list[str] = []
+
+    def watch(tally: Tally) -> None:
+        saved.append(json.dumps(tally.to_json()))
+        if len(saved) == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ask(options, watch=watch)
+    tally = Tally.from_json(json.loads(saved[-1]))
+    assert 0 < tally.traces < whole.tally.traces
+    assert numbers(ask(options, tally=tally)) == numbers(whole)
+
+
+def test_a_killed_worker_costs_time_only() -> None:
+    options = Options(method=FIXED, max_traces=60_000)
+    written = coin(extra=400)
+    whole = ask(options, written)
+    pool = Pool(2, patience=0)
+    killed: list[int] = []
+
+    def watch(tally: Tally) -> None:
+        if tally.traces > 500 and not killed:
+            assert isinstance(pool.executor, ProcessPoolExecutor)
+            killed.append(next(iter(pool.executor._processes)))
+            os.kill(killed[0], signal.SIGKILL)
+
+    assert numbers(ask(options, written, pool, watch=watch)) == numbers(whole)
+    assert killed
+
+
+class Hopeless(Executor):
+    """Loses everything."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_exception(OSError("the machine is gone"))
+        return future
+
+
+def test_workers_that_are_always_lost_are_reported() -> None:
+    with pytest.raises(WorkersLostError, match="the machine is gone"):
+        ask(Options(), pool=Pool(2, Hopeless()))
+    assert ATTEMPTS > 1
+
+
+def test_workers_end_with_the_run() -> None:
+    pool = Pool(2, patience=0)
+    processes: list[Any] = []
+
+    def watch(tally: Tally) -> None:
+        if isinstance(pool.executor, ProcessPoolExecutor):
+            processes[:] = list(pool.executor._processes.values())
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ask(Options(method=FIXED, max_traces=10**9), coin(extra=1000), pool, watch=watch)
+    assert processes
+    for process in processes:
+        process.join(10)
+        assert process.exitcode is not None
+
+
+def test_many_undecided_traces_end_the_run() -> None:
+    """No number of traces would make the interval narrow: a third of them is never decided."""
+    steps = [edge("s", way("end", 1 / 3, x=1), way("end", 1 / 3), way("loop", 1 / 3)), edge("loop", "back")]
+    steps.append(edge("back", "loop"))
+    written = document(
+        automaton("a", "s end loop back", steps),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    answer = ask(Options(max_steps=50), written)
+    assert not answer.is_complete
+    assert answer.tally.traces < 1000
+    assert answer.bounds.lower < 0.34
+    assert answer.bounds.upper > 0.66
+
+
+def test_examples_are_remembered() -> None:
+    answer = ask(Options(method=FIXED, max_traces=2000))
+    examples = answer.tally.examples
+    assert len(examples[TRUE]) == answer.tally.successes
+    assert len(examples[FALSE]) == answer.failures or len(examples[FALSE]) == 1000
+    assert answer.tally.shortest[TRUE] == min(examples[TRUE], key=lambda seen: seen.steps)
+
+
+def test_the_first_fault_is_told_however_traces_are_distributed() -> None:
+    steps = [edge("s", way("end", 0.999), way("bad", 0.001)), edge("bad", way("end", x=op("%", 1, "x")))]
+    written = document(
+        automaton("a", "s bad end", steps),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    traces = []
+    for pool in (Pool(), Pool(2, patience=0)):
+        with pytest.raises(FaultError, match="division by zero") as caught:
+            ask(Options(method=FIXED, max_traces=20_000), written, pool)
+        assert caught.value.origin is not None
+        traces.append(caught.value.trace)
+    assert traces[0] == traces[1]
+
+
+def test_memory_does_not_grow_with_the_number_of_traces() -> None:
+    peaks = []
+    for traces in (20_000, 200_000):
+        tracemalloc.start()
+        ask(Options(method=FIXED, max_traces=traces))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.5 * peaks[0]
+
+
+def tasks() -> Iterator[Task]:
+    checker = Checker(model(coin()))
+    payload = checker.payload(checker.asked[0])
+    first = 0
+    while True:
+        yield Task(payload, 1, first, 10, 1000)
+        first += 10
+
+
+def test_no_more_tasks_are_taken_than_workers_need() -> None:
+    taken = 0
+
+    def counted() -> Iterator[Task]:
+        nonlocal taken
+        for task in tasks():
+            taken += 1
+            yield task
+
+    with ThreadPoolExecutor(2) as executor, Pool(2, executor) as pool:
+        found = pool.outcomes(counted())
+        task, outcome = next(found)
+        assert (task.first, len(outcome.verdicts)) == (0, 10)
+        assert taken <= 5
+
+
+def test_a_batch_is_a_function_of_its_task() -> None:
+    task = next(tasks())
+    first, second = run(task), run(task)
+    assert isinstance(first, Outcome)
+    assert (first.verdicts, first.steps, first.rewards) == (second.verdicts, second.steps, second.rewards)
+
+
+def test_dask() -> None:
+    """The same batches on a cluster, also when a worker dies."""
+    distributed: Any = importlib.import_module("distributed")
+    options = Options(method=FIXED, max_traces=30_000)
+    written = coin(extra=200)
+    whole = ask(options, written)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        killed: list[int] = []
+
+        def watch(tally: Tally) -> None:
+            if tally.traces > 1000 and not killed:
+                process = next(iter(cluster.workers.values())).process
+                killed.append(process.pid)
+                os.kill(process.pid, signal.SIGKILL)
+
+        pool = Pool(2, client.get_executor())
+        assert numbers(ask(options, written, pool, watch=watch)) == numbers(whole)
+        assert killed
+
+
+def test_progress_is_told_during_long_traces() -> None:
+    loop = document(
+        automaton("a", "l m", [edge("l", "m"), edge("m", "l")]),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    told: list[tuple[int, int]] = []
+
+    def pulse(trace: int, steps: int) -> None:
+        told.append((trace, steps))
+        if len(told) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ask(Options(max_steps=10**15), loop, pulse=pulse)
+    assert [trace for trace, _ in told] == [0, 0, 0]
+    assert told[0][1] < told[1][1] < told[2][1]

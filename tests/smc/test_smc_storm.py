@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An independent judge: Storm computes what our traces estimate."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+import stormpy
+from smc_models import Json, at, automaton, document, edge, model, op, probability, variable, way
+from storm import exact as storm_exact
+from test_translate_storm import COINS, JUDGE, LISTENER, reaches, system
+from translating import loaded
+
+from as2fm_lsp.verification.exactly import ExactError, exactly
+from roaml import api
+from roaml.jani.model import Model
+from roaml.smc.explore import Explorer, TooManyStatesError
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.run import FIXED, Options
+
+ROOT = Path(__file__).resolve().parents[2]
+TRACES = 3000
+
+
+def estimates(found: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
+    """Property -> successes and traces."""
+    checker = Checker(found)
+    with Pool() as pool:
+        options = Options(method=FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
+        answers = {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
+    assert all(answer.tally.undecided == 0 for answer in answers.values())
+    return {name: (answer.tally.successes, answer.tally.traces) for name, answer in answers.items()}
+
+
+def two_sided(successes: int, traces: int, p: float) -> float:
+    """How probable it is to be as far off as that, by the normal approximation with continuity correction."""
+    if p in (0, 1):
+        return 1.0 if successes == p * traces else 0.0
+    deviation = abs(successes - p * traces) - 0.5
+    return math.erfc(max(0.0, deviation) / math.sqrt(2 * traces * p * (1 - p)))
+
+
+def chain(source: random.Random, number: int) -> Json:
+    """A random Markov chain over locations and a counter, with several properties."""
+    places = [f"s{i}" for i in range(source.randint(3, 6))]
+    edges = []
+    for following, place in enumerate(places[:-1], 1):
+        # The last place is always reached.
+        targets = list(dict.fromkeys((places[following], *source.sample(places, source.randint(1, 2)))))
+        weights = [source.randint(1, 5) for _ in targets]
+        found = []
+        for target, weight in zip(targets, weights, strict=True):
+            x = op("min", 6, op("+", "x", source.randint(0, 2)))
+            found.append(way(target, op("/", weight, sum(weights)), x=x, y=source.choice(["x", 0, 1])))
+        edges.append(edge(place, *found))
+
+    edges.append(edge(places[-1], way(places[-1], end=True)))
+    conditions = [op("=", "x", source.randint(1, 6)), op("∧", "end", op("<", "x", 5)), op("=", "y", 1)]
+    properties = {f"{number}-F{i}": probability(op("F", each)) for i, each in enumerate(conditions)}
+    properties[f"{number}-U"] = probability(op("U", op("<", "x", 4), "end"))
+    properties[f"{number}-G"] = probability(op("G", op("≠", "x", 3)))
+    properties[f"{number}-B"] = probability({**op("F", conditions[0]), "step-bounds": {"upper": source.randint(2, 9)}})
+    return document(
+        automaton("a", " ".join(places), edges),
+        variables=[
+            variable("x", {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 8}),
+            variable("y", {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 8}),
+            variable("end", "bool", False),
+        ],
+        type_="dtmc",
+        properties=properties,
+    )
+
+
+def computed(written: Json) -> dict[str, float]:
+    """Property -> its probability by Storm."""
+    parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(written))
+    found = {}
+    for each in properties:
+        built = stormpy.build_model(parsed, [each])
+        result = stormpy.model_checking(built, each, only_initial_states=True)
+        found[each.get_name()] = result.get_value(built.initial_states[0])
+    return found
+
+
+def test_estimates_agree_with_storm() -> None:
+    """A binomial test for each of more than a hundred properties, and one for all of them together."""
+    source = random.Random(2)
+    surprises = []
+    for number in range(18):
+        written = chain(source, number)
+        expected = computed(written)
+        for name, (successes, traces) in estimates(model(written), seed=number).items():
+            surprises.append(two_sided(successes, traces, expected[name]))
+    assert len(surprises) > 100
+    assert min(surprises) > 1e-5
+    assert sum(p < 0.05 for p in surprises) <= 0.12 * len(surprises)
+
+
+@pytest.mark.parametrize("name", COINS)
+def test_translated_systems_agree_with_storm(name: str) -> None:
+    coin, count, expected = COINS[name]
+    found = api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=reaches("told__heads", count))))
+    ((successes, traces),) = estimates(found).values()
+    assert two_sided(successes, traces, float(expected)) > 1e-4
+
+
+def induced(found: Model, limit: int, folder: Path) -> float | None:
+    """The probability that Storm computes for the Markov chain that uniform choices make of a model."""
+    checker = Checker(found)
+    explorer = Explorer(checker.compiled(checker.asked[0]))
+    try:
+        verdicts = explorer.reachable(limit)
+    except TooManyStatesError:
+        return None
+    index = {state: number for number, state in enumerate(verdicts)}
+    lines = ["dtmc", "module chain", f"s : [0..{len(index)}] init 0;"]
+    for state, row in index.items():
+        chances: Counter[int] = Counter()
+        choices = [] if verdicts[state] in (FALSE, TRUE) else list(explorer.choices(state))
+        for branches in choices:
+            for chance, successor in branches:
+                chances[index[successor]] += chance / len(choices)  # type: ignore[assignment]
+        updates = " + ".join(f"{chance!r}:(s'={column})" for column, chance in (chances or {row: 1.0}).items())
+        lines.append(f"[] s={row} -> {updates};")
+    good = " | ".join(f"s={index[state]}" for state, verdict in verdicts.items() if verdict == TRUE)
+    path = folder / "chain.prism"
+    path.write_text("\n".join([*lines, "endmodule", f'label "good" = {good or "false"};']), encoding="utf-8")
+    program = stormpy.parse_prism_program(str(path))
+    (formula,) = stormpy.parse_properties('P=? [F "good"]', program)
+    chain_ = stormpy.build_model(program, [formula])
+    value = stormpy.model_checking(chain_, formula, only_initial_states=True).get_value(chain_.initial_states[0])
+    assert isinstance(value, float)
+    return value
+
+
+def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -> None:
+    surprises = []
+    for seed in range(60):
+        written = example(seed)
+        found = model(written)
+        expected = induced(found, 300, tmp_path)
+        if expected is None:
+            continue
+        checker = Checker(found)
+        with Pool() as pool:
+            answer = checker.answer(checker.asked[0], Options(method=FIXED, max_traces=TRACES, max_steps=3000), pool)
+        low = answer.tally.successes
+        high = low + answer.tally.undecided
+        closest = min(max(expected * TRACES, low), high)
+        surprises.append(two_sided(round(closest), TRACES, expected) if high == low else 1.0)
+    assert len(surprises) > 30
+    assert min(surprises) > 1e-5
+    assert sum(p > 0.001 for p in surprises) > 0.9 * len(surprises)
+
+
+def example(seed: int) -> Json:
+    """A network with nondeterminism, made of random numbers."""
+    source = random.Random(seed)
+    parts = []
+    for number in range(2):
+        edges = []
+        for _ in range(source.randint(2, 5)):
+            place, target, other = (source.choice("lmn") for _ in range(3))
+            value = op("%", op("+", source.choice(["x", "y"]), source.randint(0, 2)), 3)
+            action = source.choice([None, "go", "stop"])
+            guard = source.choice([None, op("<", "x", 2), op("=", "y", source.randint(0, 2))])
+            first = way(target, 0.5, **{source.choice(["x", "y"]) if number else "x": value})
+            edges.append(edge(place, first, way(other, 0.5), action=action, guard=guard))
+        parts.append(automaton(f"m{number}", "l m n", edges))
+    goal = op("F", op("∧", op("=", "x", 2), op("=", "y", source.randint(0, 2))))
+    syncs = [["go", "go"], ["stop", None], [None, "stop"]]
+    variables = [variable("x"), variable("y"), variable("v", {"kind": "array", "base": "int"}, ARRAY)]
+    return document(*parts, variables=variables, syncs=syncs, properties={"p": probability(goal)})
+
+
+ARRAY: Any = {"op": "av", "elements": [1, 2]}
+
+
+def test_exact_answers() -> None:
+    """Least and greatest over all schedulers, of which the uniform one is between."""
+    steps = [edge("l", way("m", 0.25, x=1), way("m", 0.75, x=2)), edge("l", way("m", 0.5, x=1), way("m", 0.5, x=2))]
+    found = model(
+        document(
+            automaton("a", "l m", steps),
+            variables=[variable("x"), variable("v", {"kind": "array", "base": "int"}, ARRAY)],
+            properties={"p": probability(op("F", op("=", "x", at("v", 0))))},
+        )
+    )
+    checker = Checker(found)
+    result = exactly(checker, checker.asked[0], 100)
+    assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
+    with pytest.raises(ExactError, match="more than 2 states"):
+        exactly(checker, checker.asked[0], 2)
+    ((successes, traces),) = estimates(found).values()
+    assert two_sided(successes, traces, 0.375) > 1e-4
+
+
+def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
+    steps = []
+    for place in ("a", "b", "c"):
+        following = chr(ord(place) + 1)
+        steps.append(edge(place, way(following, 0.9, x=op("+", "x", 1)), way(following, 0.1)))
+        steps.append(edge(place, way(following, 0.2, x=op("+", "x", 1)), way(following, 0.8)))
+    found = model(
+        document(
+            automaton("a", "a b c d", steps),
+            variables=[variable("x")],
+            properties={"p": probability(op("F", op("=", "x", 3)))},
+        )
+    )
+    expected = storm_exact(found, "p")
+    checker = Checker(found)
+    with Pool() as pool:
+        result = checker.extremes(checker.asked[0], Options(epsilon=0.02), pool)
+    assert result.greatest.value == pytest.approx(expected.greatest, abs=0.03)
+    assert result.least.value == pytest.approx(expected.least, abs=0.03)
