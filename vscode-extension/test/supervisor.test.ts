@@ -113,6 +113,22 @@ test("one that keeps ending is left alone, one that seldom ends is not", async (
     assert.equal(supervisor.state.kind, "running");
 });
 
+test("one that ends while it is started again has ended once more", async () => {
+    const fake = new Fake();
+    const supervisor = new Supervisor(fake);
+    await supervisor.start();
+    let left = 2;
+    fake.launching = () => (left-- > 0 ? Promise.reject(new Error("killed")) : Promise.resolve());
+    await crash(fake);
+    await new Promise(setImmediate);
+    assert.equal(supervisor.state.kind, "running");
+    assert.deepEqual(fake.restarts, [KILLED]);
+    fake.launching = () => Promise.reject(new Error("killed"));
+    await crash(fake);
+    const failure = { kind: "crashes", server: SERVER, count: MAX_CRASHES + 1, detail: "last words" };
+    assert.deepEqual(supervisor.state, { kind: "failed", failure });
+});
+
 test("a restart ends the server that runs, and is no crash", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);

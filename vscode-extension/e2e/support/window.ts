@@ -158,7 +158,8 @@ export class Window {
     }
 }
 
-const PATIENCE = 30_000;
+/** In milliseconds, for whatever is waited for. */
+export const PATIENCE = 60_000;
 
 /** Text with the spaces that the editor draws. */
 function plain(text: string): string {

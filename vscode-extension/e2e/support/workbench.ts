@@ -7,7 +7,7 @@ import * as net from "node:net";
 import * as os from "node:os";
 import * as path from "node:path";
 import { chromium, type Browser } from "playwright-core";
-import { Window } from "./window";
+import { PATIENCE, Window } from "./window";
 
 export const EXTENSION = path.resolve(import.meta.dirname, "..", "..");
 export const ROOT = path.resolve(EXTENSION, "..");
@@ -80,6 +80,8 @@ export class Workbench {
             reducedMotion: "reduce",
         });
         await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+        // Generous: other work on the machine makes a test slow, not wrong.
+        context.setDefaultTimeout(PATIENCE);
         const page = await context.newPage();
         await page.goto(`http://127.0.0.1:${this.port}/?folder=${folder}`);
         await page.locator(".monaco-workbench").waitFor();

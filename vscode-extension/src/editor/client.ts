@@ -45,7 +45,7 @@ export async function connect(
 ): Promise<Connection> {
     const process = spawn(server.command, [...server.args], { stdio: "pipe", windowsHide: true });
     const ended = endOf(process, log);
-    const client = new LanguageClient(
+    const client = new QuietClient(
         "as2fm",
         "AS2FM",
         async () => {
@@ -79,6 +79,13 @@ export async function connect(
             process.kill();
         },
     };
+}
+
+/** What goes wrong is told by the state of the server, not by messages of the library. */
+class QuietClient extends LanguageClient {
+    override error(message: string, data?: unknown): void {
+        super.error(message, data, false);
+    }
 }
 
 function options(

@@ -98,43 +98,59 @@ export class Supervisor {
             const found = await get();
             if (wish !== this.wish) return;
             if (isFailure(found)) this.set(wish, { kind: "failed", failure: found });
-            else await this.launch(wish, found);
+            else {
+                const error = await this.launch(wish, found);
+                if (error !== undefined) {
+                    this.set(wish, { kind: "failed", failure: { kind: "start", server: found, detail: error } });
+                }
+            }
         } catch (error) {
             this.set(wish, { kind: "failed", failure: { kind: "internal", detail: said(error) } });
         }
     }
 
-    /** Whether the server runs. */
-    private async launch(wish: number, server: Server): Promise<boolean> {
+    /** Start a server; why it has not started, or undefined if it runs or is not wanted any more. */
+    private async launch(wish: number, server: Server): Promise<string | undefined> {
         this.set(wish, { kind: "starting", server });
         let session: Session;
         try {
             session = await this.ports.launch(server);
         } catch (error) {
-            this.set(wish, { kind: "failed", failure: { kind: "start", server, detail: said(error) } });
-            return false;
+            return said(error);
         }
         if (wish !== this.wish) {
             await session.stop();
-            return false;
+            return undefined;
         }
         this.session = session;
         this.set(wish, { kind: "running", server });
         void session.ended.then((exit) => this.ended(wish, server, session, exit));
-        return true;
+        return undefined;
     }
 
     private async ended(wish: number, server: Server, session: Session, exit: Exit): Promise<void> {
         if (wish !== this.wish || session !== this.session) return;
         this.session = undefined;
+        for (let last = exit; this.mayGoOn(wish, server, last);) {
+            const error = await this.launch(wish, server);
+            if (wish !== this.wish) return;
+            if (error === undefined) {
+                this.ports.restarted(exit);
+                return;
+            }
+            // One that ends before it has answered has ended once more.
+            last = { status: null, signal: null, detail: error };
+        }
+    }
+
+    /** Count that the server has ended by itself; whether it is to be started again. */
+    private mayGoOn(wish: number, server: Server, { detail }: Exit): boolean {
         const now = this.ports.now();
         this.crashes = [...this.crashes.filter((time) => now - time < CRASH_WINDOW), now];
         const count = this.crashes.length;
-        if (count > MAX_CRASHES) {
-            this.set(wish, { kind: "failed", failure: { kind: "crashes", server, count, detail: exit.detail } });
-        } else if (await this.launch(wish, server)) {
-            this.ports.restarted(exit);
-        }
+        if (count <= MAX_CRASHES) return true;
+        this.set(wish, { kind: "failed", failure: { kind: "crashes", server, count, detail } });
+        return false;
     }
 
     private set(wish: number, state: State): void {
