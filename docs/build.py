@@ -175,6 +175,21 @@ def rules() -> str:
 Each finding has a code. `as2fm-lsp --explain CODE` prints what stands here. A comment `<!-- as2fm: ignore[code] -->`
 keeps a rule quiet: on the line it stands on or, alone on its line, in the element that follows.
 
+A fix is a change that an editor offers. Some are *safe*: they take away nothing that has an effect and guess nothing.
+`as2fm-lsp --check PATH --fix` makes all safe fixes and reports what is left; in an editor, the code action
+`source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes are for somebody who looks at
+them: an editor makes the obvious one with its key for fixes, and all obvious ones of a rule with *Fix all ... in this
+file*. A safe fix is not made where, alone or with others, it would bring an error.
+
+Besides, an editor offers these refactorings:
+
+- *Create the plugin*: a file for a node of the tree that has no plugin, with the ports that the node sets, listed in
+  the system;
+- *Handle all results* of an action, in a state of a machine that sends goals;
+- *Add `<bt_halt>`* to a state that takes ticks, or to all of them;
+- *Write the node in its compact form*, `<X/>`, or in its explicit form, `<Action ID="X"/>`; or all nodes of a file;
+- *Convert the system to the current dialect*, as `as2fm-lsp migrate` does.
+
 | code | severity | what is wrong |
 | --- | --- | --- |
 {index}

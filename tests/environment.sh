@@ -32,7 +32,7 @@ make_environment() {
 }
 
 prepare() {
-    wanted=$(cat pyproject.toml | cksum)
+    wanted=$(cat pyproject.toml setup.py server/roaml/smc/kernel.py server/roaml/smc/kernel.pxd | cksum)
     case "$(cat .venv/prepared 2>/dev/null)" in
         "$wanted $1" | "$wanted [dev]") return ;;
     esac

@@ -2,94 +2,158 @@
 """When diagnostics are computed and how they reach the client.
 
 - The newest text wins: a change cancels what was still to be done for older ones. The changed file comes first, then
-  the other files of its workspace, with a pause after each in which newer messages are read.
+  the other files of its workspace.
+- Whatever the client sends goes before: the work gives way to it, and what was computed before stays known.
 - A file is published only when its diagnostics differ from what the client already has.
 """
 
 from __future__ import annotations
 
 import asyncio
+import gc
 import hashlib
 import logging
+import time
 from collections.abc import Callable, Iterable
+from contextlib import AsyncExitStack
+from functools import partial
+from typing import TYPE_CHECKING, TypeVar
 
 from lsprotocol import types
 
+from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.session import Moment, Session
+from roaml.ide.occurrences import uses
+from roaml.project.memo import Interrupted
 from roaml.text import SourceFile
 
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
 log = logging.getLogger(__name__)
+T = TypeVar("T")
 
-PAUSE = 0.002
-"""Seconds without a further change after which a change is looked at: keys that come at once are looked at together."""
+TITLE = "Checking models"
+QUICK = 0.5
+"""Seconds of work of which nobody need be told."""
 
-BREAK = 0.001
-"""Seconds after each file in which newer messages are read. Each takes several turns of the event loop, and a thread
-that must be let run."""
+REST = 0.3
+"""Seconds after which it is likely that nothing more is typed for a while."""
+
+TRIES = 5
+"""How often a computation gives way before it is brought to its end."""
 
 
 class Diagnostics:
-    """Args:
-    publish: sends diagnostics to the client.
+    """Attributes:
     pushes: whether the client wants to be told, or asks by itself.
-    refresh: tells a client that asks by itself to ask again.
+    finished: called when all that is known of a change has been told.
     """
 
-    def __init__(
-        self,
-        session: Session,
-        publish: Callable[[types.PublishDiagnosticsParams], None],
-        refresh: Callable[[], None],
-    ) -> None:
+    def __init__(self, server: Server, session: Session, inbox: Inbox) -> None:
         self.session = session
         self.pushes = True
-        self._publish = publish
-        self._refresh = refresh
+        self.finished: Callable[[], None] = lambda: None
+        self._server = server
+        self._inbox = inbox
+        self._gives_way = False
         self._sent: dict[str, tuple[int | None, list[types.Diagnostic]]] = {}
         self._task: asyncio.Task[None] | None = None
         self._waiting: dict[str, None] = {}
+        self._all_waiting = False
+
+    def checkpoint(self) -> None:
+        """
+        Raises:
+            Interrupted: a message has come.
+        """
+        if self._gives_way and self._inbox.waiting:
+            raise Interrupted
 
     # ------------------------------------------------------------------ push
 
     def schedule(self, *paths: str) -> None:
         """Files have changed; none are named if any may have."""
+        self._all_waiting |= not paths
         self._waiting = dict.fromkeys((*paths, *self._waiting))
         if self._task is not None:
             self._task.cancel()
         self._task = asyncio.ensure_future(self._work())
 
     async def _work(self) -> None:
-        await asyncio.sleep(PAUSE)
-        if not self.pushes:
-            self._waiting.clear()
-            self._refresh()
-            return
+        await self._let_messages_by()
+        if self.pushes:
+            await self._check_all()
+        else:
+            self._server.ask_to_pull()
+        self._waiting.clear()
+        self._all_waiting = False
+        self.finished()
+        await asyncio.sleep(REST)
+        await self._prepare()
+
+    async def _prepare(self) -> None:
+        """While nobody waits: find out what the next question is likely to need, and clear away."""
+        moment = self.session.moment()
+        for path in await self._giving_way(moment.files):
+            analysis = moment.snapshot(path).analysis
+            for system in analysis.memberships.get(path, (None,)):
+                await self._giving_way(partial(uses, analysis, path, system))
+        await self._let_messages_by()
+        gc.collect(1)
+
+    async def _check_all(self) -> None:
+        started = time.monotonic()
         moment = self.session.moment()
         for path in [path for path in self._waiting if path in moment.versions]:
-            self._check(moment, path)
-            await asyncio.sleep(BREAK)
-        there = moment.files()
-        for path in there:
-            self._check(moment, path)
-            await asyncio.sleep(BREAK)
+            await self._check(moment, path)
+        there = await self._giving_way(moment.files)
+        async with AsyncExitStack() as shown:
+            told: Progress | None = None
+            for number, path in enumerate(there):
+                if told is None and self._all_waiting and time.monotonic() - started > QUICK:
+                    told = await shown.enter_async_context(progress(self._server, TITLE))
+                if told is not None:
+                    told.report(number, len(there))
+                await self._check(moment, path)
         for path in self._sent.keys() - set(there):
             self._send(path, [], None)
-        self._waiting.clear()
 
-    def _check(self, moment: Moment, path: str) -> None:
+    async def _check(self, moment: Moment, path: str) -> None:
         try:
-            found = self.of(moment, path)
+            found = await self._giving_way(lambda: self.of(moment, path))
         except Exception:  # a failure of ours in one file must not keep the others from being checked
             log.exception("%s cannot be checked", path)
         else:
             self._send(path, found, moment.versions.get(path))
+
+    async def _giving_way(self, compute: Callable[[], T]) -> T:
+        """What is computed between messages. Under a steady stream of them, it is not interrupted for ever."""
+        for _ in range(TRIES):
+            await self._let_messages_by()
+            self._gives_way = True
+            try:
+                return compute()
+            except Interrupted:
+                continue
+            finally:
+                self._gives_way = False
+        await self._let_messages_by()
+        return compute()
+
+    async def _let_messages_by(self) -> None:
+        await asyncio.sleep(0)
+        while self._inbox.waiting:
+            await asyncio.sleep(0)
 
     def _send(self, path: str, found: list[types.Diagnostic], version: int | None) -> None:
         before = self._sent.get(path, (version, []))
         if before[1] == found and (before[0] == version or not found):
             return
         self._sent[path] = (version, found)
-        self._publish(types.PublishDiagnosticsParams(self.session.convert.uri(path), found, version))
+        params = types.PublishDiagnosticsParams(self.session.convert.uri(path), found, version)
+        self._server.text_document_publish_diagnostics(params)
 
     # ------------------------------------------------------------------ pull
 
@@ -119,13 +183,13 @@ class Diagnostics:
         moment = self.session.moment()
         there = moment.files()
         for path in there:
+            await self._let_messages_by()
             found = self.of(moment, path)
             uri, version, result = self.session.convert.uri(path), moment.versions.get(path), result_id(found)
             if known.get(path) == result:
                 items.append(types.WorkspaceUnchangedDocumentDiagnosticReport(uri, result, version))
             else:
                 items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, found, version, result_id=result))
-            await asyncio.sleep(BREAK)
         for path in known.keys() - set(there):
             uri = self.session.convert.uri(path)
             items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, [], None, result_id=result_id([])))

@@ -1,24 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """The language server: wiring of the protocol to `roaml`.
 
-Handlers convert what comes in, make one call and convert what comes out. Everything runs on one event loop, so a
-handler never sees a half-applied change.
+Handlers convert what comes in, make one call and convert what comes out. Messages are handled one after the other on
+one event loop, so a handler never sees a half-applied change; what is computed gives up at its next checkpoint when
+nobody waits for it any more.
 """
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
-from typing import Any
+import sys
+from collections.abc import Callable
+from typing import Any, BinaryIO
 
 from lsprotocol import types
-from pygls.exceptions import PyglsError
+from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcRequestCancelled, PyglsError
+from pygls.io_ import StdoutWriter
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import register
+from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.refresh import Refresh
+from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
+from as2fm_lsp.tcp import accepted
 from roaml import __version__
 from roaml.model.kinds import EXTENSIONS
 from roaml.project.settings import CONFIG_FILE
@@ -32,22 +41,87 @@ SECTION = "as2fm"
 class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
-    `is_shut_down` tells whether the client has asked it to shut down.
+    `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
+    client that shows places, "" if it has none.
     """
 
     def __init__(self) -> None:
         super().__init__("as2fm-lsp", __version__)
         self.is_shut_down = False
-        self.session = Session()
-        self.diagnostics = Diagnostics(
-            self.session,
-            self.text_document_publish_diagnostics,
-            self.ask_to_pull,
-        )
+        self.show_references = ""
+        self.inbox = Inbox()
+        self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
+        self.session = Session(self._checkpoint)
+        self.diagnostics = Diagnostics(self, self.session, self.inbox)
+        self.diagnostics.finished = Refresh(self).look
+
+    def feature(self, feature_name: str, options: Any = None) -> Callable[[Any], Any]:
+        register = super().feature(feature_name, options)
+        return lambda handler: register(self.requests.guarded(feature_name, handler))
+
+    def command(self, command_name: str) -> Callable[[Any], Any]:
+        register = super().command(command_name)
+        return lambda handler: register(self.requests.guarded(command_name, handler))
+
+    def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
+        # A reader of our own: Python's is locked while a thread reads it, and the process could not end.
+        source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
+        self.serve(source, stdout or sys.stdout.buffer)
+
+    def start_tcp(self, host: str, port: int) -> None:
+        """Serve the first client that connects.
+
+        Raises:
+            OSError: nobody can be listened for there.
+        """
+        with accepted(host, port) as connection:
+            self.serve(connection.makefile("rb"), connection.makefile("wb"))
+
+    def serve(self, source: BinaryIO, target: BinaryIO) -> None:
+        """Serve one client, until it tells the server to exit or has no more to say."""
+        self.protocol.set_writer(StdoutWriter(target))
+        try:
+            asyncio.run(self._handle_messages(source))
+        except BrokenPipeError:
+            log.error("the connection to the client is lost")
+        except (KeyboardInterrupt, SystemExit):
+            pass
+        finally:
+            self.shutdown()  # type: ignore[no-untyped-call]
+
+    async def _handle_messages(self, source: BinaryIO) -> None:
+        asyncio.get_running_loop().set_exception_handler(_report)
+        self.inbox.fill_from(source)
+        async for message in self.inbox:
+            try:
+                self.protocol.handle_message(self.protocol.structure_message(message))
+            except BrokenPipeError:
+                raise
+            except Exception as error:  # what is no message must not end the session
+                self._refuse(message, error)
+            await asyncio.sleep(0)
+
+    def _refuse(self, message: Any, error: Exception) -> None:
+        """A message that cannot be understood; whoever waits for an answer gets one."""
+        log.error("this is no message that is understood: %.200r", message, exc_info=error)
+        if isinstance(message, dict) and "id" in message and "method" in message:
+            answer = error if isinstance(error, JsonRpcException) else JsonRpcInternalError()
+            self.protocol._send_response(message["id"], error=answer.to_response_error())
+
+    def _checkpoint(self) -> None:
+        """
+        Raises:
+            Interrupted: what is computed now is not wanted, or something else is wanted first.
+        """
+        if self.requests.is_handled:
+            self.requests.checkpoint()
+        else:
+            self.diagnostics.checkpoint()
 
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
-        """A failure of ours: told in the log, without a pop-up for each keystroke."""
-        log.error("%s", source.__name__, exc_info=error)
+        """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
+        if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
+            log.error("%s", source.__name__, exc_info=error)
 
     def ask_to_pull(self) -> None:
         """Diagnostics have changed that the client fetches by itself."""
@@ -60,6 +134,12 @@ class Server(LanguageServer):
         for problem in dict.fromkeys(self.session.problems):
             self.window_show_message(types.ShowMessageParams(types.MessageType.Warning, problem))
         self.session.problems.clear()
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """What went wrong where nobody waits; that somebody does not wait any more is nothing wrong."""
+    if not isinstance(context.get("exception"), JsonRpcRequestCancelled):
+        loop.default_exception_handler(context)
 
 
 def create() -> Server:
@@ -93,6 +173,7 @@ def _documents(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         path = session.convert.path(params.text_document.uri)
+        session.look_again()
         if os.path.basename(path) in (CONFIG_FILE, "pyproject.toml"):
             session.configure()
             server.tell_problems()
@@ -116,6 +197,10 @@ def _workspace(server: Server) -> None:
         session.convert = Converter(str(server.workspace.position_encoding))
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
         session.configure(options.get("settings") or {})
+        server.show_references = str(options.get("showReferences") or "")
+        general = params.capabilities.general
+        if general is not None and general.stale_request_support is not None:
+            server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)
         session.set_folders(session.convert.path(folder.uri) for folder in server.workspace.folders.values())
         if not server.workspace.folders and params.root_uri:
             session.set_folders([session.convert.path(params.root_uri)])
@@ -153,6 +238,7 @@ def _workspace(server: Server) -> None:
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         paths = [session.convert.path(change.uri) for change in params.changes]
+        session.look_again()
         if any(os.path.basename(path) in (CONFIG_FILE, "pyproject.toml") for path in paths):
             session.configure()
             server.tell_problems()

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -18,9 +19,13 @@ from lsprotocol import types
 
 from as2fm_lsp.convert import Converter
 from roaml.project.discover import is_inside
+from roaml.project.memo import go_on
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings, settings_from
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import SourceFile
+
+FRESH = 0.5
+"""Seconds after which the disk is looked at again, even if nobody tells of changes there."""
 
 
 class Moment:
@@ -71,9 +76,13 @@ class Moment:
 
 
 class Session:
-    """`problems` are what is wrong with the configuration, until they are told."""
+    """Attributes:
+    problems: what is wrong with the configuration, until it is told.
+    checkpoint: called again and again during all work (`Workspace`).
+    """
 
-    def __init__(self) -> None:
+    def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
+        self.checkpoint = checkpoint
         self.convert = Converter()
         self.problems: list[str] = []
         self._versions: dict[str, int | None] = {}
@@ -81,9 +90,20 @@ class Session:
         self._folders: dict[str, Workspace] = {}
         self._around: dict[str, Workspace] = {}
         self._client_settings: object = {}
+        self._moment: Moment | None = None
+        self._taken = 0.0
 
     def moment(self) -> Moment:
-        return Moment(self._folders, self._workspace_around, self._versions)
+        """Now. As long as nothing is known to have changed, what was looked up for the last answer serves the next."""
+        now = time.monotonic()
+        if self._moment is None or now - self._taken > FRESH:
+            self._moment = Moment(self._folders, self._workspace_around, self._versions)
+            self._taken = now
+        return self._moment
+
+    def look_again(self) -> None:
+        """Something has changed, in the editor or on the disk."""
+        self._moment = None
 
     # ------------------------------------------------------------- documents
 
@@ -106,6 +126,7 @@ class Session:
     def close(self, path: str) -> None:
         self._texts.pop(path, None)
         self._versions.pop(path, None)
+        self.look_again()
         needed = {_surroundings(path) for path in self._texts}
         self._around = {root: workspace for root, workspace in self._around.items() if root in needed}
         for workspace in self._workspaces():
@@ -115,6 +136,7 @@ class Session:
         text = text.removeprefix("\ufeff")
         self._texts[path] = SourceFile(path, text)
         self._versions[path] = version
+        self.look_again()
         for workspace in self._workspaces():
             workspace.open(path, text)
 
@@ -124,12 +146,14 @@ class Session:
         """The folders that the client has open. Workspaces of folders that stay keep what they know."""
         folders = tuple(dict.fromkeys(os.path.normpath(folder) for folder in folders))
         known, self._around = self._folders, {}
+        self.look_again()
         self._folders = {f: known[f] if f in known else self._new_workspace(f) for f in folders}
         for folder, workspace in self._folders.items():
             workspace.look_for_packages_in(self._packages(folder, workspace.roots))
 
     def refresh(self) -> None:
         """Files have come or gone."""
+        self.look_again()
         for workspace in self._workspaces():
             workspace.refresh()
 
@@ -138,9 +162,15 @@ class Session:
         if client_settings is not None:
             self._client_settings = client_settings
         self.problems.clear()
+        self.look_again()
         for folder, workspace in (*self._folders.items(), *self._around.items()):
             settings = self._settings(folder)
             workspace.configure(settings, _roots(folder, settings))
+
+    @property
+    def client_settings(self) -> object:
+        """As the client sent them; it may send anything."""
+        return self._client_settings
 
     def _workspaces(self) -> tuple[Workspace, ...]:
         return (*self._folders.values(), *self._around.values())
@@ -154,7 +184,7 @@ class Session:
     def _new_workspace(self, folder: str) -> Workspace:
         settings = self._settings(folder)
         roots = _roots(folder, settings)
-        workspace = Workspace(roots, settings, packages=self._packages(folder, roots))
+        workspace = Workspace(roots, settings, packages=self._packages(folder, roots), checkpoint=self.checkpoint)
         for path, source in self._texts.items():
             workspace.open(path, source.text)
         return workspace

@@ -19,6 +19,7 @@ Nothing here prints or raises for what stands in a user's files; a path that doe
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -35,6 +36,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.discover import is_inside
 from roaml.project.files import Problem
+from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings
@@ -114,6 +116,26 @@ def check(
     files = _files(named, snapshot, checked)
     diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path))
     return CheckResult(diagnostics, files, problems, snapshot)
+
+
+def fix(result: CheckResult) -> dict[str, bytes]:
+    """What becomes of the checked files when all safe fixes of what was found are made. Nothing is written.
+
+    A safe fix takes away nothing that has an effect and guesses nothing. Files that stay as they are, and those that
+    hold bytes that are no text, are left out.
+    """
+    sources = {path: result.source(path) for path in result.files}
+    mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
+    texts = fix_all(result.snapshot, mendable, safe_fix, careful=True)
+    return {path: sources[path].encode(text) for path, text in texts.items()}
+
+
+_HALF = re.compile("[\ud800-\udfff]")
+
+
+def _is_text(text: str) -> bool:
+    """Whether a text that was not read from a file can be written to one: halves of characters cannot."""
+    return _HALF.search(text) is None
 
 
 class ModelError(ValueError):

@@ -57,11 +57,18 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change of the finding's own file that mends it. `preferred` marks the one obvious mend."""
+    """A change of the finding's own file that mends it. New lines are written with `\\n`.
+
+    Attributes:
+        title: in the imperative.
+        preferred: it is the one obvious mend.
+        safe: it takes away nothing that has an effect and guesses nothing, so it may be made without a look.
+    """
 
     title: str
     edits: tuple[TextEdit, ...]
     preferred: bool = True
+    safe: bool = False
 
 
 @dataclass(frozen=True, slots=True)

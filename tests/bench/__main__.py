@@ -7,10 +7,16 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, storm, translate, verify
+from bench import check, requests, storm, translate, verify
 from bench.report import Benchmark, machine, table
 
-BENCHMARKS: dict[str, Benchmark] = {**check.BENCHMARKS, **translate.BENCHMARKS, **storm.BENCHMARKS, **verify.BENCHMARKS}
+BENCHMARKS: dict[str, Benchmark] = {
+    **check.BENCHMARKS,
+    **requests.BENCHMARKS,
+    **translate.BENCHMARKS,
+    **storm.BENCHMARKS,
+    **verify.BENCHMARKS,
+}
 
 
 def main() -> int:

@@ -121,6 +121,20 @@ def command_line() -> list[Row]:
     return [Row("command line", seconds(median(took)), "", how)]
 
 
+def formatting() -> list[Row]:
+    """Laying out a whole folder, as a hook does before each commit."""
+    folder = conformance.ROOT / "models" if conformance.PRESENT else EXAMPLES
+    took = []
+    for _ in range(RUNS):
+        before = time.perf_counter()
+        command = [sys.executable, "-m", "as2fm_lsp", "format", "--diff", str(folder)]
+        subprocess.run(command, capture_output=True, check=False)
+        took.append(time.perf_counter() - before)
+    files = sum(path.suffix in (".ascxml", ".scxml", ".xml", ".jani") for path in folder.rglob("*"))
+    how = f"`as2fm-lsp format --diff` of the {files} files in {folder.name}, the whole process; median of {len(took)}"
+    return [Row("format", seconds(median(took)), "", how)]
+
+
 def growth() -> list[Row]:
     """Whether a system of twice the size takes twice the time."""
     medians = []
@@ -138,6 +152,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     "cold-start": cold_start,
     "large-file": large_file,
     "command-line": command_line,
+    "format": formatting,
     "growth": growth,
 }
 

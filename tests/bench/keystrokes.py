@@ -56,14 +56,18 @@ def position(text: str, offset: int) -> dict[str, int]:
 def keys(text: str, rounds: int = 3) -> Iterator[Key]:
     """Each word backwards and forwards `rounds` times, at different places; then the statement. The text is as before
     in the end, but for the statement."""
-    for number in range(rounds):
-        for word in WORDS:
-            yield from _retyped(text, _place(text, word, number) + len(word))
+    for end in places(text, rounds):
+        yield from _retyped(text, end)
     at = _place(text, "<assign ", rounds)
     for character in STATEMENT:
         changed = text[:at] + character + text[at:]
         yield Key(at, at, character, text, changed)
         text, at = changed, at + 1
+
+
+def places(text: str, rounds: int = 3) -> list[int]:
+    """Where the words end of which `keys` takes the last character."""
+    return [_place(text, word, number) + len(word) for number in range(rounds) for word in WORDS]
 
 
 def _place(text: str, word: str, number: int) -> int:

@@ -16,28 +16,46 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
+
+from bench.report import listed
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
 PATIENCE = 60
 """Seconds to wait for an answer before giving up."""
 
 
+Wanted: TypeAlias = Callable[[dict[str, Any]], bool]
+"""Whether a message is waited for."""
+
+
 class Server:
-    """`started` is when its process was started, in seconds of `time.perf_counter`."""
+    """Attributes:
+    started: when its process was started, in seconds of `time.perf_counter`.
+    capabilities: what it says it can do.
+    """
 
     def __init__(self) -> None:
         pipe = subprocess.PIPE
         self.started = time.perf_counter()
+        self.capabilities: dict[str, Any] = {}
         self._process = subprocess.Popen(COMMAND, stdin=pipe, stdout=pipe)
         self._answers: queue.Queue[tuple[float, dict[str, Any]]] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
-    def initialize(self, folder: Path) -> None:
+    def initialize(
+        self, folder: Path, capabilities: dict[str, Any] | None = None, options: dict[str, Any] | None = None
+    ) -> None:
+        """
+        Args:
+            capabilities: of the client.
+            options: for this server.
+        """
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
-        self.tell("initialize", {"processId": None, "workspaceFolders": folders, "capabilities": {}}, 1)
-        self.wait(lambda message: message.get("id") == 1)
+        params = {"processId": None, "workspaceFolders": folders, "capabilities": capabilities or {}}
+        self.tell("initialize", {**params, "initializationOptions": options}, 1)
+        self.capabilities = self.answer(1)[1]["result"]["capabilities"]
         self.tell("initialized", {})
 
     def open(self, path: Path, text: str) -> float:
@@ -63,29 +81,36 @@ class Server:
 
     def diagnostics(self, path: Path, version: int) -> tuple[float, list[dict[str, Any]]]:
         """Wait for the diagnostics of a version of a document: when they arrived, and what they are."""
-        uri = path.as_uri()
-
-        def is_it(message: dict[str, Any]) -> bool:
-            params = message.get("params")
-            return isinstance(params, dict) and (params.get("uri"), params.get("version")) == (uri, version)
-
-        at, message = self.wait(is_it)
+        at, message = self.wait(is_diagnostics(path, version))
         found: list[dict[str, Any]] = message["params"]["diagnostics"]
         return at, found
 
-    def wait(self, wanted: Callable[[dict[str, Any]], bool]) -> tuple[float, dict[str, Any]]:
+    def answer(self, id_: int) -> tuple[float, dict[str, Any]]:
+        """Wait for the answer to a request, and when it arrived."""
+        return self.wait(is_answer(id_))
+
+    def wait(self, wanted: Wanted) -> tuple[float, dict[str, Any]]:
         """The first message from now on that is wanted, and when it arrived; others are dropped.
 
         Raises:
             TimeoutError: it does not come.
         """
-        while True:
+        return self.wait_for_all(wanted)[0]
+
+    def wait_for_all(self, *wanted: Wanted) -> list[tuple[float, dict[str, Any]]]:
+        """The same for several messages, in whatever order they come."""
+        found: dict[Wanted, tuple[float, dict[str, Any]]] = {}
+        while len(found) < len(wanted):
             try:
                 at, message = self._answers.get(timeout=PATIENCE)
             except queue.Empty:
-                raise TimeoutError(f"no such answer in {PATIENCE} s: {wanted.__qualname__}") from None
-            if wanted(message):
-                return at, message
+                raise TimeoutError(
+                    f"no such answer in {PATIENCE} s: {listed(w.__qualname__ for w in wanted)}"
+                ) from None
+            for each in wanted:
+                if each not in found and each(message):
+                    found[each] = (at, message)
+        return [found[each] for each in wanted]
 
     def resident_memory(self) -> int | None:
         """Bytes; None where the system has no /proc."""
@@ -104,6 +129,21 @@ class Server:
         assert self._process.stdout is not None
         for at, body in _bodies(self._process.stdout):
             self._answers.put((at, json.loads(body)))
+
+
+def is_answer(id_: int) -> Wanted:
+    return lambda message: message.get("id") == id_ and "method" not in message
+
+
+def is_diagnostics(path: Path, version: int) -> Wanted:
+    """Whether a message tells the diagnostics of a version of a document."""
+    uri = path.as_uri()
+
+    def is_it(message: dict[str, Any]) -> bool:
+        params = message.get("params")
+        return isinstance(params, dict) and (params.get("uri"), params.get("version")) == (uri, version)
+
+    return is_it
 
 
 def _bodies(stream: IO[bytes]) -> Iterator[tuple[float, bytes]]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys
 from bench.report import Row, percentile, seconds, table
+from bench.requests import REQUESTS, at_rest, opened
 from bench.server import started
 from roaml import api
 from roaml.project.settings import Settings
@@ -72,6 +74,17 @@ def test_the_server_answers(tmp_path: Path) -> None:
         assert server.started < sent < arrived
         server.change(path, 2, {"text": text})
         assert server.diagnostics(path, 2)[1] == []
+
+
+def test_what_is_asked_is_answered(tmp_path: Path) -> None:
+    write_system(tmp_path, 6, lines=350, small_lines=60)
+    path = tmp_path / FIRST
+    with opened(tmp_path) as (server, text):
+        for request in REQUESTS:
+            assert request.capability in server.capabilities
+            took = list(islice(at_rest(server, path, text, request), 8))
+            assert len(took) == 8
+            assert min(took) > 0
 
 
 def test_figures() -> None:

@@ -16,7 +16,8 @@ from command import Command
 import clock
 
 ROOT = Path(__file__).resolve().parents[2]
-HOOKS = (ROOT / ".pre-commit-hooks.yaml").read_text()
+HOOKS = re.split(r"^(?=- id:)", (ROOT / ".pre-commit-hooks.yaml").read_text(), flags=re.MULTILINE)[1:]
+CHECK, FORMAT = HOOKS
 GITHUB = (ROOT / "docs/ci/github.yml").read_text()
 GITLAB = (ROOT / "docs/ci/gitlab.yml").read_text()
 README = (ROOT / "README.md").read_text()
@@ -41,10 +42,11 @@ def call(command: Command, line: str) -> int:
 # ------------------------------------------------------------------ pre-commit
 
 
-def test_the_hook_is_the_one_that_the_readme_names() -> None:
-    (hook,) = values(HOOKS, "id")
-    assert f"`{hook}`" in README
-    assert values(HOOKS, "language") == ["python"]
+@pytest.mark.parametrize("hook", HOOKS)
+def test_the_hooks_are_those_that_the_readme_names(hook: str) -> None:
+    (name,) = values(hook, "id")
+    assert f"`{name}`" in README
+    assert values(hook, "language") == ["python"]
 
 
 @pytest.mark.parametrize(
@@ -64,7 +66,7 @@ def test_the_hook_is_the_one_that_the_readme_names() -> None:
     ],
 )
 def test_the_hook_runs_when_a_file_of_ours_changes(name: str, concerned: bool) -> None:
-    (pattern,) = values(HOOKS, "files")
+    (pattern,) = values(CHECK, "files")
     assert bool(re.search(pattern, name)) is concerned
 
 
@@ -73,8 +75,8 @@ def test_the_hook_finds_what_a_staged_change_breaks_elsewhere(command: Command, 
     git = ["git", "-c", "user.name=n", "-c", "user.email=e@example.com"]
     for arguments in (["init", "-q"], ["add", "."], ["commit", "-qm", "first"]):
         subprocess.run([*git, *arguments], cwd=tmp_path, check=True)
-    (entry,) = values(HOOKS, "entry")
-    names = [] if values(HOOKS, "pass_filenames") == ["false"] else ["clock.ascxml"]
+    (entry,) = values(CHECK, "entry")
+    names = [] if values(CHECK, "pass_filenames") == ["false"] else ["clock.ascxml"]
     line = shlex.join([*shlex.split(entry), *names])
     assert call(command, line) == 0
     (tmp_path / "clock.ascxml").write_text(clock.CLOCK.replace("/ticks", "/tocks"))
@@ -84,13 +86,27 @@ def test_the_hook_finds_what_a_staged_change_breaks_elsewhere(command: Command, 
 
 def test_the_hook_with_the_installed_program(tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
-    (entry,) = values(HOOKS, "entry")
+    (entry,) = values(CHECK, "entry")
     program, *arguments = shlex.split(entry)
     done = subprocess.run(
         [Path(sys.executable).parent / program, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (1, "")
     assert done.stdout.startswith("clock.ascxml:9:31: error: ")
+
+
+@pytest.mark.parametrize(("more", "status", "written"), [([], 0, True), (["--check"], 1, False)], ids=str)
+def test_the_hook_that_formats(command: Command, tmp_path: Path, more: list[str], status: int, written: bool) -> None:
+    """pre-commit puts a hook's own arguments behind its entry; that files were changed it sees by itself."""
+    untidy = clock.CLOCK.replace("    <datamodel>", "<datamodel  >")
+    clock.write(tmp_path, clock=untidy)
+    foreign = tmp_path / "package.xml"
+    foreign.write_text("<package  ></package>")
+    (entry,) = values(FORMAT, "entry")
+    names = [] if values(FORMAT, "pass_filenames") == ["false"] else ["clock.ascxml", "package.xml"]
+    assert call(command, shlex.join([*shlex.split(entry), *more, *names])) == status
+    assert ((tmp_path / "clock.ascxml").read_text() != untidy) is written
+    assert foreign.read_text() == "<package  ></package>"
 
 
 # ------------------------------------------------------------------- workflows

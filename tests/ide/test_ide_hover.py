@@ -3,35 +3,77 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
-from ide_models import ROBOT, load
+from ide_case import one_file
+from ide_models import CORNERS, ROBOT, load
 
 from fixture import split_files
 from fuzz.corpus import systems
 from roaml import api
+from roaml.ide import describe_language
 from roaml.ide.hover import hover
+from roaml.ide.markdown import plain
+from roaml.language import HL_SCXML
+from roaml.language.property_syntax import by_operator, shapes
 from roaml.project.settings import Settings
 
-FILES = split_files(ROBOT)
+MODELS = {"robot": split_files(ROBOT), "corners": split_files(CORNERS)}
 
-# file, a piece of its text with a caret, what is among the text that is shown
+# model, file, a piece of its text with a caret, what is among the text that is shown
 CASES = """
-a.ascxml  <sta|te id  a state of the machine
-a.ascxml  id="|p" type  p : Pose
-a.ascxml  event="g|o" target  sent by `A` | received by `A`
-a.ascxml  topic="/|a/b"  topic a/b : std_msgs/Int32 | published by | in properties: `topic_a__b_msg.valid`
-a.ascxml  type="std_msgs/|Int32"  # std_msgs/Int32 | int32 data
-a.ascxml  target="|s"><assign  state `s` | from | to
-tree.xml  goal="{|g}" out  blackboard `g` | written by | read by
+robot  a.ascxml  <sta|te id  a state of the machine
+robot  a.ascxml  </sta|te>  a state of the machine
+robot  a.ascxml  id="|p" type  p : Pose
+robot  a.ascxml  type="P|ose"  struct Pose | x : float64
+robot  a.ascxml  type="in|t32"  From −2
+robot  a.ascxml  event="g|o" target  event go(to : Pose) | Sent by A · received by A
+robot  a.ascxml  topic="/|a/b"  topic a/b : std_msgs/Int32 | Published by Walk | topic_a__b_msg.valid
+robot  a.ascxml  type="std_msgs/|Int32"  # std_msgs/Int32 | int32 data
+robot  a.ascxml  target="|s"><assign  state s | From s | To s
+robot  a.ascxml  _m|sg.data  _msg : std_msgs/Int32 | The message that has arrived
+robot  a.ascxml  _event.da|ta.to  _event.data | to : Pose
+robot  a.ascxml  _event.data.t|o.x  to : Pose | Parameter of event go
+robot  a.ascxml  data.to.|x  x : float64 | Member of struct Pose
+robot  a.ascxml  _msg.d|ata  int32 data | Field of std_msgs/Int32
+robot  a.ascxml  versi|on=  version="…" | always 1.0
+robot  tree.xml  goal="{|g}" out  {g} : int32 | Written by Walk.out · read by Walk.goal
+robot  tree.xml  <W|alk  plugin Walk | in goal : int32 | BT_plugin_1001_Walk | goal ← {g}
+robot  tree.xml  <S|equence>  control node Sequence | Ticks its children | BT_plugin_1000_Sequence
+robot  tree.xml  name="|w"  node w | BT_plugin_1002_w
+robot  tree.xml  go|al="{g}"  in goal : int32 | Holds {g} in bt_1001, bt_1002
+robot  tree.xml  <Act|ion  A leaf that does something
+robot  plugin.ascxml  <bt_ti|ck  the parent ticks this node | In plain SCXML bt_1001_tick, bt_1002_tick
+robot  plugin.ascxml  <bt_return_|halted  In plain SCXML bt_1001_halt_response, bt_1002_halt_response
+robot  main.xml  max_time value="|1"  1 s: 1 000 000 000 ns of the clock
+robot  main.xml  unit="|s"  Seconds
+robot  main.xml  src="a|.ascxml"  node A
+robot  main.xml  src="tree|.xml"  Behavior trees Main, Sub
+robot  main.xml  src="prop|erties.jani"  p: go.valid ∧ (go__to__x <
+robot  main.xml  src="ty|pes.xml"  Structs Pose
+robot  properties.jani  "|go.valid  go.valid : bool | was ever sent | event go
+robot  properties.jani  go__to__|x  go__to__x : float64 | member of struct Pose
+robot  properties.jani  ros_fields__d|ata  int32 data | Field of std_msgs/Int32
+robot  properties.jani  "|∧"  go.valid ∧ | Both hold
+robot  properties.jani  "na|me"  Name of the property
+robot  properties.jani  "name": "|p"  go.valid ∧ (
+robot  properties.jani  "|op"  Operator
+robot  properties.jani  blackboard_get|__Sub  bt_blackboard_get__Sub__own : int
+corners  server.ascxml  id="s|um" expr  sum : int64 | the sum | Gets _req.a + _req.b
+corners  server.ascxml  service_name="/c|alc"  service /calc | Served by Server · called by Ask
+corners  server.ascxml  sum &lt; 3 &|amp;&amp;  bool && bool | both
+corners  server.ascxml  sum &l|t; 3  number < number
+corners  tree.xml  ID="Sa|me" v="{=}"  tree Same | 4 nodes
+corners  properties.jani  "op": "Pm|in"  Pmin(F ( | least probability
 """
 
 
 @pytest.mark.parametrize("case", CASES.strip().splitlines())
 def test_text(tmp_path: Path, case: str) -> None:
-    name, marked, expected = case.split("  ")
-    analysis = load(tmp_path, FILES)
+    model, name, marked, expected = case.split("  ")
+    analysis = load(tmp_path, MODELS[model])
     before, _, after = marked.partition("|")
     path = str(tmp_path / name)
     source = analysis.source(path)
@@ -40,8 +82,69 @@ def test_text(tmp_path: Path, case: str) -> None:
     found = hover(analysis, path, at)
     assert found is not None
     assert found.span.start <= at <= found.span.end
+    text = plain(found.text).replace("\u202f", " ")
     for part in expected.split(" | "):
-        assert part.lower() in found.text.lower(), found.text
+        assert part.lower() in text.lower(), text
+
+
+MACHINE = """<ascxml name="M" version="1.0" initial="s">
+  <datamodel>
+    <data id="a" type="int32[3]" expr="[]"/>
+    <data id="b" type="float64" lower_bound_incl="0" upper_bound_incl="9" expr="0.5"/>
+  </datamodel>
+  <ros_time_rate name="t" rate_hz="20"/>
+  <state id="s">
+    <transition cond="a.length &gt; 1" target="s">
+      <assign location="d" expr="-Math.pow(b, a[0] % 2) + (b &gt; 1 ? 2 : 7)"/>
+      <assign location="b" expr="Math.abs(b) + 1"/>
+      <assign location="c" expr="1 + a[0]"/>
+    </transition>
+    <bt_child_status id="0" cond="_bt.status == SUCCESS" target="s"/>
+    <ros_rate_callback name="t" target="done"/>
+  </state>
+</ascxml>"""
+
+# a piece of the machine with a caret, the text that is shown
+ALONE = """
+rate_hz="|20  20 Hz: every 50 ms
+name="|t" rate  timer t|20 Hz: every 50 ms
+M|ath.pow  Math|Functions: abs, ceil, cos, floor, log, max, min, pow, random, sin
+Math.p|ow  Math.pow(x, y) : float|x to the power of y.
+"|-Math  -number : int or float|The negative.
+a[0] |% 2  number % number : int or float|The remainder of the division.
+1 |? 2  bool ? x : y|The first of both where the condition holds, else the second.
+a.l|ength  length : int|How many elements a has now. Assigning a smaller number shortens it, 0 empties it.
+SUCC|ESS  SUCCESS = 1|An answer of a node of the tree.
+_b|t.status  _bt|  status : int8|The answer of the child.
+"|b" t  b : float64|Meant from 0 to 9 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
+id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · up to 3 elements · starts as []|Read 3 times
+n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Written once
+target="|done  state done|Not defined|From s on the timer t|Nothing leads away
+"""
+
+
+@pytest.mark.parametrize("case", ALONE.strip().splitlines())
+def test_a_machine_alone(case: str) -> None:
+    marked, expected = case.split("  ", 1)
+    analysis, path = one_file(MACHINE)
+    before, _, after = marked.partition("|")
+    found = hover(analysis, path, MACHINE.index(before + after) + len(before))
+    assert found is not None
+    shown = [line for line in plain(found.text).replace("\u202f", " ").splitlines() if line]
+    assert shown == expected.split("|")
+
+
+def test_every_event_variable_is_explained() -> None:
+    for element in HL_SCXML.elements.values():
+        for binding in element.binds:
+            assert binding.name in describe_language.EVENT_VARIABLES
+
+
+def test_every_operator_of_properties_has_a_shape() -> None:
+    assert {"filter", "Pmin", "U", "∧", "sin", "ite", "initial", "aa"} <= by_operator().keys()
+    for shape in shapes().values():
+        assert shape.title
+        assert all(member.title or member.key == "var" for member in shape.members.values()), shape.name
 
 
 def test_every_place_of_some_systems() -> None:
@@ -56,3 +159,17 @@ def test_every_place_of_some_systems() -> None:
                     assert 0 <= found.span.start <= offset <= found.span.end <= len(text)
                     told += 1
     assert told > 100
+
+
+def test_half_typed(tmp_path: Path) -> None:
+    """Any beginning of a file, and any file with a piece missing, can be asked about at any place."""
+    choose = random.Random(7)
+    for name, text in MODELS["corners"].items():
+        for _ in range(6):
+            cut, length = choose.randrange(len(text)), choose.choice((1, 5, 10**6))
+            broken = text[:cut] + text[cut + length :]
+            files = {**MODELS["corners"], name: broken}
+            analysis = load(tmp_path, files)
+            for offset in {cut, *(choose.randrange(len(broken) + 1) for _ in range(10))}:
+                found = hover(analysis, str(tmp_path / name), min(offset, len(broken)))
+                assert found is None or (found.span.end <= len(broken) and plain(found.text))

@@ -306,11 +306,13 @@ SYSTEM = (
 -- properties.jani --
 {"properties": [{"name": "p", "expression": {"op": "∧", "left": "go.valid", "right":
                                                                  ^^ reads event go
-  {"op": "<", "left": "go__to__x", "right": {"op": "+", "left": "topic_a__b_msg__ros_fields__data", "right":
+  {"op": "<", "left": "go__to__x", "right":
                        ^^ reads event go
                            ^^ reads parameter to in go
                                ^ reads member x in Pose
-                                                                       ^^^^ reads topic a__b
+  {"op": "+", "left": "topic_a__b_msg__ros_fields__data", "right":
+                             ^^^^ reads topic a__b
+                                                   ^^^^ reads field data in std_msgs/Int32
   {"op": "+", "left": "bt_blackboard_get__Sub__own", "right": "bt_blackboard_set_g__value"}}}}}]}
                                           ^^^ reads tree Sub
                                                ^^^ reads blackboard own in Sub
@@ -331,7 +333,8 @@ def test_each_global_variable_is_the_sum_of_its_parts(tmp_path: Path) -> None:
     main = str(tmp_path / "main.xml")
     system = analysis.system(main)
     assert system is not None
-    table = names(system, analysis.globals(main), trees_of(analysis, main, main))
+    find = analysis.environment(main).interface
+    table = names(system, analysis.globals(main), trees_of(analysis, main, main), find)
     assert {name: "".join(piece[0] for piece in pieces) for name, pieces in table.items()} == {
         name: name for name in analysis.globals(main)
     }

@@ -11,6 +11,9 @@ import pytest
 
 from fuzz.cases import make
 from roaml import api
+from roaml.diagnostics import Severity
+from roaml.ide.actions import actions
+from roaml.ide.change import FIX_ALL, Change
 from roaml.ide.closing import close_tag
 from roaml.ide.folding import folds
 from roaml.ide.format import format_edits
@@ -46,6 +49,45 @@ def test_damaged_models(first: int) -> None:
                 edit = close_tag(analysis, path, offset)
                 assert edit is None or edit.span == (offset, offset)
                 format_edits(analysis, path, within=Span(offset, min(len(text), offset + 50)))
+
+
+@pytest.mark.parametrize("first", range(0, 60, 10))
+def test_actions_on_damaged_models(first: int) -> None:
+    """What they change is text that is there, and no two of their edits change the same."""
+    for seed in range(first, first + 10):
+        case = make(seed)
+        result = api.check([case.main], case.model.ros_paths, Settings(), case.texts)
+        snapshot, random = result.snapshot, Random(seed)
+        for path in result.files:
+            text = result.source(path).text
+            places = [random.randint(0, len(text)) for _ in range(5)]
+            places += [diagnostic.span.start for diagnostic in snapshot.checker.diagnostics(path)[:5]]
+            for offset in places:
+                for action in actions(snapshot, path, Span(offset, offset), lambda kind: kind != FIX_ALL):
+                    check_change(result, action.make())
+
+
+@pytest.mark.parametrize("seed", range(100, 110))
+def test_safe_fixes_of_damaged_models(seed: int) -> None:
+    """They bring no error, and once is enough."""
+    case = make(seed)
+    result = api.check([case.main], case.model.ros_paths, Settings(), case.texts)
+    fixed = {path: data.decode("utf-8") for path, data in api.fix(result).items()}
+    again = api.check([case.main], case.model.ros_paths, Settings(), {**case.texts, **fixed})
+    for path in fixed:
+        before, after = (
+            sum(d.severity is Severity.ERROR for d in each.diagnostics if d.path == path) for each in (result, again)
+        )
+        assert after <= before
+    assert api.fix(again) == {}
+
+
+def check_change(result: api.CheckResult, change: Change) -> None:
+    for path, edits in change.edits.items():
+        source = result.snapshot.analysis.source(path)
+        assert source is not None
+        within(source.text, (edit.span for edit in edits))
+        assert all(one.span.end <= other.span.start for one, other in pairwise(sorted(edits)))
 
 
 def within(text: str, spans: Iterable[Span]) -> None:

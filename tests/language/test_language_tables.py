@@ -152,7 +152,10 @@ def test_everything_is_documented(grammar: Grammar) -> None:
                 assert choice.documentation, f"{path}@{attribute.name}={choice.value}"
 
 
-VALUES = {"expression", "constant", "location", "type", "ros-type", "path", "number", "status", "child-index", "script"}
+VALUES = {
+    *("expression", "constant", "location", "type", "ros-type", "path", "number", "flag", "status", "child-index"),
+    "script",
+}
 VALUE_TYPES = {"", "bool", "int", "any", "msg", "srv", "action"}
 ELSEWHERE = {"topic", "service", "action", "field", "plugin"}
 """Symbols that no attribute of a language defines: names in the ROS graph, fields of its types, machines as plugins."""
@@ -174,7 +177,7 @@ PLAIN = {
     "roaml.xsd": set(),
     "structs.xsd": set(),
     "behaviortree.xsd": {
-        *("root@BTCPP_format", "include@ros_pkg", "SubTree@_autoremap", "SubTreePlus@_autoremap"),
+        *("root@BTCPP_format", "include@ros_pkg"),
         *(f"{port}@{name}" for port in ("input_port", "output_port", "inout_port") for name in PORT_MODEL),
     },
 }

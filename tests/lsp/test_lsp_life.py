@@ -64,7 +64,7 @@ GARBAGE = [
     frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"wrong": 1}}),
     frame({"jsonrpc": "2.0", "method": "textDocument/didOpen"}),
     frame({"jsonrpc": "2.0", "method": "$/unknown", "params": {}}),
-    frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": 99}}),
+    frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": 98}}),
     frame({"jsonrpc": "2.0", "id": 7, "method": "no/such", "params": {}}),
     frame({"jsonrpc": "2.0", "id": 8, "result": None}),
     frame(
@@ -151,8 +151,11 @@ async def test_what_it_can_do() -> None:
         "interFileDependencies": True,
         "workspaceDiagnostics": True,
     }
-    assert capabilities["codeActionProvider"] == {"codeActionKinds": ["quickfix", "source"]}
-    assert capabilities["codeLensProvider"] == {"resolveProvider": False}
+    assert capabilities["codeActionProvider"] == {
+        "codeActionKinds": ["quickfix", "refactor.extract", "refactor.rewrite", "source.fixAll.as2fm", "source"],
+        "resolveProvider": True,
+    }
+    assert capabilities["codeLensProvider"] == {"resolveProvider": True}
     assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.translateToJani"]}
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
 
@@ -220,7 +223,7 @@ async def test_a_port_that_is_taken() -> None:
         status, _, log = await server.end()
     assert status == 2
     assert log.startswith("as2fm-lsp: --tcp 127.0.0.1:")
-    assert "address already in use" in log
+    assert "address already in use" in log.lower()
 
 
 def free_port() -> int:

@@ -20,7 +20,7 @@ from roaml.language.validate import SchemaViolation
 from roaml.project.settings import Settings
 from roaml.rules import BY_CODE, schema_violation
 from roaml.rules.rule import FileContext
-from roaml.text import SourceFile, apply_edits
+from roaml.text import SourceFile
 from roaml.xml import parse
 
 FILES = sorted((Path(__file__).parent / "cases_z").glob("*.txt"))
@@ -43,22 +43,6 @@ def test_case(code: str, text: str, tmp_path: Path) -> None:
     assert not [d.message for d in diagnostics if d.code == "internal-error"]
     found = sorted((place(d, tmp_path), d.span.start, d.code) for d in of_rule(diagnostics, code))
     assert found == sorted((mark.file, mark.start, mark.code) for mark in marks)
-
-
-@pytest.mark.parametrize(("code", "text"), CASES)
-def test_fixes_mend(code: str, text: str, tmp_path: Path) -> None:
-    """Each preferred fix, made alone, removes a finding of its rule and leaves the XML as well-formed as it was."""
-    diagnostics, _ = check_text(tmp_path, text)
-    for diagnostic in of_rule(diagnostics, code):
-        for fix in diagnostic.fixes:
-            if fix.preferred:
-                mended = apply_edits(Path(diagnostic.path).read_text(encoding="utf-8"), fix.edits)
-                after = list(
-                    api.check([str(tmp_path)], settings=Settings(), texts={diagnostic.path: mended}).diagnostics
-                )
-                assert len(of_rule(after, code)) < len(of_rule(diagnostics, code)), fix.title
-                broken = [d.message for d in after if d.code in ("xml-syntax", "duplicate-attribute")]
-                assert len(broken) <= sum(d.code in ("xml-syntax", "duplicate-attribute") for d in diagnostics), broken
 
 
 def test_bytes_that_are_no_text(tmp_path: Path) -> None:

@@ -33,6 +33,8 @@ def run(options: argparse.Namespace) -> int:
         return _usage("--check needs a PATH")
     if stdin is not None and os.path.isdir(stdin):
         return _usage(f"{stdin}: --stdin-filename takes the name of a file")
+    if options.fix and stdin is not None:
+        return _usage("--fix changes files; it cannot be used with --stdin-filename")
     unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
     if unknown:
         return _usage(f"there is no rule {', '.join(unknown)}")
@@ -51,8 +53,15 @@ def run(options: argparse.Namespace) -> int:
     texts = None if stdin is None else {stdin: sys.stdin.buffer.read()}
     try:
         result = api.check(paths, options.ros_path, settings, texts)
+        if options.fix and (fixed := api.fix(result)):
+            for path, data in fixed.items():
+                write_file(path, data)
+                print(f"as2fm-lsp: fixed {shown_path(path)}", file=sys.stderr)
+            result = api.check(paths, options.ros_path, settings)
     except api.PathError as error:
         return _usage(str(error))
+    except OSError as error:
+        return _usage(f"{error.filename}: {error.strerror or error}")
     lowest = SEVERITIES[options.severity]
     failed = any(d.code == _CRASH for d in result.diagnostics)
     shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]

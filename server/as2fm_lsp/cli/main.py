@@ -22,6 +22,7 @@ examples:
   as2fm-lsp --check main.xml              check a system and all of its files
   as2fm-lsp --check models --ros-path msgs --format github
   as2fm-lsp --check . --warnings-as-errors --baseline .as2fm-baseline.json
+  as2fm-lsp --check models --fix          mend what can be mended safely, tell the rest
   as2fm-lsp --explain late-event-data     what a rule means
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         lay files out, or tell which ones are not
@@ -114,6 +115,7 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument("--stdio", action="store_true", help="serve on standard input and output, as without it")
     check = result.add_argument_group("checking")
     check.add_argument("--check", action="store_true", help="check files and exit")
+    check.add_argument("--fix", action="store_true", help="make all safe fixes first: none guesses or changes a model")
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
     formats = ("text", "json", "github", "gitlab", "sarif", "junit")
     check.add_argument("--format", default="text", choices=formats, help="how diagnostics are written")

@@ -12,11 +12,15 @@ from as2fm_lsp.server import create
 UNEXPECTED_END = 1
 """The status that the protocol asks for when a server ends that was not told to shut down."""
 
+SWITCH = 0.001
+"""Seconds after which a computation lets the thread have a turn that reads what the client sends."""
+
 
 def run(tcp: str | None) -> int:
     """Serve one client, on standard input and output or on `HOST:PORT`."""
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
-    logging.getLogger("pygls").setLevel(logging.ERROR)
+    logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server tells of errors itself
+    sys.setswitchinterval(SWITCH)
     server = create()
     if tcp is None:
         server.start_io()

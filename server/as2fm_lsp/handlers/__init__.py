@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING
 from as2fm_lsp.handlers import (
     call_hierarchy,
     code_action,
+    code_lens,
+    completion,
     formatting,
     hover,
+    inlay_hint,
     navigate,
     rename,
     semantic_tokens,
+    signature_help,
     structure,
     tags,
     translate,
+    type_hierarchy,
     workspace_symbol,
 )
 
@@ -26,14 +31,19 @@ if TYPE_CHECKING:
 _FEATURES = (
     call_hierarchy,
     code_action,
+    code_lens,
+    completion,
     formatting,
     hover,
+    inlay_hint,
     navigate,
     rename,
     semantic_tokens,
+    signature_help,
     structure,
     tags,
     translate,
+    type_hierarchy,
     workspace_symbol,
 )
 

@@ -10,6 +10,7 @@ from lsprotocol import types
 
 from as2fm_lsp.convert import Converter
 from roaml.project.analysis import Analysis
+from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile, Span
 
 if TYPE_CHECKING:
@@ -21,9 +22,13 @@ class Asked:
     """A file, with all that is known at the moment of the request."""
 
     path: str
-    analysis: Analysis
+    snapshot: Snapshot
     source: SourceFile
     convert: Converter
+
+    @property
+    def analysis(self) -> Analysis:
+        return self.snapshot.analysis
 
     def offset(self, position: types.Position) -> int:
         return self.convert.offset(self.source, position)
@@ -39,6 +44,6 @@ def asked(server: Server, document: types.TextDocumentIdentifier) -> Asked | Non
     """None if there is no such file."""
     session = server.session
     path = session.convert.path(document.uri)
-    analysis = session.moment().snapshot(path).analysis
-    source = analysis.source(path)
-    return None if source is None else Asked(path, analysis, source, session.convert)
+    snapshot = session.moment().snapshot(path)
+    source = snapshot.analysis.source(path)
+    return None if source is None else Asked(path, snapshot, source, session.convert)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.symbols import symbol_kind
+from as2fm_lsp.handlers.symbols import pack, symbol_kind, unpack
 from roaml.diagnostics import Symbol
 from roaml.ide import calls
 from roaml.project.analysis import Analysis
@@ -33,7 +33,7 @@ def register(server: Server) -> None:
             session.convert.range(source, item.span),
             session.convert.range(source, item.name_span),
             detail=symbol.kind,
-            data=[symbol.path, symbol.kind, symbol.name, symbol.scope],
+            data=pack(symbol),
         )
 
     def ranges(analysis: Analysis, path: str, spans: tuple[Span, ...]) -> list[types.Range]:
@@ -43,10 +43,8 @@ def register(server: Server) -> None:
     def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.Call, ...]]:
         """The calls of an item that was given to the client before."""
         analysis = session.moment().snapshot(session.convert.path(item.uri)).analysis
-        data = item.data
-        if not isinstance(data, (list, tuple)) or len(data) != 4:
-            return analysis, ()
-        return analysis, question(analysis, Symbol(*map(str, data)))
+        symbol = unpack(item.data)
+        return analysis, question(analysis, symbol) if symbol else ()
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:

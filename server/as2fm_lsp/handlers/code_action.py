@@ -1,14 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/codeAction`: the fixes that rules offer, and what can be done with a whole system."""
+"""`textDocument/codeAction` and `codeAction/resolve`: what can be done at a place, and with a whole system.
+
+- An edit is worked out when the client resolves the action, if it can; nothing is remembered in between, so an action
+  is resolved against the text as it is then.
+- An action that makes or renames files is offered to clients that can do so.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
 from as2fm_lsp.handlers import translate
+from roaml.diagnostics import Diagnostic
+from roaml.ide.actions import actions
+from roaml.ide.change import FIX_ALL, KINDS, Action, Change
+from roaml.project.workspace import Snapshot
 from roaml.text import Span
 
 if TYPE_CHECKING:
@@ -17,45 +27,126 @@ if TYPE_CHECKING:
 
 
 def register(server: Server) -> None:
-    options = types.CodeActionOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.Source])
+    session = server.session
+    options = types.CodeActionOptions([*KINDS, types.CodeActionKind.Source], resolve_provider=True)
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, options)
     def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
-        session = server.session
         path = session.convert.path(params.text_document.uri)
         moment = session.moment()
         snapshot = moment.snapshot(path)
         source = snapshot.analysis.source(path)
         if source is None:
             return []
-        found: list[types.CodeAction] = []
-        only = params.context.only
-        if _is_wanted(types.CodeActionKind.QuickFix, only):
-            found += _fixes(server, moment, path, session.convert.span(source, params.range))
+        place, only = session.convert.span(source, params.range), params.context.only
+        shown = _Shown(server, moment, path)
+        found = [
+            _converted(server, snapshot, path, place, shown, action)
+            for action in actions(snapshot, path, place, lambda kind: _is_wanted(kind, only))
+            if _can(server, action)
+        ]
         if _is_wanted(types.CodeActionKind.Source, only):
             found += translate.actions(snapshot, path, session.convert)
         return found
 
+    @server.feature(types.CODE_ACTION_RESOLVE)
+    def resolve(action: types.CodeAction) -> types.CodeAction:
+        data: Any = action.data
+        if action.edit is not None or not isinstance(data, dict):
+            return action
+        try:
+            uri, place = str(data["uri"]), Span(int(data["start"]), int(data["end"]))
+        except (KeyError, TypeError, ValueError):  # a client may send anything
+            return action
+        path = session.convert.path(uri)
+        snapshot = session.moment().snapshot(path)
+        for found in actions(snapshot, path, place, lambda kind: kind == action.kind):
+            if (found.title, found.kind, _identity(found)) == (action.title, action.kind, data.get("mends")):
+                action.edit = _edit(server, snapshot, found.make())
+                break
+        return action
 
-def _fixes(server: Server, moment: Moment, path: str, place: Span) -> Iterator[types.CodeAction]:
-    """The fixes of what is found at a place."""
-    snapshot, convert = moment.snapshot(path), server.session.convert
-    source = snapshot.analysis.source(path)
-    assert source is not None
-    found = snapshot.checker.diagnostics(path)
-    for diagnostic, shown in zip(found, server.diagnostics.of(moment, path), strict=True):
-        if diagnostic.span.start <= place.end and place.start <= diagnostic.span.end:
-            for fix in diagnostic.fixes:
-                edits = [convert.edit(source, edit) for edit in fix.edits]
-                yield types.CodeAction(
-                    fix.title,
-                    kind=types.CodeActionKind.QuickFix,
-                    diagnostics=[shown],
-                    is_preferred=fix.preferred or None,
-                    edit=types.WorkspaceEdit(changes={convert.uri(path): edits}),
-                )
+
+def _converted(
+    server: Server, snapshot: Snapshot, path: str, place: Span, shown: _Shown, action: Action
+) -> types.CodeAction:
+    found = types.CodeAction(
+        action.title,
+        kind=action.kind,
+        diagnostics=shown.of(action.mends),
+        is_preferred=action.preferred or None,
+    )
+    if _resolves(server):
+        uri = server.session.convert.uri(path)
+        found.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
+    else:
+        found.edit = _edit(server, snapshot, action.make())
+    return found
+
+
+def _identity(action: Action) -> str:
+    """What tells actions of one title apart: the diagnostic that they are about."""
+    return f"{action.mends.code} {action.mends.span.start}" if action.mends else ""
+
+
+class _Shown:
+    """The diagnostics of a file as the client has them, made when the first is needed."""
+
+    def __init__(self, server: Server, moment: Moment, path: str) -> None:
+        self._server, self._moment, self._path = server, moment, path
+
+    @cached_property
+    def _known(self) -> Mapping[Diagnostic, types.Diagnostic]:
+        found = self._moment.snapshot(self._path).checker.diagnostics(self._path)
+        return dict(zip(found, self._server.diagnostics.of(self._moment, self._path), strict=True))
+
+    def of(self, diagnostic: Diagnostic | None) -> list[types.Diagnostic] | None:
+        return None if diagnostic is None else [self._known[diagnostic]]
+
+
+def _edit(server: Server, snapshot: Snapshot, change: Change) -> types.WorkspaceEdit:
+    convert, analysis = server.session.convert, snapshot.analysis
+    edits = {
+        path: [convert.edit(source, edit) for edit in sorted(change.edits[path])]
+        for path in change.edits
+        if (source := analysis.source(path)) is not None
+    }
+    if not change.created and not change.renamed:
+        return types.WorkspaceEdit(changes={convert.uri(path): found for path, found in edits.items()})
+    start = types.Range(types.Position(0, 0), types.Position(0, 0))
+    steps: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
+    for path, text in change.created.items():
+        steps.append(types.CreateFile(convert.uri(path), options=types.CreateFileOptions(ignore_if_exists=True)))
+        steps.append(_document_edit(convert.uri(path), None, [types.TextEdit(start, text)]))
+    versions = server.session.moment().versions
+    steps += [_document_edit(convert.uri(path), versions.get(path), found) for path, found in edits.items()]
+    steps += [types.RenameFile(convert.uri(path), convert.uri(new)) for path, new in change.renamed.items()]
+    return types.WorkspaceEdit(document_changes=steps)
+
+
+def _document_edit(uri: str, version: int | None, edits: list[types.TextEdit]) -> types.TextDocumentEdit:
+    return types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri, version), list(edits))
+
+
+def _resolves(server: Server) -> bool:
+    """Whether the client asks for the edit of an action when it is chosen."""
+    document = server.client_capabilities.text_document
+    action = document.code_action if document else None
+    support = action.resolve_support if action else None
+    return bool(action and action.data_support and support and "edit" in support.properties)
+
+
+def _can(server: Server, action: Action) -> bool:
+    """Whether the client can make and rename files, if an action does so."""
+    workspace = server.client_capabilities.workspace
+    edit = workspace.workspace_edit if workspace else None
+    operations: Sequence[str] = (edit.resource_operations if edit and edit.document_changes else None) or ()
+    return all(resource in operations for resource in action.resources)
 
 
 def _is_wanted(kind: str, only: Sequence[str] | None) -> bool:
-    """Whether actions of `kind` are asked for: `quickfix` is part of `` and of itself."""
-    return not only or any(wanted in ("", kind) or kind.startswith(f"{wanted}.") for wanted in only)
+    """Whether actions of `kind` are asked for: `quickfix` is part of `` and of itself. All fixes of a file are made
+    only for those who ask for them."""
+    if not only:
+        return kind != FIX_ALL
+    return any(wanted in ("", kind) or kind.startswith(f"{wanted}.") for wanted in only)

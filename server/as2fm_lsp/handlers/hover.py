@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.markup import content
 from roaml.ide.hover import hover as hover_at
 
 if TYPE_CHECKING:
@@ -24,5 +25,6 @@ def register(server: Server) -> None:
         found = hover_at(analysis, path, session.convert.offset(source, params.position)) if source else None
         if source is None or found is None:
             return None
-        content = types.MarkupContent(types.MarkupKind.Markdown, found.text)
-        return types.Hover(content, session.convert.range(source, found.span))
+        text_document = server.client_capabilities.text_document
+        formats = text_document.hover.content_format if text_document and text_document.hover else None
+        return types.Hover(content(found.text, formats), session.convert.range(source, found.span))

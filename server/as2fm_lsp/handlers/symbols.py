@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of the language's symbols as those of the protocol."""
+"""Symbols on their way to the client and back, and their kinds as those of the protocol."""
 
 from __future__ import annotations
 
 from lsprotocol import types
 
+from roaml.diagnostics import Symbol
 from roaml.ide.occurrence import HANDLES
 
 _KINDS = {
@@ -26,3 +27,13 @@ _KINDS = {
 
 def symbol_kind(kind: str) -> types.SymbolKind:
     return _KINDS.get(kind, types.SymbolKind.Object)
+
+
+def pack(symbol: Symbol) -> list[str]:
+    """As a client keeps it for us."""
+    return [symbol.path, symbol.kind, symbol.name, symbol.scope]
+
+
+def unpack(data: object) -> Symbol | None:
+    """What `pack` made; None if it is something else."""
+    return Symbol(*map(str, data)) if isinstance(data, (list, tuple)) and len(data) == 4 else None

@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `as2fm.translateToJani`, with the code lens and the code actions that call it."""
+"""The command `as2fm.translateToJani`, with the lens and the code actions that call it."""
 
 from __future__ import annotations
 
-import asyncio
 import os
-import uuid
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager
+from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, TypedDict
 
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.convert import Converter
+from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
 from as2fm_lsp.write import write_file
 from roaml import api
+from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
+from roaml.project.memo import Interrupted
 from roaml.project.workspace import Snapshot
+from roaml.text import SourceFile
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -54,12 +56,14 @@ def register(server: Server) -> None:
         path, *output = (session.convert.path(str(uri)) for uri in arguments)
         target = output[0] if output else jani_path(path)
         name = os.path.basename(path)
-        async with _progress(server, f"Translating {name}"):
+        async with progress(server, f"Translating {name}", cancellable=True) as shown:
             try:
-                system = api.loaded(session.moment().snapshot(path), path)
-                keep_off(target, system)
-                model = api.to_jani(system)
-                write_file(target, (*jani_text(model), "\n"))
+                with server.requests.cancelled_by(shown.token):
+                    model = await _write(server, shown, path, target)
+            except Interrupted:
+                if shown.is_cancelled:
+                    return None
+                raise
             except api.ModelError as error:
                 count = len(error.result.diagnostics)
                 errors = "1 error" if count == 1 else f"{count} errors"
@@ -75,15 +79,36 @@ def register(server: Server) -> None:
         _tell(server, types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
         return {"uri": session.convert.uri(target), "summary": found}
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
-    def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source, file = analysis.source(path), analysis.system_file(path)
-        if source is None or file is None or not os.path.isabs(path):
-            return []
-        place = session.convert.range(source, file.element.name_span)
-        return [types.CodeLens(place, types.Command(TITLE, COMMAND, arguments=[session.convert.uri(path)]))]
+
+def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:
+    """One for a system file that lies on the disk."""
+    file = snapshot.analysis.system_file(path)
+    if file is not None and os.path.isabs(path):
+        command = types.Command(TITLE, COMMAND, arguments=[convert.uri(path)])
+        yield types.CodeLens(convert.range(source, file.element.name_span), command)
+
+
+async def _write(server: Server, shown: Progress, path: str, target: str) -> Model:
+    """Translate a system, as it is now, into a file. Between the steps other messages are handled.
+
+    Raises:
+        Interrupted: the client does not want it any more. The file is as it was before.
+    """
+    snapshot = server.session.moment().snapshot(path)
+    await shown.step("checking")
+    system = api.loaded(snapshot, path)
+    keep_off(target, system)
+    await shown.step("translating")
+    model = api.to_jani(system)
+    await shown.step("writing")
+    write_file(target, _while_wanted(server, chain(jani_text(model), "\n")))
+    return model
+
+
+def _while_wanted(server: Server, pieces: Iterable[str]) -> Iterator[str]:
+    for piece in pieces:
+        server.requests.checkpoint()
+        yield piece
 
 
 def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types.CodeAction]:
@@ -96,20 +121,3 @@ def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types
 
 def _tell(server: Server, kind: types.MessageType, text: str) -> None:
     server.window_show_message(types.ShowMessageParams(kind, text))
-
-
-@asynccontextmanager
-async def _progress(server: Server, title: str) -> AsyncIterator[None]:
-    """Work that the client shows as being done, if it can."""
-    window = server.client_capabilities.window
-    if window is None or not window.work_done_progress:
-        yield
-        return
-    token = str(uuid.uuid4())
-    await server.work_done_progress.create_async(token)
-    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(title))
-    await asyncio.sleep(0)  # let the message out
-    try:
-        yield
-    finally:
-        server.work_done_progress.end(token, types.WorkDoneProgressEnd())

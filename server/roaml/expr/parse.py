@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from dataclasses import replace
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix
@@ -107,6 +108,8 @@ _LITERALS = {"true": True, "false": False}
 _WORDS = _PREFIX_WORDS | _STATEMENT_WORDS | _LITERALS.keys() | {"this"}
 _CLOSERS = frozenset((")", "]", "}"))
 _OPENERS = frozenset(("(", "[", "{"))
+_PRIMARY = (Call, Index, Member, Name, Number)
+"""Expressions that stay together whatever stands beside them."""
 _OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
 
 
@@ -140,6 +143,15 @@ def _path(source: Decoded, names: list[str]) -> Expr:
         start, end = end + 1, end + 1 + len(name)
         expr = Member(source.span(0, end), expr, name, source.span(start, end))
     return expr
+
+
+def _power(base: Expr, exponent: Expr) -> Fix:
+    edits = (
+        TextEdit(Span(base.span.start, base.span.start), "Math.pow("),
+        TextEdit(Span(base.span.end, exponent.span.start), ", "),
+        TextEdit(Span(exponent.span.end, exponent.span.end), ")"),
+    )
+    return Fix("Write it with `Math.pow`", edits)
 
 
 class _TooDeepError(Exception):
@@ -220,10 +232,14 @@ class _Parser:
         replacement = _REPLACEMENTS.get(token.text)
         fixes = (Fix(f"Write `{replacement}`", (TextEdit(span, _in_xml(replacement)),)),) if replacement else ()
         hint = _FOREIGN_OPERATORS[token.text]
+        number = len(self.findings)
         self.report(span, f"`{token.text}` is not supported here: {hint}", UNSUPPORTED, *fixes)
         self.at += 1
         self.deeper()
         right = self.expression(1)
+        alone = len(self.findings) == number + 1
+        if token.text == "**" and alone and isinstance(left, _PRIMARY) and isinstance(right, _PRIMARY):
+            self.findings[number] = replace(self.findings[number], fixes=(_power(left, right),))
         return ErrorExpr(self.since(first), (left, right))
 
     def written(self, token: Token, symbol: str) -> None:

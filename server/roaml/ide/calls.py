@@ -50,7 +50,7 @@ def items_at(analysis: Analysis, path: str, offset: int) -> tuple[Item, ...]:
     for occurrence in occurrences_at(analysis, path, offset):
         symbol = occurrence.symbol
         if symbol.kind in HANDLES:
-            symbols.update(dict.fromkeys(_interfaces_of(analysis, symbol)))
+            symbols.update(dict.fromkeys(interfaces_of(analysis, symbol)))
         elif symbol.kind in _CALLABLE:
             symbols[symbol] = None
     found = (_item(analysis, symbol) for symbol in symbols)
@@ -153,7 +153,8 @@ def _interface(system: System, automaton: Automaton, use: InterfaceUse) -> Symbo
     return None if name is None else interface_symbol(system.path, use.kind, name)
 
 
-def _interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
+def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
+    """The topics, services or actions that a handle stands for."""
     for system in _systems(analysis, handle.path):
         for automaton in system.automata_of(handle.path):
             for use in automaton.outline.interfaces:

@@ -26,7 +26,7 @@ def close_tag(analysis: Analysis, path: str, offset: int) -> TextEdit | None:
     if text[offset - 1 : offset] == ">":
         new = _end_tag(document, offset)
     elif text[offset - 2 : offset] == "</":
-        new = _name(text, offset)
+        new = _rest_of_end_tag(text, offset)
     elif text[offset - 1 : offset] == "/":
         new = _end_of_start_tag(document, offset)
     else:
@@ -44,9 +44,15 @@ def _end_tag(document: Document, offset: int) -> str:
     return ""
 
 
-def _name(text: str, offset: int) -> str:
+def _rest_of_end_tag(text: str, offset: int) -> str:
     """What follows `</` before the offset: the name of the element that is open there."""
-    before = parse(text[: offset - 2])
+    name = open_element(text, offset - 2)
+    return name if not name or text[offset : offset + 1] == ">" else f"{name}>"
+
+
+def open_element(text: str, offset: int) -> str:
+    """The name of the innermost element that is still open at an offset, "" if none is or no tag can stand there."""
+    before = parse(text[:offset])
     name, nodes = "", list(before.nodes)
     while nodes:
         last = nodes[-1]
@@ -63,7 +69,7 @@ def _name(text: str, offset: int) -> str:
         if last.close_span is not None or last.self_closing or before.text[last.open_span.end - 1] != ">":
             break
         name, nodes = before.text[last.name_span.start : last.name_span.end], last.nodes
-    return name if not name or text[offset : offset + 1] == ">" else f"{name}>"
+    return name
 
 
 def _end_of_start_tag(document: Document, offset: int) -> str:

@@ -10,31 +10,41 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import Struct, Type, unwrap
+from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.frames import Piece, Trees
 from roaml.ide.in_machine import interface_symbol
 from roaml.ide.occurrence import Access, Form, Occurrence, parameter, tree_node
 from roaml.jani.properties import Property, identifiers
-from roaml.model.globals import GlobalVariable
+from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
 from roaml.model.system import Automaton, Channel, System, safe_name, sanitise
+from roaml.model.typing import INTERFACE_KINDS
 from roaml.text import Span
 
-_SERVICE = ("request", "response")
-_SERVICE_CLIENT = ("req", "response")
-_ACTION = ("goal_accepted", "goal_rejected", "feedback", "result", "thread_start", "thread_free", "goal_handle")
-_ACTION_CLIENT = ("goal_req", "goal_accept", "goal_reject", "feedback_handle", "result_handle")
-
-_NO_VARIABLES: Mapping[str, tuple[Piece, ...]] = {}
+# The events of a service or action -> the part of the interface that they carry.
+_SERVICE = {"request": "request", "response": "response"}
+_SERVICE_CLIENT = {"req": "request", "response": "response"}
+_ACTION = {
+    "goal_accepted": "",
+    "goal_rejected": "",
+    "feedback": "feedback",
+    "result": "result",
+    "thread_start": "goal",
+    "thread_free": "",
+    "goal_handle": "goal",
+}
+_ACTION_CLIENT = {
+    "goal_req": "goal",
+    "goal_accept": "",
+    "goal_reject": "",
+    "feedback_handle": "feedback",
+    "result_handle": "result",
+}
 
 
 def in_properties(
-    text: str,
-    properties: Iterable[Property],
-    system: System,
-    variables: Mapping[str, GlobalVariable],
-    trees: Trees,
+    text: str, properties: Iterable[Property], table: Mapping[str, tuple[Piece, ...]]
 ) -> Iterator[Occurrence]:
-    table = names(system, variables, trees)
+    """`table` is that of `names`."""
     for each in properties:
         for identifier, span in identifiers(each.expression):
             if text[span.start : span.end] == identifier:
@@ -48,13 +58,15 @@ def _occurrences(pieces: tuple[Piece, ...], at: int) -> Iterator[Occurrence]:
         at += len(written)
 
 
-def names(system: System, variables: Mapping[str, GlobalVariable], trees: Trees) -> Mapping[str, tuple[Piece, ...]]:
+def names(
+    system: System, variables: Mapping[str, GlobalVariable], trees: Trees, interface: FindInterface
+) -> Mapping[str, tuple[Piece, ...]]:
     """The name of each global variable of the translation -> what it is made of."""
-    events = {_text(pieces): pieces for pieces in _events(system, trees)}
+    events = {_text(pieces): (pieces, part) for pieces, part in _events(system, trees, interface)}
     found = {}
     for name, variable in variables.items():
-        event = events.get(variable.event, (_plain(variable.event),))
-        found[name] = (*event, *_rest(name[len(variable.event) :], variable, system, trees))
+        event, part = events.get(variable.event, ((_plain(variable.event),), UNKNOWN))
+        found[name] = (*event, *_rest(name[len(variable.event) :], variable, part, system, trees))
     return found
 
 
@@ -66,32 +78,52 @@ def _plain(text: str) -> Piece:
     return text, None, Form.AS_IS
 
 
-def _events(system: System, trees: Trees) -> Iterator[tuple[Piece, ...]]:
+_Event = tuple[tuple[Piece, ...], Type]
+"""The name of an event, and the part of a ROS interface that it carries; unknown if it carries none."""
+
+
+def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[_Event]:
     for event in system.events:
-        yield ((event, Symbol(system.path, "event", event), Form.AS_IS),)
-    for topic in system.topics:
+        yield ((event, Symbol(system.path, "event", event), Form.AS_IS),), UNKNOWN
+    for topic, channel in system.topics.items():
         symbol = interface_symbol(system.path, "publisher", topic)
-        yield _plain("topic_"), (topic, symbol, Form.SANITISED), _plain("_msg")
+        name: tuple[Piece, ...] = (_plain("topic_"), (topic, symbol, Form.SANITISED), _plain("_msg"))
+        yield name, _part(channel, "message", interface)
     for service in system.services.values():
         symbol = interface_symbol(system.path, "service-server", service.name)
         head = (_plain("srv_"), (sanitise(service.name), symbol, Form.SANITISED))
-        yield from _protocol(head, service, _SERVICE, _SERVICE_CLIENT, trees)
+        yield from _protocol(head, service, _SERVICE, _SERVICE_CLIENT, trees, interface)
     for action in system.actions.values():
         symbol = interface_symbol(system.path, "action-server", action.name)
         head = (_plain("action_"), (sanitise(action.name), symbol, Form.SANITISED))
-        yield from _protocol(head, action, _ACTION, _ACTION_CLIENT, trees)
+        yield from _protocol(head, action, _ACTION, _ACTION_CLIENT, trees, interface)
     for pieces in trees.full_names.values():
-        yield _plain("bt_blackboard_set_"), *pieces
+        yield (_plain("bt_blackboard_set_"), *pieces), UNKNOWN
+
+
+def _part(channel: Channel, part: str, interface: FindInterface) -> Type:
+    """The fields of a part of a topic, service or action."""
+    for endpoint in channel.endpoints:
+        found = interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type) if part else None
+        if found is not None:
+            return dict(found.parts).get(part, UNKNOWN)
+    return UNKNOWN
 
 
 def _protocol(
-    head: tuple[Piece, ...], channel: Channel, common: Iterable[str], of_clients: Iterable[str], trees: Trees
-) -> Iterator[tuple[Piece, ...]]:
-    for part in common:
-        yield *head, _plain(f"_{part}")
-    for client in channel.users:
-        for part in of_clients:
-            yield *head, _plain(f"_{part}_client_"), *_automaton(client.automaton, trees)
+    head: tuple[Piece, ...],
+    channel: Channel,
+    common: Mapping[str, str],
+    of_clients: Mapping[str, str],
+    trees: Trees,
+    interface: FindInterface,
+) -> Iterator[_Event]:
+    for event, part in common.items():
+        yield (*head, _plain(f"_{event}")), _part(channel, part, interface)
+    for event, part in of_clients.items():
+        fields = _part(channel, part, interface)
+        for client in channel.users:
+            yield (*head, _plain(f"_{event}_client_"), *_automaton(client.automaton, trees)), fields
 
 
 def _automaton(automaton: Automaton, trees: Trees) -> tuple[Piece, ...]:
@@ -108,8 +140,8 @@ def _automaton(automaton: Automaton, trees: Trees) -> tuple[Piece, ...]:
     return head, (safe_name(instance.name), machine, Form.SAFE)
 
 
-def _rest(rest: str, variable: GlobalVariable, system: System, trees: Trees) -> Iterator[Piece]:
-    """What stands behind the event."""
+def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
+    """What stands behind the event. `part` is what the event carries."""
     if rest == ".valid":
         yield _plain(rest)
     elif variable.event in system.events:
@@ -119,6 +151,10 @@ def _rest(rest: str, variable: GlobalVariable, system: System, trees: Trees) -> 
         pieces = trees.full_names.get(variable.parameter, (_plain(variable.parameter),))
         yield from pieces
         yield _plain(rest[2 + len(_text(pieces)) :])
+    elif rest.startswith(f"__{FIELD_PREFIX}"):
+        lead = f"__{FIELD_PREFIX}".removesuffix("__")
+        yield _plain(lead)
+        yield from _members(rest.removeprefix(lead), part, "")
     else:
         yield _plain(rest)
 
@@ -134,13 +170,14 @@ def _parameter(rest: str, variable: GlobalVariable, system: System) -> Iterator[
 
 
 def _members(rest: str, type_: Type, owner: str) -> Iterator[Piece]:
-    """The members of structs on the way to a leaf."""
+    """The members of structs, or the fields of messages, on the way to a leaf."""
     inner, _ = unwrap(type_)
     if isinstance(inner, Struct):
         for name, member in inner.members:
             if rest == f"__{name}" or rest.startswith((f"__{name}__", f"__{name}.")):
                 yield _plain("__")
-                yield name, Symbol(owner, "member", name, inner.name), Form.AS_IS
+                kind = "member" if inner.what == "struct" else "field"
+                yield name, Symbol(owner, kind, name, inner.name), Form.AS_IS
                 yield from _members(rest[2 + len(name) :], member, owner)
                 return
     yield _plain(rest)

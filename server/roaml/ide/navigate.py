@@ -11,6 +11,7 @@ from roaml.expr.types import Struct, Type, unwrap
 from roaml.ide.find import Thing, Use, occurrences_at, systems_of, thing, thing_at
 from roaml.ide.occurrence import HANDLES, NOT_OURS, Access
 from roaml.ide.ros import locate_ros, locate_type, type_of_field
+from roaml.lower.nodes import node_file
 from roaml.model.system import System
 from roaml.model.typing import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
@@ -34,7 +35,14 @@ def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ..
     if file is not None:
         return (Location(file, Span(0, 0)),)
     found = thing_at(analysis, path, offset)
-    return () if found is None else (*found.definitions, *_ros(analysis, found.symbols))
+    return () if found is None else (*found.definitions, *_ros(analysis, found.symbols), *_builtin(found.symbols))
+
+
+def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """Where a thing is defined first; if it is not, where it is named first. None if it is nowhere."""
+    tied = thing(analysis, (symbol,))
+    uses = (use.location for use in tied.uses)
+    return next(iter((*_ros(analysis, (symbol,)), *_builtin((symbol,)), *tied.definitions, *uses)), None)
 
 
 def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
@@ -81,6 +89,14 @@ def _highlight(use: Use) -> Highlight:
 def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
     found = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in NOT_OURS)
     return tuple(dict.fromkeys(place for place in found if place is not None))
+
+
+def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
+    """The machines that nodes of BehaviorTree.CPP are translated as: they say exactly what these do."""
+    for symbol in symbols:
+        file = node_file(symbol.name) if symbol.kind == "plugin" and not symbol.path else None
+        if file is not None:
+            yield Location(file, Span(0, 0))
 
 
 def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.frames import Trees
+from roaml.ide.frames import Piece, Trees
 from roaml.ide.in_machine import in_machine
-from roaml.ide.in_properties import in_properties
+from roaml.ide.in_properties import in_properties, names
 from roaml.ide.in_structs import in_json, in_xml
 from roaml.ide.in_tree import in_tree
 from roaml.ide.occurrence import Occurrence
@@ -32,12 +32,12 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     source = analysis.source(path)
     if source is None:
         return _index(())
-    linked = analysis.system(system) if system else None
-    typed = analysis.typed_in(path, system) if analysis.machine(path) is not None else None
-    key = (source.digest, linked, analysis.structs(system), typed, trees_of(analysis, path, system))
-    return analysis.memo.get(
-        "uses", (path, system), key, lambda: _index(tuple(dict.fromkeys(_of(analysis, path, system))))
-    )
+    key: tuple[object, ...] = (source.digest, analysis.structs(system))
+    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+        key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
+    else:
+        key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
+    return analysis.memo.get("uses", (path, system), key, lambda: _index(_of(analysis, path, system)))
 
 
 def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tuple[Occurrence, ...]:
@@ -45,15 +45,19 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
     return uses(analysis, path, system).all
 
 
-def _index(found: tuple[Occurrence, ...]) -> Uses:
-    ordered = tuple(sorted(found, key=lambda each: (each.span, each.symbol.kind)))
+def _index(found: Iterable[Occurrence]) -> Uses:
+    """Each occurrence once."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
-    for each in ordered:
-        by_symbol.setdefault(each.symbol, []).append(each)
-        by_span.setdefault(each.span, []).append(each)
+    ordered: list[Occurrence] = []
+    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind)):
+        there = by_span.setdefault(each.span, [])
+        if each not in there:
+            there.append(each)
+            ordered.append(each)
+            by_symbol.setdefault(each.symbol, []).append(each)
     return Uses(
-        ordered,
+        tuple(ordered),
         {symbol: tuple(uses_) for symbol, uses_ in by_symbol.items()},
         {span: tuple(uses_) for span, uses_ in by_span.items()},
     )
@@ -61,7 +65,7 @@ def _index(found: tuple[Occurrence, ...]) -> Uses:
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
-    kind = _kind(analysis, path, system)
+    kind = kind_in(analysis, path, system)
     assert source is not None
     if kind is FileKind.MACHINE:
         machine = analysis.machine(path)
@@ -79,11 +83,18 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
         if value is not None:
             yield from in_json(source.text, value[0], analysis.struct_declarations(path), owner)
     elif kind is FileKind.PROPERTIES and system is not None:
-        linked = analysis.system(system)
-        if linked is not None:
-            trees = trees_of(analysis, path, system)
-            properties, _ = analysis.properties(path)
-            yield from in_properties(source.text, properties, linked, analysis.globals(system), trees)
+        properties, _ = analysis.properties(path)
+        yield from in_properties(source.text, properties, global_names(analysis, system))
+
+
+def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, ...]]:
+    """The names of the global variables of a translated system -> what they are made of."""
+    linked = analysis.system(system)
+    if linked is None:
+        return {}
+    variables, trees = analysis.globals(system), trees_of(analysis, system, system)
+    find = analysis.environment(system).interface
+    return analysis.memo.get("global names", system, (linked, trees), lambda: names(linked, variables, trees, find))
 
 
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
@@ -94,7 +105,7 @@ def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
 
 
-def _kind(analysis: Analysis, path: str, system: str | None) -> FileKind:
+def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
     """What a file is: by itself, or else as what a system lists it."""
     kind = analysis.kind(path)
     if kind is not FileKind.UNKNOWN or system is None:

@@ -71,6 +71,15 @@ def expressions(document: Document, each: Typed) -> Iterator[Expression]:
         yield expression_in(document, span)
 
 
+def expression_at(file: XmlFile, offset: int) -> Expression | None:
+    """The expression around an offset; a caret at its end is inside it."""
+    around = path_at(file, offset)
+    if not around:
+        return None
+    found = (each for each in expressions(file.document, around[-1]) if each.span.contains(offset))
+    return next(found, None)
+
+
 def _roots(document: Document) -> list[Element]:
     return [node for node in document.nodes if isinstance(node, Element)]
 

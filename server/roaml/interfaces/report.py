@@ -38,7 +38,7 @@ class Report:
         """Say `message` about `span`; `instead` is the text that would be right in its place."""
         fixes: tuple[Fix, ...] = ()
         if instead is not None:
-            fixes = (Fix(f"write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)
+            fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)
         self._findings.append(Finding(CODE, span, message, severity, fixes, related))
 
     def findings(self) -> tuple[Finding, ...]:

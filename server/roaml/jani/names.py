@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
-from roaml.diagnostics import Finding, Related, Severity
+import itertools
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.jani.notes import NAME, Notes
 from roaml.json import JsonString
-from roaml.text import Span
+from roaml.json.strings import quote
+from roaml.text import Span, TextEdit
 
 
 class Names:
@@ -22,7 +25,9 @@ class Names:
         text, span = name.value, name.content_span
         first = self._first.setdefault(text, span)
         if first is not span:
-            self._report(name, f"{self.what} `{text}` is declared twice", first)
+            new = next(n for i in itertools.count(2) if (n := f"{text}_{i}") not in self._first)
+            rename = Fix(f"Rename this one to `{new}`", (TextEdit(span, quote(new)[1:-1]),), preferred=False)
+            self._report(name, f"{self.what} `{text}` is declared twice", first, None, rename)
         elif self._outer and text in self._outer._first:
             message = f"{self.what} `{text}` hides the one of the model"
             self._report(name, message, self._outer._first[text], Severity.WARNING)
@@ -31,6 +36,8 @@ class Names:
         if name.value not in self._first:
             self._notes.unknown(self.what, name.value, name.content_span, self._first)
 
-    def _report(self, name: JsonString, message: str, first: Span, severity: Severity | None = None) -> None:
+    def _report(
+        self, name: JsonString, message: str, first: Span, severity: Severity | None = None, *fixes: Fix
+    ) -> None:
         related = (Related(first, "declared here"),)
-        self._notes.add(Finding(NAME, name.content_span, message, severity, related=related))
+        self._notes.add(Finding(NAME, name.content_span, message, severity, fixes, related))

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeVar
 
+from roaml.diagnostics import Finding, Fix
 from roaml.jani.deep import Steps, done, run
 from roaml.jani.expressions import (
     ArrayAccess,
@@ -71,7 +72,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
 )
 from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
-from roaml.text import Span
+from roaml.text import Span, TextEdit
 
 E = TypeVar("E", bound=enum.Enum)
 
@@ -140,12 +141,21 @@ class FormulaReader(Source):
             formula: Formula = yield form.build(self, Members(value, form.shape, self), op.value)
             return formula
         if isinstance(op, JsonString):
-            self.notes.unknown("operator", op.value, op.content_span, _FORMS, code=SYNTAX)
+            self._unknown_operator(op)
         elif op is not None:
             self.wrong_kind(op, "`op` is written as a string")
         elif not any(member.key == "op" for member in value.members):
             self.notes.syntax(Span(value.start, value.start + 1), "an expression needs `op`")
         return Missing(origin=self.origin(value.span))
+
+    def _unknown_operator(self, op: JsonString) -> None:
+        meant = _SPELLINGS.get(op.value.lower().strip())
+        if meant is None:
+            self.notes.unknown("operator", op.value, op.content_span, _FORMS, code=SYNTAX)
+        else:
+            fix = Fix(f"Change to `{meant}`", (TextEdit(op.content_span, meant),))
+            message = f"there is no operator `{op.value}`; did you mean `{meant}`?"
+            self.notes.add(Finding(SYNTAX, op.content_span, message, None, (fix,)))
 
     # ---------------------------------------------------------------- members
 
@@ -455,6 +465,22 @@ _DATATYPE_MEMBER = shape("a member of a datatype's value", "member value")
 _INTERVAL = shape("an interval", "", "lower lower-exclusive upper upper-exclusive comment")
 _REWARD_BOUND = shape("a reward bound", "exp accumulate bounds", "comment")
 _REWARD_INSTANT = shape("a reward instant", "exp accumulate instant", "comment")
+
+_SPELLINGS = {
+    **dict.fromkeys(("==", "===", "eq", "equal", "equals"), "="),
+    **dict.fromkeys(("!=", "!==", "<>", "neq", "ne"), "≠"),
+    **dict.fromkeys(("<=", "=<", "le", "leq"), "≤"),
+    **dict.fromkeys((">=", "=>", "ge", "geq"), "≥"),
+    **dict.fromkeys(("&&", "&", "and"), "∧"),
+    **dict.fromkeys(("||", "|", "or"), "∨"),
+    **dict.fromkeys(("!", "not", "~"), "¬"),
+    **dict.fromkeys(("->", "implies", "→"), "⇒"),
+    **dict.fromkeys(("**", "^"), "pow"),
+    "lt": "<",
+    "gt": ">",
+    "mod": "%",
+}
+"""What operators of JANI are called elsewhere, in lower case."""
 
 _FORMS: dict[str, _Form] = {
     **_forms(UNARY_OPERATORS, FormulaReader._unary, "exp"),

@@ -59,6 +59,8 @@ _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7,
 
 _COLON = re.compile(rf"{_SPACE}:")
 _ASSIGNMENT = re.compile(r"=>?")
+_NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
+"""What a key that is never closed goes on with."""
 _STRING_BODY = {
     '"': re.compile(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
     "'": re.compile(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
@@ -178,7 +180,10 @@ class _Parser:
         key = self.key
         if key is not None:
             if not key.colon:
-                self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", _insertion(key.end, ":"))
+                # Of a key that is never closed, the colon is in it.
+                closed = self.text[key.end - 1] == self.text[key.start]
+                fix = _insertion(key.end, ":") if closed else None
+                self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", fix)
             self.parts.append(key.member(value))
             self.key = None
             self.wants_comma = True
@@ -310,7 +315,10 @@ class _Parser:
             if known is not member and member.key and len(self.findings) < MAX_FINDINGS:
                 message = f"`{member.key[:40]}` stands twice in this object; only the last one counts"
                 related = (Related(known.key_span, "it also stands here"),)
-                self.findings.append(Finding("duplicate-json-key", member.key_span, message, related=related))
+                following = self.parts[self.parts.index(known) + 1]
+                edit = TextEdit(Span(known.start, following.start), "")
+                fix = Fix("Remove the one that does not count", (edit,), safe=True)
+                self.findings.append(Finding("duplicate-json-key", member.key_span, message, None, (fix,), related))
 
     # ---------------------------------------------------------------- unusual text
 
@@ -372,7 +380,9 @@ class _Parser:
         span = Span(at, at + 1 + len(raw) + closed)
         value, mistakes = unescape(raw, at + 1)
         if not closed:
-            self.report(span, "the string is never closed", _replacement(span, quote(value)))
+            name = _NAME_AND_COLON.match(raw) if self.is_object and self.key is None else None
+            close = _insertion(at + 1 + name.end(1), mark) if name else _replacement(span, quote(value))
+            self.report(span, "the string is never closed", close)
         elif mark == "'":
             self.report(span, "strings stand in double quotes", _replacement(span, quote(value)))
         else:

@@ -14,6 +14,8 @@ from roaml.language.grammar import (
     AttributeType,
     ElementType,
     Grammar,
+    PortType,
+    ValueChoice,
 )
 
 __all__ = [
@@ -25,4 +27,6 @@ __all__ = [
     "AttributeType",
     "ElementType",
     "Grammar",
+    "PortType",
+    "ValueChoice",
 ]

@@ -131,6 +131,27 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     return tuple(found)
 
 
+def has_misfits(document: Document, grammar: Grammar) -> bool:
+    """Whether there are elements that the grammar does not know, or not where they stand. Much quicker to say than all
+    else that `validate` says."""
+    root = document.root
+    if root is None or root.name not in grammar.roots:
+        return False
+    namespaces = dict(document.namespaces)
+    stack = [(root, grammar.elements[root.name])]
+    while stack:
+        element, type_ = stack.pop()
+        for child in element.elements:
+            if is_foreign(namespaces, child):
+                continue
+            child_type = grammar.child(type_, child.name)
+            if child_type is not None:
+                stack.append((child, child_type))
+            elif type_.any_child is None:
+                return True
+    return False
+
+
 def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
     """Whether a prefixed element belongs to another language than SCXML."""
     return bool(element.prefix) and document_namespaces.get(element.prefix, SCXML_NAMESPACE) != SCXML_NAMESPACE

@@ -24,7 +24,7 @@ from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
 from roaml.json import parse as parse_json
 from roaml.language import HL_SCXML, Grammar
-from roaml.language.validate import MisplacedElement, UnknownElement, Violation, validate
+from roaml.language.validate import Violation, has_misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, tree_file_outline
 from roaml.model.globals import GlobalVariable, global_variables
@@ -137,6 +137,10 @@ class Analysis:
         """Where a file does not follow a grammar."""
         found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
         return found or ()
+
+    def has_misfits(self, machine: str) -> bool:
+        """Whether a machine has elements that the grammar does not know, or not where they stand."""
+        return bool(self._of_document("misfits", machine, lambda document: has_misfits(document, HL_SCXML)))
 
     def machine(self, path: str) -> Machine | None:
         return self._of_document("machine", path, build_machine)
@@ -346,9 +350,7 @@ class Analysis:
             if document is None or any(f.code == "xml-syntax" for f in document.findings):
                 return False
         machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
-        if any(
-            isinstance(v, (UnknownElement, MisplacedElement)) for m in machines for v in self.violations(m, HL_SCXML)
-        ):
+        if any(self.has_misfits(machine) for machine in machines):
             return False
         return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
 
@@ -368,11 +370,11 @@ class Analysis:
 
     def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
         """A machine with its types. `events` are the data of plain events, as far as they are known."""
-        machine, source = self.machine(path), self.source(path)
+        machine = self.machine(path)
         assert machine is not None
-        assert source is not None
         known = {name: events[name] for name in _received(machine) if name in events}
-        key = (source.digest, structs.outlines, self.interfaces_of(machine), known)
+        # The machine itself, not its text: what was typed refers to its parts.
+        key = (machine, structs.outlines, self.interfaces_of(machine), known)
         environment = _MachineEnvironment(self, structs, known)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))

@@ -25,11 +25,12 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS, Problem
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
-from roaml.project.suppress import suppressions
-from roaml.rules import BY_CODE, RULES, file_too_large
+from roaml.project.suppress import Suppression, suppressions
+from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
 from roaml.rules.rule import (
     FileContext,
@@ -75,12 +76,27 @@ class Checker:
             if self._wanted(finding)
         )
         hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
+        if hidden:
+            found.update(dict.fromkeys(each for each in self._unused(source, systems, hidden) if self._wanted(each)))
         diagnostics = [
             self._publish(path, finding)
             for finding in _without_repetition(found)
-            if finding.code == _CRASH or not any(rule.hides(finding) for rule in hidden)
+            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in hidden)
         ]
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
+
+    def _unused(self, source: SourceFile, systems: tuple[str, ...], hidden: Iterable[Suppression]) -> Iterator[Finding]:
+        """The comments that keep nothing quiet. What a file alone or a damaged one would give is not known."""
+        linked = [self.analysis.system(system) for system in systems]
+        found = [finding for system in systems for finding in self.findings(source.path, system)]
+        known = linked and all(system is not None and system.complete for system in linked)
+        if not known or any(finding.code in _FORM for finding in found):
+            return
+        for each in hidden:
+            if each.codes is None or unused_suppression.RULE.code not in each.codes:
+                used = {finding.code for finding in found if each.hides(finding)}
+                codes = None if each.codes is None else sorted(each.codes)
+                yield from unused_suppression.finding(source.text, each.comment, codes, used)
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting
@@ -124,15 +140,21 @@ class Checker:
 
     def _diagnostic(self, path: str, finding: Finding, severity: Severity) -> Diagnostic:
         related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
-        return Diagnostic(
-            path, finding.code, severity, finding.span, finding.message, finding.fixes, related, finding.tags
-        )
+        source = self.analysis.source(path) if finding.fixes else None
+        fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
+        return Diagnostic(path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags)
 
     def _related(self, path: str, related: Related) -> RelatedPlace | None:
         if isinstance(related.place, Symbol):
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _hides(comment: Suppression, finding: Finding) -> bool:
+    """A comment without codes does not hide that it is not needed."""
+    is_about_comments = finding.code == unused_suppression.RULE.code
+    return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 
 
 def _own_severity(finding: Finding) -> Severity:
@@ -206,6 +228,7 @@ class _Run:
                 checks.append((rule, functools.partial(rule.file, file)))
         checks += self._own_checks()
         for rule, check in checks:
+            self.analysis.memo.checkpoint()
             try:
                 yield from list(check())
             except Exception as error:  # a crash of ours must not stop the other rules

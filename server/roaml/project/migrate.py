@@ -10,12 +10,13 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
+from roaml.diagnostics import Diagnostic, Fix
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.project.fixing import MAX_PASSES, fix_edits
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile, Span, TextEdit, apply_edits
 
@@ -31,8 +32,6 @@ CODES = frozenset(
 )
 """The rules whose fixes make up a migration."""
 
-_MAX_PASSES = 20
-_LINE_END = re.compile(r"\r\n|\n|\r")
 _OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
 
 
@@ -57,7 +56,7 @@ def migrate(systems: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], S
     files = dict.fromkeys(path for system in systems for path in first.files_of(system) if first.source(path))
     before = {path: _source(first, path) for path in files}
     texts: dict[str, str] = {path: _with_current_root(first, path) for path in files}
-    for _ in range(_MAX_PASSES):
+    for _ in range(MAX_PASSES):
         snapshot = snapshot_of(texts)
         changed = {path: _fixed(snapshot, path) for path in files}
         if changed == texts:
@@ -96,30 +95,12 @@ def _with_current_root(analysis: Analysis, path: str) -> str:
 
 
 def _fixed(snapshot: Snapshot, path: str) -> str:
-    """The text with the first fix of each finding that belongs to a migration; overlapping ones wait."""
-    edits: list[TextEdit] = []
-    taken: list[Span] = []
-    for diagnostic in snapshot.checker.diagnostics(path):
-        if diagnostic.code in CODES and diagnostic.fixes:
-            fix = diagnostic.fixes[0].edits
-            if not any(edit.span.start <= span.end and span.start <= edit.span.end for edit in fix for span in taken):
-                edits += fix
-                taken += [edit.span for edit in fix]
-    return apply_edits(_text(snapshot.analysis, path), tuple(_in_layout(_source(snapshot.analysis, path), edits)))
+    """The text with the first fix of each finding that belongs to a migration; those that touch others wait."""
+    return apply_edits(_text(snapshot.analysis, path), fix_edits(snapshot, path, _step))
 
 
-def _in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdit]:
-    """Removals of all that stands on a line take the line with them; new lines end as the file's lines do."""
-    first_end = _LINE_END.search(source.text)
-    line_end = first_end[0] if first_end else "\n"
-    for edit in edits:
-        line = source.lines.position(edit.span.start).line
-        start, end = source.lines.line_start(line), source.lines.line_end(source.lines.position(edit.span.end).line)
-        around = source.text[start : edit.span.start] + source.text[edit.span.end : end]
-        if not edit.new_text and edit.span.start < edit.span.end and not around.strip():
-            yield TextEdit(Span(start, end), "")
-        else:
-            yield TextEdit(edit.span, edit.new_text.replace("\n", line_end))
+def _step(diagnostic: Diagnostic) -> Fix | None:
+    return diagnostic.fixes[0] if diagnostic.code in CODES and diagnostic.fixes else None
 
 
 def _current_name(analysis: Analysis, path: str) -> str:

@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
@@ -17,7 +17,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.checking import Checker
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
-from roaml.project.memo import Memo
+from roaml.project.memo import Memo, go_on
 from roaml.project.settings import Settings
 from roaml.text import SourceFile, decode
 
@@ -26,12 +26,26 @@ _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MOD
 
 
 class Snapshot:
-    """One moment: what is known (`analysis`) and what is wrong (`checker`)."""
+    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are the files in the folders, with
+    those of the editor that were never saved."""
 
-    def __init__(self, analysis: Analysis, checker: Checker, listed: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        analysis: Analysis,
+        checker: Checker,
+        listed: tuple[str, ...],
+        opened: Iterable[str],
+        again: Callable[[Mapping[str, SourceFile]], Snapshot],
+    ) -> None:
         self.analysis = analysis
         self.checker = checker
+        self.listed = tuple(dict.fromkeys((*listed, *opened)))
         self._listed = listed
+        self._again = again
+
+    def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
+        """The same moment with some texts in place of what the files hold."""
+        return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
         """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
@@ -42,6 +56,12 @@ class Snapshot:
                 found[path] = None
         return tuple(path for path in found if analysis.source(path) is not None)
 
+    def candidates(self) -> tuple[str, ...]:
+        """The files of the workspace whose names say that they may be ours, and those of systems, each once."""
+        analysis = self.analysis
+        of_systems = (path for system in analysis.system_paths for path in analysis.files_of(system))
+        return tuple(dict.fromkeys((*self._listed, *of_systems, *analysis.files.open_files)))
+
 
 class Workspace:
     """Args:
@@ -49,6 +69,7 @@ class Workspace:
     settings: what is configured.
     systems: further system files that count.
     packages: the folders in which ROS packages are looked for; the roots if not given.
+    checkpoint: called again and again during all work, which it gives up by raising `Interrupted`.
     """
 
     def __init__(
@@ -57,6 +78,7 @@ class Workspace:
         settings: Settings,
         systems: Iterable[str] = (),
         packages: Iterable[str] | None = None,
+        checkpoint: Callable[[], None] = go_on,
     ) -> None:
         self.roots = tuple(os.path.abspath(root) for root in roots)
         self.settings = settings
@@ -64,7 +86,7 @@ class Workspace:
         self._packages = None if packages is None else tuple(os.path.abspath(folder) for folder in packages)
         self._open: dict[str, SourceFile] = {}
         self._disk = DiskFiles()
-        self._memo = Memo()
+        self._memo = Memo(checkpoint)
         self._index = SystemIndex()
         self._listed: tuple[str, ...] | None = None
         self._registry = self._new_registry()
@@ -97,14 +119,21 @@ class Workspace:
         self._registry = self._new_registry()
 
     def snapshot(self) -> Snapshot:
-        files = Files(self._disk, self._open)
+        return self._snapshot(self._open, self._memo)
+
+    def _snapshot(self, opened: Mapping[str, SourceFile], memo: Memo) -> Snapshot:
+        def again(texts: Mapping[str, SourceFile]) -> Snapshot:
+            """What might be is looked at with a memory of its own, so that nothing that is is forgotten for it."""
+            return self._snapshot({**opened, **texts}, memo.copy())
+
+        files = Files(self._disk, opened)
         if self._listed is None:
             self._listed = tuple(candidates(self.roots, self.settings.exclude))
-        new = [path for path in self._open if is_candidate(path, self.roots, self.settings.exclude)]
+        new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
-        analysis = Analysis(files, registry, self._memo, systems, self.settings.overrides)
-        return Snapshot(analysis, Checker(analysis, self.settings), self._listed)
+        analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
+        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
 
     def _new_registry(self) -> Registry:
         settings = self.settings

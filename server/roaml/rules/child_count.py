@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.grammar import UNBOUNDED
 from roaml.model.outline import MachineOutline
 from roaml.model.system import builtin_plugins
 from roaml.model.tree import TreeNode, nodes
+from roaml.rules.elements import removal
 from roaml.rules.rule import Rule, TreeContext
 
 
@@ -19,29 +20,30 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if node.plugin is None or node.is_subtree:
                 continue
             if node.plugin.value in builtin_plugins():
-                yield from _builtin(node)
+                yield from _builtin(context, node)
             elif context.system is not None:
                 _, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
-                    yield from _own(node, plugin)
+                    yield from _own(context, node, plugin)
 
 
-def _builtin(node: TreeNode) -> Iterator[Finding]:
+def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
     """The schema knows how many children the nodes of BehaviorTree.CPP have."""
     if node.type is None or node.plugin is None:
         return
     allowed, count, name = node.type.any_child, len(node.children), node.plugin.value
     if allowed is None:
         if count:
-            yield RULE.at(node.children[0].element.name_span, f"`{name}` has no children")
+            yield RULE.at(node.children[0].element.name_span, f"`{name}` has no children", _without(context, node, 0))
     elif count > allowed.most:
         message = f"`{name}` has {_children(allowed.most)}: this is one more"
-        yield RULE.at(node.children[allowed.most].element.name_span, message)
+        extra = node.children[allowed.most].element.name_span
+        yield RULE.at(extra, message, _without(context, node, allowed.most))
     elif count < allowed.least:
         yield _too_few(node, allowed.least, allowed.most)
 
 
-def _own(node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
+def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
     """A plugin's machine ticks its children by their index, or by a variable that may be any."""
     count, calls = len(node.children), plugin.plugin
     least = max(calls.children, 1 if calls.any_child else 0)
@@ -50,9 +52,18 @@ def _own(node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
     elif count > calls.children and not calls.any_child:
         extra = node.children[calls.children].element.name_span
         if calls.children == 0:
-            yield RULE.at(extra, f"`{plugin.name}` is a leaf: it never ticks a child")
+            message = f"`{plugin.name}` is a leaf: it never ticks a child"
         else:
-            yield RULE.at(extra, f"`{plugin.name}` ticks {_children(calls.children)}: this one is never ticked")
+            message = f"`{plugin.name}` ticks {_children(calls.children)}: this one is never ticked"
+        yield RULE.at(extra, message, _without(context, node, calls.children))
+
+
+def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:
+    """Take away the children of a node that are too many."""
+    extra = node.children[most:]
+    edits = tuple(removal(context.source.text, child.element.span) for child in extra)
+    one = "this child" if len(extra) == 1 else "the children that are too many"
+    return Fix(f"Remove {one}", edits, preferred=False)
 
 
 def _too_few(node: TreeNode, least: int, most: int) -> Finding:

@@ -33,7 +33,7 @@ def _overruled(context: MachineContext, child: Element, attribute: Attribute) ->
     return RULE.at(
         child.name_span,
         f"`{child.name}` is given twice: the attribute counts, this is not read",
-        Fix(f"Remove `<{child.name}>`", (removal(context.source.text, child.span),)),
+        Fix(f"Remove `<{child.name}>`", (removal(context.source.text, child.span),), safe=True),
         related=(Related(attribute.name_span, "the attribute that counts"),),
     )
 

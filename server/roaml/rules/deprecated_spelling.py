@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
@@ -40,7 +41,8 @@ def _element(context: FileContext, element: Element, type_: ElementType, parent:
         return _unread(context, element.name_span, message, element.span)
     message = f"`<{element.name}>` is now called `<{type_.use}>`"
     # The root decides how the other files of the system are read, so it is the last thing to change.
-    rename = rename_tag(element, type_.use, preferred=parent is not None)
+    inside = parent is not None
+    rename = replace(rename_tag(element, type_.use, preferred=inside), safe=inside)
     return RULE.at(element.name_span, message, rename, tags=(Tag.DEPRECATED,))
 
 
@@ -49,20 +51,20 @@ def _attribute(context: FileContext, element: Element, attribute: Attribute, kno
         message = f"`{attribute.name}` is the older name of `{known.use}`, which is given too: this is not read"
         yield _unread(context, attribute.name_span, message, attribute.span)
     elif known.use:
-        fix = Fix(f"Change to `{known.use}`", (TextEdit(attribute.name_span, known.use),))
+        fix = Fix(f"Change to `{known.use}`", (TextEdit(attribute.name_span, known.use),), safe=True)
         message = f"`<{element.name}>` has `{known.use}` instead of `{attribute.name}` now"
         # Where the current dialect is spoken, the reference translator does not know the older attribute.
         severity = None if context.older or context.grammar is BEHAVIOR_TREE else Severity.ERROR
         yield RULE.at(attribute.name_span, message, fix, severity=severity, tags=(Tag.DEPRECATED,))
     for choice in known.simple.choices:
         if choice.use and choice.value == attribute.value:
-            fix = Fix(f"Change to `{choice.use}`", (TextEdit(attribute.value_span, choice.use),))
+            fix = Fix(f"Change to `{choice.use}`", (TextEdit(attribute.value_span, choice.use),), safe=True)
             message = f"`{choice.value}` is now called `{choice.use}`"
             yield RULE.at(attribute.value_span, message, fix, tags=(Tag.DEPRECATED,))
 
 
 def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -> Finding:
-    remove = Fix("Remove it", (removal(context.source.text, superfluous),))
+    remove = Fix("Remove it", (removal(context.source.text, superfluous),), safe=True)
     severity = None if context.older else Severity.WARNING
     return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
 

@@ -7,18 +7,27 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.types import leaves
+from roaml.model.machine import Data
 from roaml.model.syntax import Name
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        first: dict[str, Name] = {}
+        first: dict[str, Data] = {}
         for data in chart.data:
-            if data.id is not None and first.setdefault(data.id.value, data.id) is not data.id:
-                related = (Related(first[data.id.value].span, "the first one"),)
-                yield RULE.at(data.id.span, f"there are two variables `{data.id.value}`", related=related)
-        yield from _flattened(context, chart.scope, first)
+            if data.id is not None and (before := first.setdefault(data.id.value, data)) is not data:
+                assert before.id is not None
+                related = (Related(before.id.span, "the first one"),)
+                same = _written(context, data) == _written(context, before)
+                fix = remove(context.document, data.element, "Remove this one", preferred=same)
+                yield RULE.at(data.id.span, f"there are two variables `{data.id.value}`", fix, related=related)
+        yield from _flattened(context, chart.scope, {name: data.id for name, data in first.items() if data.id})
+
+
+def _written(context: MachineContext, data: Data) -> str:
+    return "".join(context.source.text[data.element.span.start : data.element.span.end].split())
 
 
 def _flattened(context: MachineContext, scope: str, names: dict[str, Name]) -> Iterator[Finding]:

@@ -6,10 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Declaration
+from roaml.model.machine import Communicate, Declaration, Handler, all_statements
 from roaml.model.syntax import Name, PortRead
+from roaml.model.typing import find_handle
 from roaml.rules.elements import removal
-from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.rule import MachineContext, Rule, unused
+from roaml.text import Span, TextEdit
 
 CLIENTS = {"service-client": "service", "action-client": "action"}
 
@@ -35,15 +37,33 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     related = (Related(before.handle.span, "declared first here"),)
     if _meaning(declaration) == _meaning(before):
         message = f"`{handle.value}` is declared twice in the same way"
-        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),))
+        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
         return RULE.at(handle.span, message, remove, severity=Severity.WARNING, related=related)
     return RULE.at(
         handle.span,
         f"`{handle.value}` is declared twice; give one of them another `name`",
+        _rename(context, declaration, handle),
         # With two kinds each use still finds its own here; the reference translator takes the first (spec/01 §8).
         severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
         related=related,
     )
+
+
+def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> Fix:
+    """Another name for a declaration, and for it wherever it is used."""
+    machine = context.machine
+    new = unused(handle.value.strip("/").replace("/", "_"), (d.handle.value for d in machine.declarations if d.handle))
+    users: list[Handler | Communicate] = []
+    for chart in machine.charts:
+        users += [h for state in chart.states for h in state.handlers]
+        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+    named = [user.handle.span for user in users if user.handle and find_handle(machine, user) is declaration]
+    if declaration.element.get("name") is not None:
+        edit = TextEdit(handle.span, new)
+    else:
+        end = declaration.element.name_span.end
+        edit = TextEdit(Span(end, end), f' name="{new}"')
+    return Fix(f"Rename this one to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
 
 
 def _meaning(declaration: Declaration) -> tuple[str, ...]:

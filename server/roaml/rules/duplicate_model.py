@@ -34,7 +34,7 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     if before.path == listed.path:
         # Of a plugin that is listed twice there is still only one; of a node there would be two.
         same = f": there would be two nodes `{name}`" if what == "node" else ""
-        remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),))
+        remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
         severity = Severity.ERROR if what == "node" else Severity.WARNING
         message = f"`{src.value}` is listed twice{same}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])

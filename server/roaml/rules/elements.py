@@ -45,3 +45,14 @@ def removal(text: str, span: Span) -> TextEdit:
     if text[start - 1 : start] == "\n":
         start -= 2 if text[start - 2 : start - 1] == "\r" else 1
     return TextEdit(Span(start, span.end), "")
+
+
+def stands_alone(document: Document, element: Element) -> bool:
+    """Whether an element is all that a part of an `<if>` holds."""
+    parent = document.path_at(element.name_span.end)[-2:-1]
+    if not parent or parent[0].name != "if":
+        return False
+    siblings = parent[0].elements
+    at = siblings.index(element)
+    before, behind = siblings[at - 1].name if at else "else", [e.name for e in siblings[at + 1 :]][:1] or ["else"]
+    return before in ("else", "elseif") and behind[0] in ("else", "elseif")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import is_foreign
 from roaml.model.machine import If, all_statements
-from roaml.rules.elements import removal
+from roaml.rules.elements import removal, stands_alone
 from roaml.rules.rule import MachineContext, Rule
 from roaml.xml import Element
 
@@ -26,7 +26,8 @@ def _check(context: MachineContext, choice: If) -> Iterator[Finding]:
     namespaces = dict(context.document.namespaces)
     parts = [child for child in choice.element.elements if not is_foreign(namespaces, child)]
     remove = Fix("Remove the `<if>`", (removal(context.source.text, choice.element.span),), preferred=False)
-    fixes = [remove] if all(part.name in MARKERS for part in parts) else []
+    useless = all(part.name in MARKERS for part in parts) and not stands_alone(context.document, choice.element)
+    fixes = [remove] if useless else []
     for branch in choice.branches:
         if not branch.body and not _content(parts, branch.element):
             message = f"`<{branch.element.name}>` holds nothing: a part with a condition needs content"

@@ -8,9 +8,11 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.interfaces.registry import NotFound
 from roaml.model.globals import global_variables
+from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import System
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
@@ -21,14 +23,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None or not system.complete:
         return
-    for event in _unsent(context, system):
+    for event, handler in _unsent(context, system):
         if not _generated(context, system, event.value):
             close = close_names(event.value, [e.name for e in system.events.values() if e.senders])
             message = f"nobody sends the event `{event.value}`{did_you_mean(close)}"
-            yield RULE.at(event.span, message, *replacements(event.span, close))
+            drop = remove(context.document, handler.element, "Remove this transition")
+            yield RULE.at(event.span, message, *replacements(event.span, close), drop)
 
 
-def _unsent(context: MachineContext, system: System) -> Iterator[Name]:
+def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Handler]]:
     """The events of transitions that no machine sends; what is no event name is no business of this rule."""
     for chart in context.machine.charts:
         for state in chart.states:
@@ -42,7 +45,7 @@ def _unsent(context: MachineContext, system: System) -> Iterator[Name]:
                     continue
                 known = system.events.get(event.value)
                 if known is None or not known.senders:
-                    yield event
+                    yield event, handler
 
 
 def _generated(context: MachineContext, system: System, event: str) -> bool:

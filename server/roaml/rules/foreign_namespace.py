@@ -22,10 +22,11 @@ def check(context: FileContext) -> Iterator[Finding]:
         return
     if context.grammar in (HL_SCXML, PLAIN_SCXML):
         if declared.value != SCXML_NAMESPACE:
-            fix = Fix("Write the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),))
+            fix = Fix("Write the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),), safe=True)
             yield RULE.at(declared.span, f"the namespace of SCXML is `{SCXML_NAMESPACE}`", fix)
     else:
-        fixes = [] if root.prefix else [Fix("Remove the attribute", (removal(context.source.text, declared.span),))]
+        fix = Fix("Remove the attribute", (removal(context.source.text, declared.span),), safe=True)
+        fixes = [] if root.prefix else [fix]
         yield RULE.at(declared.span, "this kind of file has no namespace; other tools may not read it", *fixes)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.model.machine import NoEffect, all_statements
-from roaml.rules.elements import removal
+from roaml.rules.elements import removal, stands_alone
 from roaml.rules.rule import MachineContext, Rule
 from roaml.xml import Element
 
@@ -17,7 +17,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         found: list[Element] = [s.element for s in all_statements(chart) if isinstance(s, NoEffect)]
         found += [h.element for state in chart.states for h in state.handlers if not h.effective]
         for element in found:
-            remove = Fix(f"Remove `<{element.name}>`", (removal(context.source.text, element.span),))
+            # Whatever it stands alone in needs content, so that goes as well: empty-branch tells.
+            alone = stands_alone(context.document, element)
+            edit = removal(context.source.text, element.span)
+            remove = Fix(f"Remove `<{element.name}>`", (edit,), preferred=not alone, safe=not alone)
             yield RULE.at(
                 element.name_span,
                 f"`<{element.name}>` has no effect on the model",

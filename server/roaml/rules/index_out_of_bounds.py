@@ -5,15 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import IndexOutOfBounds, constant, infer
 from roaml.expr.operators import Operator, UnaryOperator
-from roaml.expr.tree import Binary, Expr, Index, Member, Unary, walk
+from roaml.expr.tree import Binary, Expr, Index, Member, Name, Unary, walk
 from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
 from roaml.model.syntax import Expression
 from roaml.model.typing import Place, TypedValue, Use
 from roaml.rules.rule import MachineContext, Rule
+from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -24,12 +25,26 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, "an index begins at 0")
                 else:
                     last = (problem.array.bound or 1) - 1
-                    yield RULE.at(problem.span, f"`{problem.array}` has no element {problem.index}: the last is {last}")
+                    message = f"`{problem.array}` has no element {problem.index}: the last is {last}"
+                    yield RULE.at(problem.span, message, *_more_room(value, problem))
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _unbounded(context, value.place, value.value.tree)
             if value.use is Use.LOCATION:
                 yield from _append(context, value, value.value.tree)
                 yield from _length(context, value, value.value.tree)
+
+
+def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
+    """Declare the array, if it is a variable of its own, with as many elements."""
+    if not isinstance(value.value, Expression):
+        return
+    used = [n for n in walk(value.value.tree) if isinstance(n, Index) and n.index.span == problem.span]
+    names = [node.object.name for node in used if isinstance(node.object, Name)]
+    for data in value.place.chart.data:
+        type_ = data.type.name if data.type else None
+        if data.type and data.id and data.id.value in names and type_ and len(type_.dimensions) == 1:
+            new = f"{type_.base}[{problem.index + 1}]"
+            yield Fix(f"Declare `{data.id.value}` as {new}", (TextEdit(data.type.span, new),), preferred=False)
 
 
 def _unbounded(context: MachineContext, place: Place, tree: Expr) -> Iterator[Finding]:
@@ -73,7 +88,8 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     number = constant(assigned.value.tree)
     most = array.bound or (context.system.parameters.max_array_size if context.system else None)
     if number is not None and number < 0:
-        yield RULE.at(assigned.value.span, "a length is at least 0")
+        fix = Fix("Change to `0`", (TextEdit(assigned.value.span, "0"),), preferred=False)
+        yield RULE.at(assigned.value.span, "a length is at least 0", fix)
     elif number is not None and most is not None and number > most:
         yield RULE.at(assigned.value.span, f"`{_text(context, tree.object)}` holds at most {most} elements")
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.kinds import FileKind
+from roaml.model.system_file import ListedFile
+from roaml.rules.layout import remove
 from roaml.rules.rule import Rule, SystemContext
 
 
@@ -14,9 +16,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
     trees = [f for f in context.files if f.wanted is FileKind.TREE]
     for extra in trees[1:]:
         related = (Related(trees[0].input.element.name_span, "the first one"),)
-        yield RULE.at(
-            extra.input.element.name_span, "a system has one file of trees; it may include others", related=related
-        )
+        message = "a system has one file of trees; it may include others"
+        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     section = context.file.element.find("behavior_tree")
     wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
     # An input of no known type may be meant as the tree; invalid-value says that.
@@ -25,7 +26,12 @@ def check(context: SystemContext) -> Iterator[Finding]:
     properties = [f for f in context.files if f.input.section == "properties"]
     for extra in properties[1:]:
         related = (Related(properties[0].input.element.name_span, "the first one"),)
-        yield RULE.at(extra.input.element.name_span, "a system has one property file", related=related)
+        message = "a system has one property file"
+        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
+
+
+def _remove(context: SystemContext, listed: ListedFile) -> Fix:
+    return remove(context.document, listed.input.element, "Remove this `<input>`")
 
 
 RULE = Rule("input-count", Severity.ERROR, "A system lists too many or too few files of a kind.", system=check)

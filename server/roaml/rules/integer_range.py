@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
 from roaml.expr.tree import ArrayLiteral, Conditional, Expr, ObjectLiteral
-from roaml.expr.types import INTEGER_RANGES, Array, Scalar, Struct, Type
+from roaml.expr.types import INTEGER_RANGES, Array, Scalar, Struct, Type, unwrap
 from roaml.model.syntax import Expression
+from roaml.rules.retype import as_type, wide_enough
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span
 
@@ -19,7 +20,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if isinstance(value.value, Expression) and value.wanted is not None:
             for span, number, type_ in outside(value.value.tree, value.wanted):
                 low, high = INTEGER_RANGES[type_]
-                yield RULE.at(span, f"{number} does not fit into `{type_}`, which holds {low} to {high}")
+                wider = wide_enough(number, type_)
+                fixes = as_type(context, value, wider) if wider and not _is_nested(value.wanted) else ()
+                message = f"{number} does not fit into `{type_}`, which holds {low} to {high}"
+                yield RULE.at(span, message, *fixes)
+
+
+def _is_nested(wanted: Type) -> bool:
+    """Whether the integer is a member of a struct, whose type stands elsewhere."""
+    return isinstance(unwrap(wanted)[0], Struct)
 
 
 def outside(expr: Expr, wanted: Type) -> Iterator[tuple[Span, int, str]]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
-from roaml.expr.types import Array, Struct, is_kind, unwrap
+from roaml.expr.types import Array, Struct, is_kind, is_number, unwrap
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.type_mismatch import phrase
+from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -24,18 +25,35 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     )
                 case BadOperand():
                     message = f"`{problem.operator}` takes {problem.wanted}, not {phrase(problem.given)}"
-                    yield RULE.at(problem.span, message)
+                    yield RULE.at(problem.span, message, *_compare(problem))
                 case BadComparison():
                     yield RULE.at(problem.span, _comparison(problem))
                 case MixedTypes():
                     message = f"{phrase(problem.first)} and {phrase(problem.other)} have no type in common"
                     yield RULE.at(problem.span, message)
                 case BadIndex() if isinstance(problem.indexed, Array) or is_kind(problem.indexed, "string"):
-                    yield RULE.at(problem.span, f"an index is an integer, not {phrase(problem.index)}")
+                    message = f"an index is an integer, not {phrase(problem.index)}"
+                    fixes = [_floor(problem.span)] if is_kind(problem.index, "real") else []
+                    yield RULE.at(problem.span, message, *fixes)
                 case BadIndex():
                     yield RULE.at(
                         problem.span, f"only arrays and strings have an index; this is {phrase(problem.indexed)}"
                     )
+
+
+def _compare(problem: BadOperand) -> Iterator[Fix]:
+    """A number where a boolean is wanted."""
+    if problem.wanted == "a boolean" and is_number(problem.given):
+        yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
+
+
+def _floor(span: Span) -> Fix:
+    return Fix("Round down with `Math.floor`", tuple(_around(span, "Math.floor(", ")")), preferred=False)
+
+
+def _around(span: Span, before: str, behind: str) -> Iterator[TextEdit]:
+    yield TextEdit(Span(span.start, span.start), before)
+    yield TextEdit(Span(span.end, span.end), behind)
 
 
 def _comparison(problem: BadComparison) -> str:

@@ -11,7 +11,9 @@ from roaml.expr.types import BASE_TYPES
 from roaml.model.machine import Port
 from roaml.model.syntax import Name, TypeRef
 from roaml.model.system import CHILDREN_COUNT
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.unknown_element import rename_tag
 from roaml.rules.unknown_type import SPELLINGS
 
 ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
@@ -25,7 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             before = first.setdefault(port.key.value, port.key)
             if before is not port.key:
                 related = (Related(before.span, "the first one"),)
-                yield RULE.at(port.key.span, f"there are two ports `{port.key.value}`", related=related)
+                fix = remove(context.document, port.element, "Remove this one")
+                yield RULE.at(port.key.span, f"there are two ports `{port.key.value}`", fix, related=related)
             yield from _key(port, port.key)
         written = port.element.get("type")
         if port.type is not None:
@@ -39,9 +42,11 @@ def _key(port: Port, key: Name) -> Iterator[Finding]:
         yield RULE.at(key.span, f"a tree cannot set `{key.value}`: it is not the name of an attribute")
     elif key.value == CHILDREN_COUNT:
         if port.direction == "out":
-            yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is given to a plugin: it is an input port")
+            to_input = rename_tag(port.element, "bt_declare_port_in")
+            yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is given to a plugin: it is an input port", to_input)
         elif port.type is not None and port.type.text in BASE_TYPES and BASE_TYPES[port.type.text].kind != "int":
-            yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` is an int, not `{port.type.text}`")
+            fixes = replacements(port.type.span, ["int32"])
+            yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` is an int, not `{port.type.text}`", *fixes)
 
 
 def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:

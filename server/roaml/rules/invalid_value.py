@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import InvalidValue
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
+from roaml.text import TextEdit
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -17,7 +18,10 @@ def check(context: FileContext) -> Iterator[Finding]:
         attribute, type_ = violation.attribute, violation.type
         if not attribute.value.strip():
             wanted = "" if violation.wanted == "something" else f"; it should be {violation.wanted}"
-            yield RULE.at(attribute.span, f"`{attribute.name}` is empty{wanted}")
+            choices = [choice.value for choice in type_.simple.choices if not choice.use]
+            new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
+            fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []
+            yield RULE.at(attribute.span, f"`{attribute.name}` is empty{wanted}", *fixes)
         elif type_.value != "ros-type":  # of these, unknown-ros-type says more
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import LengthOfStruct
 from roaml.expr.types import Array, leaves
 from roaml.rules.rule import MachineContext, Rule
+from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -18,7 +19,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 path, type_ = next(leaves(problem.struct), ((), None))
                 first = ".".join(path)
                 if isinstance(type_, Array):
-                    yield RULE.at(problem.span, f"`{problem.struct}` is no array; this is the length of its `{first}`")
+                    message = f"`{problem.struct}` is no array; this is the length of its `{first}`"
+                    fix = Fix(f"Write `.{first}.length`", (TextEdit(problem.span, f"{first}.length"),))
+                    yield RULE.at(problem.span, message, fix)
                 else:
                     message = f"`{problem.struct}` is no array and has no length"
                     yield RULE.at(problem.span, message, severity=Severity.ERROR)

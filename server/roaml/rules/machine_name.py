@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.system import builtin_plugins, safe_name
 from roaml.model.tree import EXPLICIT, SUBTREES
-from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -16,7 +17,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if name is None:
         attribute = context.machine.element.get("name")
         if attribute is not None:
-            yield RULE.at(attribute.span, "the machine has no name: `name` is empty")
+            stem = safe_name(context.source.path.replace("\\", "/").rpartition("/")[2].partition(".")[0])
+            fixes = [Fix(f"Call it `{stem}`", (TextEdit(attribute.span, f'name="{stem}"'),))] if stem else []
+            yield RULE.at(attribute.span, "the machine has no name: `name` is empty", *fixes)
         return
     if "behavior_tree" in context.listed_as and name.value in builtin_plugins():
         message = f"`{name.value}` is a node of BehaviorTree.CPP; give the plugin another name"
@@ -26,7 +29,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         yield RULE.at(name.span, message)
     elif (safe := safe_name(name.value)) != name.value:
         message = f"`{name.value}` is no identifier; generated names use `{safe}`"
-        yield RULE.at(name.span, message, severity=Severity.WARNING)
+        # The tree, if any, would have to name it anew as well.
+        fixes = [] if "behavior_tree" in context.listed_as else [*replacements(name.span, [safe])]
+        yield RULE.at(name.span, message, *fixes, severity=Severity.WARNING)
 
 
 RULE = Rule("machine-name", Severity.ERROR, "The name of a machine is taken or no identifier.", machine=check)

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.syntax import Name
 from roaml.rules.interfaces import declared, name_span
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -22,7 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if not channel.users:
                 close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
                 message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
-                yield RULE.at(name_span(declaration), message)
+                fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+                yield RULE.at(name_span(declaration), message, *fixes)
 
 
 RULE = Rule("missing-client", Severity.WARNING, "A service or action is served that nobody uses.", machine=check)

@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
+from roaml.model.machine import Chart
 from roaml.model.system import builtin_plugins
 from roaml.rules import misspelled
+from roaml.rules.layout import last_in, remove
 from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.text import Span, TextEdit
+from roaml.xml import Element
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -21,7 +25,8 @@ def check(context: FileContext) -> Iterator[Finding]:
         assert context.grammar is not None
         if wanted is None:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
-                yield RULE.at(element.name_span, f"`<{element.name}>` needs a `<{violation.names[0]}>`")
+                message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
+                yield RULE.at(element.name_span, message, *_leave_out(context, element))
         elif element.name not in builtin_plugins():  # of these, child-count tells
             children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
@@ -33,7 +38,28 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
         element = chart.element
         states = any(child.name == "state" for child in element.elements)
         if element.complete and not states and not misspelled.among(element.elements, "state", HL_SCXML):
-            yield RULE.at(element.name_span, f"`<{element.name}>` needs at least one `<state>`")
+            message = f"`<{element.name}>` needs at least one `<state>`"
+            yield RULE.at(element.name_span, message, *_add_state(context, chart))
+
+
+def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
+    """An element that holds nothing, where none is needed."""
+    root = context.document.root if context.document else None
+    if context.document is None or root is None or context.grammar is None or element not in root.elements:
+        return
+    often = context.grammar.elements[root.name].children.get(element.name)
+    if often is not None and often.least == 0 and not element.elements:
+        yield remove(context.document, element, f"Remove the empty `<{element.name}>`")
+
+
+def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
+    name = chart.initial.value if chart.initial else "initial"
+    if chart.element.complete:
+        edits = [last_in(context.document, chart.element, f'<state id="{name}" />')]
+        at = chart.element.name_span.end
+        if chart.element.get("initial") is None and not chart.scope:
+            edits.append(TextEdit(Span(at, at), f' initial="{name}"'))
+        yield Fix(f"Add the state `{name}`", tuple(edits))
 
 
 RULE = Rule(

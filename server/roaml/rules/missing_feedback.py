@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration, Handler
 from roaml.model.typing import find_handle
 from roaml.rules.interfaces import declared
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 
 
@@ -21,7 +22,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for handler in _handlers(context, declaration):
             message = f"the server of `{action.name}` never sends feedback"
             related = (Related(action.sources[0].symbol, "the server"),)
-            yield RULE.at(handler.element.name_span, message, related=related)
+            drop = remove(context.document, handler.element)
+            yield RULE.at(handler.element.name_span, message, drop, related=related)
 
 
 def _handlers(context: MachineContext, declaration: Declaration) -> Iterator[Handler]:

@@ -6,17 +6,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.expr.types import Scalar, Struct, Type, leaves
+from roaml.expr.types import Struct, Type, leaves
 from roaml.model.machine import Communicate, all_statements
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule, close_names, listing
 from roaml.rules.unknown_field import sent_part
-from roaml.text import LineIndex, Span, TextEdit
-from roaml.xml import Element
+from roaml.rules.zero import zero
 
 SHOWN = 6
-ZERO = {"int": "0", "real": "0.0", "bool": "false", "string": "''"}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -59,7 +58,8 @@ def _finding(context: MachineContext, statement: Communicate, missing: list[tupl
     names = _shortened([name for name, _ in missing])
     one = len(missing) == 1
     fields = "field" if one else "fields"
-    fix = Fix(f"Add the missing {fields}", _edits(element, missing, context.source.lines, context.source.text))
+    new = [f'<field name="{name}" expr="{zero(type_)}" />' for name, type_ in missing]
+    fix = Fix(f"Add the missing {fields}", (last_in(context.document, element, *new),))
     if context.older:
         defaults = "is not set and has its ROS default" if one else "are not set and have their ROS defaults"
         message = f"the {fields} {names} of `{part}` {defaults}"
@@ -71,31 +71,6 @@ def _shortened(names: list[str]) -> str:
     if len(names) <= SHOWN:
         return listing(names)
     return f"{', '.join(f'`{name}`' for name in names[: SHOWN - 1])} and {len(names) - SHOWN + 1} more"
-
-
-def _edits(element: Element, missing: list[tuple[str, Type]], lines: LineIndex, text: str) -> tuple[TextEdit, ...]:
-    start = lines.line_start(lines.position(element.span.start).line)
-    line = text[start : element.span.start]
-    indent = line[: len(line) - len(line.lstrip())]
-    new = "".join(f'\n{indent}    <field name="{name}" expr="{zero(type_)}" />' for name, type_ in missing)
-    if element.self_closing:
-        slash = element.open_span.end - 2
-        while text[slash - 1].isspace():
-            slash -= 1
-        close = f"{new}\n{indent}</{element.name}>"
-        return (TextEdit(Span(slash, element.open_span.end), f">{close}"),)
-    if element.elements:
-        at = element.elements[-1].span.end
-        return (TextEdit(Span(at, at), new),)
-    at = element.open_span.end
-    empty = not text[at : element.content_span.end].strip()
-    return (
-        TextEdit(Span(at, element.content_span.end) if empty else Span(at, at), f"{new}\n{indent}" if empty else new),
-    )
-
-
-def zero(type_: Type) -> str:
-    return ZERO[type_.kind] if isinstance(type_, Scalar) else "[]"
 
 
 RULE = Rule("missing-field", Severity.ERROR, "A field of a ROS type is not set.", machine=check)

@@ -11,7 +11,7 @@ from roaml.expr.parse import parse
 from roaml.model.expand import Constant, Reference
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.instances import instances
-from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.text import Decoded
 
 
@@ -20,9 +20,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
     in_system = context.system is not None
     for node, key, text in _settings(context):
         number = _number(text)
-        reason = _reason(node, key, number, in_system=in_system) if number is not None else ""
-        if reason:
-            yield _finding(node, key, reason)
+        problem = _problem(node, key, number, in_system=in_system) if number is not None else None
+        if problem is not None:
+            yield _finding(node, key, *problem)
     for node, automaton in instances(context):
         for attribute in node.type.ports if node.type else ():
             value = automaton.port(attribute.name)
@@ -31,10 +31,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield _finding(node, attribute.name, reason)
 
 
-def _finding(node: TreeNode, key: str, reason: str) -> Finding:
+def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
+    """`instead` is the nearest setting that would do."""
     setting = node.element.get(key)
     assert node.plugin is not None
-    return RULE.at(setting.value_span if setting else node.plugin.span, reason)
+    if setting is None:
+        return RULE.at(node.plugin.span, reason)
+    fixes = (
+        [] if instead is None or _number(setting.value) is None else replacements(setting.value_span, [str(instead)])
+    )
+    return RULE.at(setting.value_span, reason, *fixes)
 
 
 def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
@@ -53,20 +59,23 @@ def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
                     yield node, setting.key.value, setting.value.value
 
 
-def _reason(node: TreeNode, key: str, number: int, *, in_system: bool) -> str:
+def _problem(node: TreeNode, key: str, number: int, *, in_system: bool) -> tuple[str, int | None] | None:
+    """What is wrong with a setting, and the nearest one that would do."""
     count = len(node.children)
     match node.plugin.value if node.plugin and node.type is not None else "", key:
         case ("Parallel", "success_threshold" | "failure_threshold") if count and not 1 <= number <= count:
             # BehaviorTree.CPP itself counts negative thresholds from the end and takes 0 for met at once.
             if in_system or number > count:
-                return f"a threshold lies between 1 and the number of children, here {count}; this is {number}"
+                return f"a threshold lies between 1 and the number of children, here {count}; this is {number}", max(
+                    1, min(number, count)
+                )
         case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
-            return f"`{key}` is -1 (for ever), 0 or more; this is {number}"
+            return f"`{key}` is -1 (for ever), 0 or more; this is {number}", -1
         case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):
-            return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}"
+            return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}", None
         case ("ParallelAll", "max_failures") if number > count > 0:
-            return f"`max_failures` is at most the number of children, here {count}; this is {number}"
-    return ""
+            return f"`max_failures` is at most the number of children, here {count}; this is {number}", count
+    return None
 
 
 def _number(text: str) -> int | None:

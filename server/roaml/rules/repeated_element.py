@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.language import BEHAVIOR_TREE
 from roaml.language.validate import TooManyElements, is_foreign
 from roaml.rules.elements import own_elements
+from roaml.rules.layout import remove
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.xml import Document, Element
 
@@ -33,7 +34,8 @@ def check(context: FileContext) -> Iterator[Finding]:
                 most = {0: "no children", 1: "one child"}.get(violation.most, f"{violation.most} children")
                 message = f"`<{parent}>` has {most}; this is one more"
             related = (Related(violation.first.name_span, "the first one"),) if violation.most else ()
-            yield RULE.at(violation.element.name_span, message, related=related)
+            fixes = [remove(context.document, violation.element, "Remove this one")] if context.document else []
+            yield RULE.at(violation.element.name_span, message, *fixes, related=related)
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
@@ -43,7 +45,9 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
             same = [child for child in children if child.name == name]
             for other in same[1:]:
                 related = (Related(same[0].name_span, "the first one"),)
-                yield RULE.at(other.name_span, f"`<{element.name}>` has only one `<{name}>`", related=related)
+                message = f"`<{element.name}>` has only one `<{name}>`"
+                again = remove(context.document, other, "Remove this one")
+                yield RULE.at(other.name_span, message, again, related=related)
 
 
 def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:

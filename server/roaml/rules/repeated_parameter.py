@@ -17,12 +17,13 @@ def check(context: SystemContext) -> Iterator[Finding]:
     section = newer or older
     if newer is not None and older is not None:
         related = (Related(newer.name_span, "this one counts"),)
-        yield RULE.at(older.name_span, "`<mc_parameters>` is not read beside `<parameters>`", related=related)
+        fix = Fix("Remove `<mc_parameters>`", (removal(context.source.text, older.span),), safe=True)
+        yield RULE.at(older.name_span, "`<mc_parameters>` is not read beside `<parameters>`", fix, related=related)
     last: dict[str, Element] = {}
     for element in reversed(section.elements if section else []):
         if last.setdefault(element.name, element) is not element:
             related = (Related(last[element.name].name_span, "this one counts"),)
-            remove = Fix("Remove this one", (removal(context.source.text, element.span),))
+            remove = Fix("Remove this one", (removal(context.source.text, element.span),), safe=True)
             yield RULE.at(element.name_span, f"`<{element.name}>` is given again below", remove, related=related)
 
 

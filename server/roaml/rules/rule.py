@@ -9,6 +9,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -162,6 +163,12 @@ def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:
     """A fix for each name that may be meant; the first is preferred."""
     for number, name in enumerate(close):
         yield Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=number == 0)
+
+
+def unused(name: str, names: Iterable[str]) -> str:
+    """`name` with the least number behind it that makes it none of `names`."""
+    taken = set(names)
+    return next(new for number in itertools.count(2) if (new := f"{name}_{number}") not in taken)
 
 
 def listing(names: Iterable[str]) -> str:

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.machine import Handler, Machine, State
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.typing import find_handle
+from roaml.rules.elements import removal
+from roaml.rules.layout import indent_of, remove
 from roaml.rules.rule import MachineContext, Rule
+from roaml.text import Span, TextEdit
 
 TOPIC = "message"
 
@@ -18,10 +21,11 @@ TOPIC = "message"
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for state in chart.states:
-            yield from _check(context.machine, state)
+            yield from _check(context, state)
 
 
-def _check(machine: Machine, state: State) -> Iterator[Finding]:
+def _check(context: MachineContext, state: State) -> Iterator[Finding]:
+    machine = context.machine
     certain: dict[tuple[str, str, int], Handler] = {}
     for handler in state.handlers:
         key = trigger(machine, handler)
@@ -33,10 +37,22 @@ def _check(machine: Machine, state: State) -> Iterator[Finding]:
             yield RULE.at(
                 handler.element.name_span,
                 f"this is never taken: an earlier transition {what} has no condition",
+                *_fixes(context, handler, before),
                 related=(Related(before.element.name_span, "always taken first"),),
             )
         elif handler.cond is None and not chooses(handler):
             certain[key] = handler
+
+
+def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:
+    """With a condition of its own the transition may come first; without one it is of no use."""
+    document, element = context.document, handler.element
+    if handler.cond is not None:
+        text = document.text[slice(*element.span)]
+        at, indent = earlier.element.span.start, indent_of(document.text, earlier.element)
+        edits = (TextEdit(Span(at, at), f"{text}\n{indent}"), removal(document.text, element.span))
+        yield Fix("Move it before the transition without a condition", edits)
+    yield remove(document, element, "Remove this transition")
 
 
 def trigger(machine: Machine, handler: Handler) -> tuple[str, str, int] | None:

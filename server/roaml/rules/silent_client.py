@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.machine import Communicate, Declaration, all_statements
 from roaml.model.typing import find_handle
 from roaml.rules import misspelled
+from roaml.rules.elements import removal
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.undeclared_handle import KINDS
 
@@ -38,7 +39,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if not {(declaration, element), (None, element)} & sent:
                     sent.add((declaration, element))
                     message = f"this never happens: no `<{element}>` for the `<{KINDS[kind]}>` "
-                    yield RULE.at(handler.element.name_span, f"{message}`{declaration.handle.value}`")
+                    message += f"`{declaration.handle.value}`"
+                    yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
+
+
+def _without(context: MachineContext, declaration: Declaration, sender: str) -> Fix:
+    """Take away all that waits for an answer to `sender`."""
+    waiting = [
+        handler.element
+        for chart in context.machine.charts
+        for state in chart.states
+        for handler in state.handlers
+        if handler.trigger in ANSWERS and ANSWERS[handler.trigger][1] == sender
+        if find_handle(context.machine, handler) is declaration
+    ]
+    edits = tuple(removal(context.source.text, element.span) for element in waiting)
+    return Fix("Remove what waits for it", edits, preferred=False)
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:

@@ -5,11 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.types import leaves
 from roaml.model.machine import Declaration
+from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.model.typing import find_handle
 from roaml.rules.interfaces import declared, find_use, name_span
+from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.zero import zero
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -18,7 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration, automaton, channel in declared(context, "service-server"):
         clients = [c for c in channel.users if "request" in c.use.sends]
         if clients:
-            yield from _service(declaration, automaton, channel, clients)
+            yield from _service(context, declaration, automaton, channel, clients)
     for declaration, automaton, channel in declared(context, "action-server"):
         clients = [c for c in channel.users if "goal" in c.use.sends]
         if clients:
@@ -26,13 +31,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _service(
-    declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+    context: MachineContext, declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
     what = f"the service `{channel.name}` is called but"
     if not sends(automaton, declaration, "response"):
         message = f"{what} never answers: `<ros_service_send_response>` is missing"
-        yield RULE.at(name_span(declaration), message, related=related)
+        yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
     elif not receives(automaton, declaration, "request"):
         message = f"{what} takes no requests: `<ros_service_handle_request>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
@@ -56,6 +61,27 @@ def _action(
             f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
         )
         yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
+
+
+def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
+    """Answer each request at the end of its handler, with zeros."""
+    assert declaration.handle is not None
+    interface = context.interface("srv", declaration.type.value) if declaration.type else None
+    handlers = [h for chart in context.machine.charts for state in chart.states for h in state.handlers]
+    places = [
+        target.element or handler.element
+        for handler in handlers
+        if handler.trigger == "request" and find_handle(context.machine, handler) is declaration
+        for target in handler.targets
+    ]
+    if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
+        return
+    types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
+    fields = [f'    <field name="{name}" expr="{zero(types[name])}" />' for name in interface.required("response")]
+    tag = f'<ros_service_send_response name="{declaration.handle.value}"'
+    lines = (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
+    edits = tuple(last_in(context.document, place, *lines) for place in places)
+    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
 
 
 def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:

@@ -19,7 +19,9 @@ def check(context: FileContext) -> Iterator[Finding]:
     for violation in context.violations:
         if isinstance(violation, StrayText):
             text = context.source.text[violation.span.start : violation.span.end]
-            comment = Fix("Make it a comment", (TextEdit(violation.span, f"<!-- {DASHES.sub('- ', text)} -->"),))
+            comment = Fix(
+                "Make it a comment", (TextEdit(violation.span, f"<!-- {DASHES.sub('- ', text)} -->"),), safe=True
+            )
             yield RULE.at(violation.span, f"text in `<{violation.parent.name}>` has no effect", comment)
 
 

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.syntax import Name
 from roaml.rules.interfaces import declared, name_span
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -18,7 +19,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
             close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
             message = f"nobody subscribes to the topic `{topic.name}`{did_you_mean(close)}"
-            yield RULE.at(name_span(declaration), message)
+            fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+            yield RULE.at(name_span(declaration), message, *fixes)
 
 
 RULE = Rule("topic-without-subscriber", Severity.HINT, "A topic is published that nobody subscribes to.", machine=check)

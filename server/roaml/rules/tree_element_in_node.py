@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.rules.elements import own_elements
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 
 
@@ -18,7 +19,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             continue
         if element.name.startswith("bt_declare_port"):
             message = "a node has no ports: this has no effect; list the file in `<behavior_tree>` if it is a plugin"
-            yield RULE.at(element.name_span, message, severity=Severity.WARNING)
+            drop = remove(context.document, element)
+            yield RULE.at(element.name_span, message, drop, severity=Severity.WARNING)
         else:
             message = f"`<{element.name}>` belongs into a plugin of the behavior tree; this file is listed as a node"
             yield RULE.at(element.name_span, message)

@@ -3,13 +3,21 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator
 
-from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.model.expand import NodeOutline, TreeOutline, main_tree
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
-from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
+from roaml.text import Span, TextEdit
+
+MAIN = "MainTree"
+"""What the executed tree is called by custom."""
+
+MOST = 5
+"""So many trees are offered to be executed."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -27,7 +35,11 @@ def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iter
     count = sum(len(file.trees) for file in context.files)
     if tree.id is None:
         if count > 1:
-            yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`")
+            name = unused("Tree", known)
+            at = tree.element.name_span.end
+            edits = (TextEdit(Span(at, at), f' ID="{name}"'),)
+            fix = Fix(f'Add `ID="{name}"`', edits, preferred=False)
+            yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`", fix)
         return
     same = [t for file in context.files for t in file.trees if t.id == tree.id.value]
     if len(same) > 1:
@@ -35,7 +47,9 @@ def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iter
         elsewhere = [Symbol(t.path, "tree", t.id) for t in same if t.path != context.source.path]
         related = [Related(span, "another one") for span in here]
         related += [Related(symbol, "another one") for symbol in elsewhere]
-        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", related=related)
+        name = unused(tree.id.value, known)
+        rename = Fix(f"Rename this one to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
+        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
 
 
 def _subtree(context: TreeContext, tree: Tree, name: Name, known: dict[str, TreeOutline]) -> Iterator[Finding]:
@@ -95,7 +109,19 @@ def _main(context: TreeContext) -> Iterator[Finding]:
         yield from _no_tree(context, main, found)
     elif context.system is not None and not context.missing_includes:
         message = f"which tree is executed? Name one of {listing(found)} in `main_tree_to_execute`"
-        yield RULE.at(root, message if found else "there is no `<BehaviorTree>` that could be executed")
+        if not found:
+            yield RULE.at(root, "there is no `<BehaviorTree>` that could be executed")
+            return
+        fixes = (
+            Fix(
+                f"Execute `{name}`",
+                (TextEdit(Span(root.end, root.end), f' main_tree_to_execute="{name}"'),),
+                preferred=name == MAIN,
+            )
+            for name in found
+            if context.file.element.get("main_tree_to_execute") is None
+        )
+        yield RULE.at(root, message, *itertools.islice(fixes, MOST))
 
 
 RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)

@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import infer
 from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, String, walk
-from roaml.expr.types import Array, EmptyArray, Struct, Type, Unknown, fits, is_kind, leaves, unwrap
+from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.typing import TypedValue, Use
+from roaml.rules.missing_type import DEFAULTS
+from roaml.rules.retype import as_type
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span, TextEdit
 
@@ -25,7 +28,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for problem in value.problems:
             if isinstance(problem, WrongType):
                 message = f"{_what(value)} is `{problem.wanted}`, not {phrase(problem.given)}"
-                yield RULE.at(problem.span, message, *_fixes(value, problem.given, problem.wanted))
+                yield RULE.at(
+                    problem.span, message, *_fixes(context, value, problem.given, problem.wanted, problem.span)
+                )
         if value.wanted is None:
             continue
         if (value.use in CHECKED or isinstance(value.value, PortRead)) and not can_hold(value.wanted, value.type):
@@ -48,7 +53,7 @@ def _mismatch(context: MachineContext, value: TypedValue, wanted: Type) -> Findi
     message = f"{_what(value)} is `{wanted}`, not {phrase(value.type)}"
     edits = _without_points(context, value, wanted)
     if not edits:
-        return RULE.at(value.value.span, message, *_fixes(value, value.type, wanted))
+        return RULE.at(value.value.span, message, *_fixes(context, value, value.type, wanted, value.value.span))
     new = "leave out `.0`" if len(edits) == 1 else "leave out each `.0`"
     fix = Fix(new.capitalize(), tuple(edits))
     return RULE.at(value.value.span, f"{message}; {new}", fix, severity=Severity.WARNING)
@@ -123,14 +128,27 @@ def phrase(type_: Type) -> str:
     return kinds.get(getattr(type_, "kind", ""), f"`{type_}`") + name
 
 
-def _fixes(value: TypedValue, given: Type, wanted: Type) -> Iterator[Fix]:
+def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type, span: Span) -> Iterator[Fix]:
+    """Write the value otherwise, or give the variable the type of the value."""
     if not isinstance(value.value, Expression):
         return
-    span, text = value.value.span, value.value.text.strip()
+    whole = span == value.value.span
+    if whole:
+        yield from _other_value(value.value, value.use, given, wanted)
+    if whole and is_number(given) and is_number(wanted) and isinstance(given, Scalar):
+        yield from as_type(context, value, given.name or DEFAULTS[given.kind])
+
+
+def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iterator[Fix]:
+    span, text = value.span, value.text.strip()
+    if isinstance(value.tree, String) and is_number(wanted) | is_kind(wanted, "bool"):
+        written, pattern = value.tree.value, r"-?\d+" if is_kind(wanted, "int") else r"-?\d+(\.\d+)?"
+        if re.fullmatch("true|false" if is_kind(wanted, "bool") else pattern, written):
+            yield Fix(f"Change to `{written}`", (TextEdit(span, written),))
     if is_kind(given, "real") and is_kind(wanted, "int"):
         if text.endswith(".0") and text[:-2].isdigit():
             yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
-        elif value.use is not Use.INITIAL:
+        elif use is not Use.INITIAL:
             edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
             yield Fix(f"Change to `Math.floor({text})`", edits)
     elif is_kind(given, "int") and is_kind(wanted, "bool") and text in ("0", "1"):

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.system import Automaton
 from roaml.rules import misspelled, removed_bt_event
+from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
-from roaml.text import LineIndex, Span, TextEdit
-from roaml.xml import Element
+from roaml.text import TextEdit
+from roaml.xml import Document, Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -26,10 +27,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if not plugin.halted:
         if not misspelled.among(elements, "bt_halt", HL_SCXML):
             message = f"the plugin takes no halts, but `{parent}` halts it: it has no `<bt_halt>`"
-            yield RULE.at(span, message, *_add_handlers(root, context.source.lines, context.source.text))
+            yield RULE.at(span, message, *_add_handlers(context, root))
     elif not plugin.answers_halt and not misspelled.among(elements, "bt_return_halted", HL_SCXML):
         message = f"the plugin never answers a halt, but `{parent}` halts it: it has no `<bt_return_halted>`"
-        yield RULE.at(span, message, *_answer(root, context.source.lines, context.source.text))
+        yield RULE.at(span, message, *_answer(context, root))
 
 
 def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
@@ -41,38 +42,30 @@ def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
             yield automaton, parent
 
 
-def _add_handlers(root: Element, lines: LineIndex, text: str) -> Iterator[Fix]:
-    """Add a `<bt_halt>` that goes to the initial state to each state that takes ticks."""
+def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:
+    edits = halts(context.document, root, root.elements)
+    if edits:
+        yield Fix("Add `<bt_halt>` to every state that takes ticks", edits)
+
+
+def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
+    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
     initial = root.get("initial")
     edits = []
-    for state in root.elements:
+    for state in states:
         ticks = [child for child in state.elements if child.name == "bt_tick"]
-        if state.name == "state" and ticks and initial:
-            at, indent = ticks[-1].span.end, _indent(ticks[-1], lines, text)
-            new = f'\n{indent}<bt_halt target="{initial.value}">\n{indent}    <bt_return_halted />\n{indent}</bt_halt>'
-            edits.append(TextEdit(Span(at, at), new))
-    if edits:
-        yield Fix("Add `<bt_halt>` to every state that takes ticks", tuple(edits))
+        if state.name == "state" and ticks and initial and state.find("bt_halt") is None:
+            halt = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
+            edits.append(after(document, ticks[-1], *halt))
+    return tuple(edits)
 
 
-def _answer(root: Element, lines: LineIndex, text: str) -> Iterator[Fix]:
-    """Add a `<bt_return_halted />` to each `<bt_halt>` without content of its own."""
-    edits = []
-    for element in root.walk():
-        if element.name == "bt_halt" and not element.elements and element.complete:
-            indent = _indent(element, lines, text)
-            start = element.open_span.end - (2 if element.self_closing else 1)
-            new = f">\n{indent}    <bt_return_halted />\n{indent}</bt_halt>"
-            edits.append(TextEdit(Span(start, element.span.end), new))
-    if edits:
-        yield Fix("Add `<bt_return_halted />`", tuple(edits))
-
-
-def _indent(element: Element, lines: LineIndex, text: str) -> str:
-    """The white space before an element that begins its line."""
-    start = lines.line_start(lines.position(element.span.start).line)
-    before = text[start : element.span.start]
-    return "" if before.strip() else before
+def _answer(context: MachineContext, root: Element) -> Iterator[Fix]:
+    """Add a `<bt_return_halted />` to each `<bt_halt>`."""
+    halts = [element for element in root.walk() if element.name == "bt_halt" and element.complete]
+    if halts:
+        edits = tuple(last_in(context.document, halt, "<bt_return_halted />") for halt in halts)
+        yield Fix("Add `<bt_return_halted />`", edits)
 
 
 RULE = Rule("unanswered-halt", Severity.ERROR, "A plugin cannot answer a halt that its parent sends.", machine=check)

@@ -7,9 +7,12 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.language import HL_SCXML
+from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, all_statements
 from roaml.model.syntax import Name
 from roaml.rules import misspelled
+from roaml.rules.interfaces import other_kind
+from roaml.rules.layout import after, first_in
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
@@ -32,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if handle is None:
             yield from _without_name(element, kinds, right)
         elif handle.value not in right and not _may_be_declared(machine, handle.value, kinds):
-            yield _undeclared(machine, element, handle, kinds, right)
+            yield _undeclared(context, element, handle, kinds, right)
 
 
 def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) -> Iterator[Finding]:
@@ -52,16 +55,48 @@ def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) ->
     yield RULE.at(element.name_span, message, *fixes)
 
 
-def _undeclared(machine: Machine, element: Element, handle: Name, kinds: tuple[str, ...], right: list[str]) -> Finding:
+def _undeclared(
+    context: MachineContext, element: Element, handle: Name, kinds: tuple[str, ...], right: list[str]
+) -> Finding:
+    machine = context.machine
     wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
     if wrong is None or wrong.handle is None:
         close = close_names(handle.value, right)
         message = f"there is no `<{KINDS[kinds[0]]}>` called `{handle.value}`{did_you_mean(close)}"
-        return RULE.at(handle.span, message, *replacements(handle.span, close))
+        declare = _declare(context, handle.value, kinds[0], preferred=not close)
+        return RULE.at(handle.span, message, *replacements(handle.span, close), *declare)
     message = f"`{handle.value}` is a `<{KINDS[wrong.kind]}>`; `<{element.name}>` needs a `<{KINDS[kinds[0]]}>`"
     meant = tuple(right) if len(right) == 1 else _same_interface(machine, wrong, kinds)
     related = (Related(wrong.handle.span, "declared here"),)
     return RULE.at(handle.span, message + did_you_mean(meant), *replacements(handle.span, meant), related=related)
+
+
+def _declare(context: MachineContext, name: str, kind: str, *, preferred: bool) -> Iterator[Fix]:
+    """Declare a timer, or the topic, service or action of this name that other machines of the system have."""
+    document, root = context.document, context.machine.element
+    if kind == "timer":
+        text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False
+    else:
+        found = _elsewhere(context, name, kind)
+        if found is None:
+            return
+        interface, type_ = found
+        attribute = next(a for a in INTERFACE_ATTRIBUTES if a in HL_SCXML.elements[KINDS[kind]].attributes)
+        text = f'<{KINDS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
+    siblings = [d.element for d in context.machine.declarations if d.element in root.elements]
+    edit = after(document, siblings[-1], text) if siblings else first_in(document, root, text)
+    yield Fix(f"Declare it as `<{KINDS[kind]}>`", (edit,), preferred)
+
+
+def _elsewhere(context: MachineContext, name: str, kind: str) -> tuple[str, str] | None:
+    """How another machine names a topic, service or action called `name`, and its type."""
+    for automaton in context.system.automata if context.system else ():
+        for use in automaton.outline.interfaces:
+            written = automaton.interface_name(use)
+            alike = use.kind in (kind, other_kind(kind)) and automaton not in context.automata
+            if written is not None and alike and name.strip("/") in (written.strip("/"), use.handle) and use.type:
+                return written, use.type
+    return None
 
 
 def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[str, ...]) -> tuple[str, ...]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.types import Scalar
 from roaml.language import HL_SCXML
 from roaml.model.machine import Machine, SetOutput, all_statements
 from roaml.model.syntax import Name, PortRead
 from roaml.model.typing import TypedMachine
 from roaml.rules import misspelled
+from roaml.rules.layout import after, first_in
+from roaml.rules.missing_type import DEFAULTS
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 
@@ -23,17 +26,40 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not _is_misspelled_declaration(context.machine, key.value):
             close = close_names(key.value, ports)
             message = f"there is no port `{key.value}`{did_you_mean(close)}"
-            yield RULE.at(key.span, message, *replacements(key.span, close))
+            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, "in"))
     outputs = [name for name, port in ports.items() if port.direction == "out"]
     for key in writes(context.machine):
         port = ports.get(key.value)
         close = close_names(key.value, outputs)
         if port is None and not _is_misspelled_declaration(context.machine, key.value):
             message = f"there is no output port `{key.value}`{did_you_mean(close)}"
-            yield RULE.at(key.span, message, *replacements(key.span, close))
+            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, "out"))
         elif port is not None and port.direction == "in":
             message = f"`{key.value}` is an input port and cannot be written{did_you_mean(close)}"
             yield RULE.at(key.span, message, *replacements(key.span, close))
+
+
+def _declare(context: MachineContext, key: Name, direction: str) -> Iterator[Fix]:
+    """Declare a port, if its type can be told from where it is used. Nodes of the tree must then set it."""
+    type_ = _type_of(context, key)
+    if type_ is not None:
+        text = f'<bt_declare_port_{direction} key="{key.value}" type="{type_}" />'
+        ports, document = context.machine.ports, context.document
+        edit = after(document, ports[-1].element, text) if ports else first_in(document, context.machine.element, text)
+        yield Fix(f"Declare the port `{key.value}` as {type_}", (edit,), preferred=False)
+
+
+def _type_of(context: MachineContext, key: Name) -> str | None:
+    for value in context.typed.values:
+        if isinstance(value.value, PortRead) and value.value.key is key:
+            return value.wanted.name if isinstance(value.wanted, Scalar) and value.wanted.name else None
+    for chart in context.machine.charts:
+        for statement in all_statements(chart):
+            if isinstance(statement, SetOutput) and statement.key is key:
+                types = [v.type for v in context.typed.values if v.value is statement.value]
+                return next((t.name or DEFAULTS[t.kind] for t in types if isinstance(t, Scalar)), None)
+    declared = [d for d in context.machine.declarations for read in (d.interface,) if isinstance(read, PortRead)]
+    return "string" if any(isinstance(d.interface, PortRead) and d.interface.key is key for d in declared) else None
 
 
 def reads(machine: Machine, typed: TypedMachine) -> Iterator[Name]:

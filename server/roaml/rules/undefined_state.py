@@ -6,13 +6,15 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
+from roaml.rules.layout import after
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.xml import Document, Element
 
 STATES = ("state", "parallel", "final", "history")
+VALID = re.compile(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
 WORD = re.compile(r"\S+")
 
 
@@ -29,13 +31,20 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for name in _references(chart) if chart.states else ():
             # A state that stands where it may not stand is the business of misplaced-element.
             if name.value not in states and name.value not in elsewhere:
-                yield _finding(name, states)
+                yield _finding(name, states, *_add(context, chart, name.value, states))
 
 
-def _finding(name: Name, states: Collection[str]) -> Finding:
+def _finding(name: Name, states: Collection[str], *more: Fix) -> Finding:
     close = close_names(name.value, states)
     message = f"there is no state `{name.value}`{did_you_mean(close)}"
-    return RULE.at(name.span, message, *replacements(name.span, close))
+    return RULE.at(name.span, message, *replacements(name.span, close), *more)
+
+
+def _add(context: MachineContext, chart: Chart, name: str, states: Collection[str]) -> Iterator[Fix]:
+    """Add a state behind the others."""
+    if VALID.match(name):
+        edit = after(context.document, chart.states[-1].element, f'<state id="{name}" />')
+        yield Fix(f"Add the state `{name}`", (edit,), preferred=not close_names(name, states))
 
 
 def _references(chart: Chart) -> Iterator[Name]:

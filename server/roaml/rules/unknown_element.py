@@ -22,7 +22,8 @@ def check(context: FileContext) -> Iterator[Finding]:
         if context.grammar is HL_SCXML and element.name in PLAIN_SCXML.elements:
             continue  # unsupported-scxml-element says more
         close = close_names(element.name, parent.children) or close_names(element.name, context.grammar.elements)
-        fixes = [rename_tag(element, name, preferred=number == 0) for number, name in enumerate(close)]
+        fits = [name for name in close if name in parent.children]
+        fixes = [rename_tag(element, name, preferred=name in fits[:1]) for name in close]
         hint = did_you_mean(tuple(f"<{name}>" for name in close))
         yield RULE.at(element.name_span, f"there is no element `<{element.name}>`{hint}", *fixes)
 

@@ -11,6 +11,7 @@ from roaml.expr.types import Struct, Unknown, leaves, unwrap
 from roaml.model.machine import Communicate, Param, all_statements
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.unknown_member import is_ros
 
@@ -37,7 +38,7 @@ def _fields(context: MachineContext, statement: Communicate) -> Iterator[Finding
     paths = [".".join(path) for path, _ in leaves(part)]
     for field in statement.fields:
         if field.name is not None and field.name.value not in paths and not inside_unknown(part, field.name.value):
-            yield _unknown(field, part, paths)
+            yield _unknown(context, field, part, paths)
 
 
 def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
@@ -53,7 +54,7 @@ def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
     return part if "field" in statement.type.children else Struct(found.name, ())
 
 
-def _unknown(field: Param, part: Struct, paths: list[str]) -> Finding:
+def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[str]) -> Finding:
     assert field.name is not None
     name = field.name.value
     inside = [path for path in paths if path.startswith(f"{name}.")]
@@ -66,7 +67,8 @@ def _unknown(field: Param, part: Struct, paths: list[str]) -> Finding:
     known = "" if close or not paths else f"; it has {', '.join(f'`{p}`' for p in paths[:6])}"
     known = known if paths else "; it has no fields"
     message = f"`{part}` has no field `{name}`{did_you_mean(close)}{known}"
-    return RULE.at(field.name.span, message, *replacements(field.name.span, close))
+    drop = [] if close else [remove(context.document, field.element)]
+    return RULE.at(field.name.span, message, *replacements(field.name.span, close), *drop)
 
 
 def inside_unknown(part: Struct, name: str) -> bool:

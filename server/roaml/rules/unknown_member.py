@@ -6,13 +6,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Array, Struct, unwrap
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.typing import TypedValue
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
-from roaml.text import Span
+from roaml.rules.zero import zero
+from roaml.text import Span, TextEdit
 
 QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
 ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
@@ -36,7 +37,24 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case MissingMembers():
                     names = _really_missing(problem, value)
                     if names:
-                        yield RULE.at(problem.span, f"the value leaves out {listing(names)} of `{problem.struct}`")
+                        message = f"the value leaves out {listing(names)} of `{problem.struct}`"
+                        yield RULE.at(problem.span, message, *_add(context, problem, names))
+
+
+def _add(context: MachineContext, problem: MissingMembers, names: list[str]) -> Iterator[Fix]:
+    """The missing members, with 0 or what is like it."""
+    text = context.source.text[slice(*problem.span)]
+    values = [zero(type_) for name in names if (type_ := problem.struct.member(name)) is not None]
+    if text[-1:] != "}" or len(values) < len(names):
+        return
+    inside = text[1:-1].rstrip()
+    at = problem.span.start + 1 + len(inside)
+    new = ", ".join(f"'{name}': {value}" for name, value in zip(names, values, strict=True))
+    if '"' in text:
+        new = new.replace("'", '"')
+    comma = ", " if inside.strip() and not inside.endswith(",") else ""
+    members = "member" if len(names) == 1 else "members"
+    yield Fix(f"Add the missing {members}", (TextEdit(Span(at, at), comma + new),))
 
 
 def _really_missing(problem: MissingMembers, value: TypedValue) -> list[str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Severity
@@ -50,7 +51,8 @@ def unknown(type_: TypeRef, structs: Iterable[str], *, alone: bool = False) -> I
         else:
             yield RULE.at(type_.span, f"there is no type `{base}`{did_you_mean(close)}", *fixes)
     elif 0 in type_.name.dimensions:
-        yield RULE.at(type_.span, "an array holds at least one element: write a bound above 0, or `[]` for no bound")
+        message = "an array holds at least one element: write a bound above 0, or `[]` for no bound"
+        yield RULE.at(type_.span, message, *replacements(type_.span, [re.sub(r"\[0+\]", "[]", type_.text)]))
 
 
 def _no_type(type_: TypeRef) -> Finding:

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity, Tag
-from roaml.model.machine import Chart
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.model.machine import Chart, State
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 
 
@@ -18,7 +19,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
                 message = f"no transition leads to the state `{state.id.value}`"
-                yield RULE.at(state.id.span, message, tags=(Tag.UNNECESSARY,))
+                yield RULE.at(state.id.span, message, *_remove(context, chart, state), tags=(Tag.UNNECESSARY,))
+
+
+def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix]:
+    """Unless another state, that is never entered either, leads there."""
+    others = [handler for other in chart.states if other is not state for handler in other.handlers]
+    targets = [target.state.value for handler in others for target in handler.targets if target.state]
+    if state.id is not None and state.id.value not in targets:
+        yield remove(context.document, state.element, f"Remove the state `{state.id.value}`")
 
 
 def _reached(chart: Chart) -> set[str] | None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.tree import nodes
+from roaml.rules.elements import removal
 from roaml.rules.rule import Rule, TreeContext
 from roaml.xml import Attribute
 
@@ -16,16 +17,17 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for node in nodes(tree):
             for script in node.scripts:
                 if script.has_value:
-                    yield from _check(script, in_system=context.system is not None)
+                    yield from _check(context, script, in_system=context.system is not None)
 
 
-def _check(script: Attribute, *, in_system: bool) -> Iterator[Finding]:
+def _check(context: TreeContext, script: Attribute, *, in_system: bool) -> Iterator[Finding]:
     reason = unbalanced(script.value)
     if reason:
         yield RULE.at(script.value_span, f"the script is not well-formed: {reason}")
     elif in_system:
         message = f"`{script.name}` cannot be translated: scripts have no counterpart in the model"
-        yield RULE.at(script.span, message)
+        drop = Fix(f"Remove `{script.name}`", (removal(context.source.text, script.span),), preferred=False)
+        yield RULE.at(script.span, message, drop)
 
 
 PAIRS = {")": "(", "]": "[", "}": "{"}

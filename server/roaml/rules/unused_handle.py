@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.model.machine import Communicate, Handler, all_statements
 from roaml.model.typing import find_handle
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.undeclared_handle import KINDS
 
@@ -26,7 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 continue
             what = "timer" if declaration.kind == "timer" else f"`<{KINDS[declaration.kind]}>`"
             message = f"the {what} `{declaration.handle.value}` is never used"
-            yield RULE.at(declaration.handle.span, message, tags=(Tag.UNNECESSARY,))
+            drop = remove(context.document, declaration.element, "Remove the declaration", preferred=True)
+            yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))
 
 
 RULE = Rule("unused-handle", Severity.HINT, "A ROS interface or timer is declared and never used.", machine=check)

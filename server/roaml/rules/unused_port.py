@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.model.system import CHILDREN_COUNT
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.undeclared_port import reads, writes
 
@@ -17,7 +18,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
     used = {key.value for key in (*reads(context.machine, context.typed), *writes(context.machine))}
     for port in context.machine.ports:
         if port.key is not None and port.key.value not in used and port.key.value != CHILDREN_COUNT:
-            yield RULE.at(port.key.span, f"the port `{port.key.value}` is never used", tags=(Tag.UNNECESSARY,))
+            # Of a port that the tree sets, roaml.ide.repairs tells, for it must go there as well.
+            is_set = any(automaton.port(port.key.value) is not None for automaton in context.automata)
+            fixes = [] if is_set else [remove(context.document, port.element, "Remove the port", preferred=True)]
+            message = f"the port `{port.key.value}` is never used"
+            yield RULE.at(port.key.span, message, *fixes, tags=(Tag.UNNECESSARY,))
 
 
 RULE = Rule("unused-port", Severity.HINT, "A port is declared and never used.", machine=check)

@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity, Tag
+from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.expr.tree import Name, walk
-from roaml.model.machine import CallChild, Chart, ReturnStatus, all_statements
+from roaml.model.machine import CallChild, Chart, Data, ReturnStatus, all_statements
 from roaml.model.syntax import Expression, Value
+from roaml.rules.elements import removal
+from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
+from roaml.text import Span
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -21,7 +24,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for data in chart.data:
             if data.id is not None and data.id.value not in used:
                 message = f"the variable `{data.id.value}` is never used"
-                yield RULE.at(data.id.span, message, tags=(Tag.UNNECESSARY,))
+                yield RULE.at(data.id.span, message, _remove(context, data), tags=(Tag.UNNECESSARY,))
+
+
+def _remove(context: MachineContext, data: Data) -> Fix:
+    """Take away a variable, with the comment that gives its type."""
+    title, text = "Remove the variable", context.source.text
+    if not data.comment_type or data.type is None:
+        return remove(context.document, data.element, title, preferred=True)
+    start = text.rfind("<!--", 0, data.type.span.start)
+    return Fix(title, (removal(text, Span(start, data.element.span.end)),))
 
 
 def _used(values: list[Value], chart: Chart) -> set[str]:

@@ -121,7 +121,7 @@ class _Parser:
             return self.sound_tag(sound)
         match = _TAG_OPEN.match(text, at)
         if match is None:
-            escape = Fix("Write `&lt;`", (TextEdit(Span(at, at + 1), "&lt;"),))
+            escape = Fix("Write `&lt;`", (TextEdit(Span(at, at + 1), "&lt;"),), safe=True)
             self.report(Span(at, at + 1), "`<` begins no tag here; as text it is written `&lt;`", escape)
             self.add(Text("<", Span(at, at + 1)))
             return at + 1
@@ -187,7 +187,7 @@ class _Parser:
         if name_span.start > at:
             self.check_space(at, name_span.start)
         else:
-            insert = Fix("Insert a space", (TextEdit(Span(at, at), " "),))
+            insert = Fix("Insert a space", (TextEdit(Span(at, at), " "),), safe=True)
             self.report(name_span, "a space is missing before this attribute", insert)
         if equals is not None:
             self.check_space(*found.span(2))
@@ -233,7 +233,7 @@ class _Parser:
                 if self.hopeless:
                     break
                 place = Span._make(less.span())
-                escape = Fix("Write `&lt;`", (TextEdit(place, "&lt;"),))
+                escape = Fix("Write `&lt;`", (TextEdit(place, "&lt;"),), safe=True)
                 self.report(place, "`<` in an attribute value is written `&lt;`", escape)
             self.check_references(value_span)
             raw = text[start:close]
@@ -453,11 +453,12 @@ class _Parser:
         text, end = self.text, document_type_end(self.text, at)
         span = Span(at, end)
         self.add(Instruction(text[at + 2 : end], span))
-        if "<!ENTITY" in text[at:end]:
+        has_entities = "<!ENTITY" in text[at:end]
+        if has_entities:
             message = "entities are not expanded here: write out what they stand for"
         else:
             message = "a document type declaration has no effect here and is not read"
-        self.report(span, message, Fix("Remove it", (TextEdit(span, ""),)), code="document-type")
+        self.report(span, message, Fix("Remove it", (TextEdit(span, ""),), safe=not has_entities), code="document-type")
         return end
 
     def add_text(self, start: int, end: int) -> None:
@@ -491,7 +492,7 @@ class _Parser:
                 return
             reference = REFERENCE.match(self.text, match.start(), span.end)
             if reference is None:
-                escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),))
+                escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), safe=True)
                 self.report(Span(*match.span()), "`&` as such is written `&amp;`", escape)
                 continue
             decimal, hexadecimal, name = reference.groups()

@@ -50,6 +50,12 @@ def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:
     return found
 
 
+def node_file(name: str) -> str | None:
+    """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand."""
+    file = importlib.resources.files(__name__) / f"{_ALIASES.get(name, name)}.ascxml"
+    return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
+
+
 def _children(automaton: Automaton) -> int:
     return len(automaton.instance.children) if automaton.instance else 0
 

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/codeLens` and `codeLens/resolve`: translate a system; how much a thing is used.
+
+The protocol has no command that shows places. A client that has one names it in its initialization options, as
+`showReferences`: it is called with a URI, a position and the locations, all in terms of the protocol. Without it the
+lenses only tell.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers import translate
+from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.symbols import pack, unpack
+from as2fm_lsp.shown import shown
+from roaml.ide.lenses import counted, lenses
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+OPTION = "showReferences"
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(resolve_provider=True))
+    def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
+        on = asked(server, params.text_document)
+        if on is None:
+            return []
+        found = list(translate.lenses(on.snapshot, on.path, on.source, on.convert))
+        if shown(session.client_settings).references:
+            for each in lenses(on.analysis, on.path):
+                data = [params.text_document.uri, pack(each.symbol)]
+                found.append(types.CodeLens(on.range(each.span), data=data))
+        return found
+
+    @server.feature(types.CODE_LENS_RESOLVE)
+    def resolve(lens: types.CodeLens) -> types.CodeLens:
+        data = lens.data if isinstance(lens.data, (list, tuple)) and len(lens.data) == 2 else ("", None)
+        uri, symbol = str(data[0]), unpack(data[1])
+        if lens.command is not None or symbol is None:
+            return lens
+        analysis = session.moment().snapshot(session.convert.path(uri)).analysis
+        found = counted(analysis, symbol)
+        places = [
+            session.convert.location(source, each)
+            for each in found.places
+            if (source := analysis.source(each.path)) is not None
+        ]
+        command = server.show_references if places else ""
+        arguments = [uri, lens.range.start, places] if command else None
+        lens.command = types.Command(found.title, command, arguments=arguments)
+        return lens

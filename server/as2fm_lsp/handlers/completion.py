@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/completion` and `completionItem/resolve`"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.markup import documentation
+from roaml.diagnostics import Symbol
+from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_KINDS = {
+    ItemKind.ELEMENT: types.CompletionItemKind.Class,
+    ItemKind.ATTRIBUTE: types.CompletionItemKind.Property,
+    ItemKind.VALUE: types.CompletionItemKind.EnumMember,
+    ItemKind.VARIABLE: types.CompletionItemKind.Variable,
+    ItemKind.FUNCTION: types.CompletionItemKind.Function,
+    ItemKind.MEMBER: types.CompletionItemKind.Field,
+    ItemKind.EVENT: types.CompletionItemKind.Event,
+    ItemKind.STATE: types.CompletionItemKind.Value,
+    ItemKind.HANDLE: types.CompletionItemKind.Reference,
+    ItemKind.INTERFACE: types.CompletionItemKind.Interface,
+    ItemKind.TYPE: types.CompletionItemKind.Struct,
+    ItemKind.PLUGIN: types.CompletionItemKind.Module,
+    ItemKind.PORT: types.CompletionItemKind.Property,
+    ItemKind.FILE: types.CompletionItemKind.File,
+    ItemKind.OPERATOR: types.CompletionItemKind.Operator,
+    ItemKind.SKELETON: types.CompletionItemKind.Snippet,
+}
+
+
+def register(server: Server) -> None:
+    options = types.CompletionOptions(trigger_characters=list(TRIGGERS), resolve_provider=True)
+
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
+    def completion(params: types.CompletionParams) -> types.CompletionList | None:
+        on = asked(server, params.text_document)
+        if on is None:
+            return None
+        trigger = params.context.trigger_character or "" if params.context else ""
+        found = complete(on.snapshot, on.path, on.offset(params.position), trigger)
+        if found is None:
+            return None
+        client = _Client(server)
+        range_ = on.range(found.span)
+        items = [client.item(item, range_, rank, on.path) for rank, item in enumerate(found.items)]
+        return types.CompletionList(is_incomplete=found.incomplete, items=items)
+
+    @server.feature(types.COMPLETION_ITEM_RESOLVE)
+    def resolve(item: types.CompletionItem) -> types.CompletionItem:
+        if isinstance(item.data, list) and len(item.data) == 5:
+            path, *about = item.data
+            text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
+            if text:
+                item.documentation = documentation(text, _Client(server).formats)
+        return item
+
+
+class _Client:
+    """Writes items in the way that the client understands."""
+
+    def __init__(self, server: Server) -> None:
+        document = server.client_capabilities.text_document
+        asks = document.completion.completion_item if document and document.completion else None
+        self.snippets = bool(asks and asks.snippet_support)
+        self.tags = bool(asks and asks.tag_support)
+        self.formats = asks.documentation_format if asks else None
+        self.label_details = bool(asks and asks.label_details_support)
+
+    def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:
+        new = item.snippet if self.snippets else plain(item.snippet)
+        made = types.CompletionItem(
+            label=item.label,
+            kind=_KINDS[item.kind],
+            sort_text=f"{rank:04}",
+            text_edit=types.TextEdit(range_, new),
+        )
+        if self.snippets and "$" in new:
+            made.insert_text_format = types.InsertTextFormat.Snippet
+            made.insert_text_mode = types.InsertTextMode.AdjustIndentation
+        elif self.snippets:
+            made.text_edit = types.TextEdit(range_, plain(new))
+        if item.detail and self.label_details and len(item.detail) <= _SHORT:
+            made.label_details = types.CompletionItemLabelDetails(description=item.detail)
+        elif item.detail:
+            made.detail = item.detail
+        if item.filter:
+            made.filter_text = item.filter
+        if item.deprecated and self.tags:
+            made.tags = [types.CompletionItemTag.Deprecated]
+        if item.about is not None:
+            about = item.about
+            made.data = [path, about.path, about.kind, about.name, about.scope]
+        return made
+
+
+_SHORT = 40
+"""Longer details are not shown beside the label but with the documentation."""

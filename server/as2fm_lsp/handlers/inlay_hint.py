@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`textDocument/inlayHint` and `inlayHint/resolve`"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.symbols import pack, unpack
+from as2fm_lsp.markup import content
+from as2fm_lsp.shown import shown
+from roaml.ide.hints import HintKind, InlayHint, explain, inlay_hints
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+_TYPES = (HintKind.TYPES, HintKind.PORTS, HintKind.EVENTS)
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(resolve_provider=True))
+    def inlay_hint(params: types.InlayHintParams) -> list[types.InlayHint]:
+        on = asked(server, params.text_document)
+        if on is None:
+            return []
+        found = inlay_hints(on.analysis, on.path, on.span(params.range), shown(session.client_settings).hints)
+        explains = _explains(server)
+        return [_hint(each, on.convert.position(on.source, each.offset), on.path, explains) for each in found]
+
+    @server.feature(types.INLAY_HINT_RESOLVE)
+    def resolve(hint: types.InlayHint) -> types.InlayHint:
+        data = hint.data
+        if not isinstance(data, (list, tuple)) or not data or isinstance(hint.label, str):
+            return hint
+        analysis = session.moment().snapshot(str(data[0])).analysis
+        for part, packed in zip(hint.label, data[1:], strict=False):
+            symbol = unpack(packed)
+            if symbol is None:
+                continue
+            found = explain(analysis, symbol)
+            source = analysis.source(found.location.path) if found.location else None
+            part.tooltip = content(found.text, [types.MarkupKind.Markdown]) if found.text else None
+            if source is not None and found.location is not None:
+                part.location = session.convert.location(source, found.location)
+        return hint
+
+
+def _explains(server: Server) -> bool:
+    """Whether the client asks again about a hint that is looked at."""
+    document = server.client_capabilities.text_document
+    return bool(document and document.inlay_hint and document.inlay_hint.resolve_support)
+
+
+def _hint(hint: InlayHint, position: types.Position, path: str, explains: bool) -> types.InlayHint:
+    kind = types.InlayHintKind.Type if hint.kind in _TYPES else None
+    if not explains or not any(part.symbol for part in hint.parts):
+        return types.InlayHint(position, hint.text, kind)
+    label = [types.InlayHintLabelPart(part.text) for part in hint.parts]
+    data = [path, *(pack(part.symbol) if part.symbol else None for part in hint.parts)]
+    return types.InlayHint(position, label, kind, data=data)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What messages and structs are made of, as a type hierarchy: the parts of a type are its subtypes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.symbols import pack, unpack
+from roaml.diagnostics import Symbol
+from roaml.ide.parts import TypeItem, holders_of, members_of, types_at
+from roaml.project.analysis import Analysis
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    def convert(analysis: Analysis, found: Iterable[TypeItem], asked_in: str) -> list[types.TypeHierarchyItem]:
+        items = []
+        for each in found:
+            source = analysis.source(each.location.path)
+            if source is not None:
+                place = session.convert.location(source, each.location)
+                kind = types.SymbolKind.Struct if each.symbol.kind == "struct" else types.SymbolKind.Interface
+                data = [asked_in, pack(each.symbol)]
+                name, uri, range_ = each.symbol.name, place.uri, place.range
+                items.append(types.TypeHierarchyItem(name, kind, uri, range_, range_, detail=each.detail, data=data))
+        return items
+
+    def ask(
+        item: types.TypeHierarchyItem, question: Callable[[Analysis, Symbol], Iterable[TypeItem]]
+    ) -> list[types.TypeHierarchyItem]:
+        """About a type that was given to the client before, as it is seen from where it was first asked about."""
+        if not isinstance(item.data, (list, tuple)) or len(item.data) != 2:
+            return []
+        path, symbol = str(item.data[0]), unpack(item.data[1])
+        analysis = session.moment().snapshot(path).analysis
+        return convert(analysis, question(analysis, symbol), path) if symbol else []
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_TYPE_HIERARCHY)
+    def prepare(params: types.TypeHierarchyPrepareParams) -> list[types.TypeHierarchyItem]:
+        on = asked(server, params.text_document)
+        return convert(on.analysis, types_at(on.analysis, on.path, on.offset(params.position)), on.path) if on else []
+
+    @server.feature(types.TYPE_HIERARCHY_SUBTYPES)
+    def subtypes(params: types.TypeHierarchySubtypesParams) -> list[types.TypeHierarchyItem]:
+        return ask(params.item, members_of)
+
+    @server.feature(types.TYPE_HIERARCHY_SUPERTYPES)
+    def supertypes(params: types.TypeHierarchySupertypesParams) -> list[types.TypeHierarchyItem]:
+        return ask(params.item, holders_of)

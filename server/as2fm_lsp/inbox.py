@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Messages that have been read and are not yet handled.
+
+- They are read in a thread of their own, so that they are here while something is computed; they are handled one after
+  the other, in their order, on the event loop.
+- What is cancelled is known from the moment at which the cancellation is read, though its turn is still to come.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import threading
+from collections import deque
+from collections.abc import Iterator
+from typing import Any, BinaryIO
+
+from lsprotocol import types
+
+_LENGTH = re.compile(rb"Content-Length:[ \t]*(\d+)\s*", re.IGNORECASE)
+_CHANGES = (types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
+_CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
+
+
+class Inbox:
+    """`alive` are the ids of requests and the tokens of work that can still be cancelled, besides what waits here."""
+
+    def __init__(self) -> None:
+        self.alive: set[object] = set()
+        self._messages: deque[object] = deque()
+        self._cancelled: set[object] = set()
+        self._news = asyncio.Event()
+        self._ended = False
+
+    # ---------------------------------------------------------------- filling
+
+    def fill_from(self, stream: BinaryIO) -> None:
+        """Read a stream to its end, in a thread that the process does not wait for."""
+        loop = asyncio.get_running_loop()
+
+        def tell() -> None:
+            try:
+                loop.call_soon_threadsafe(self._news.set)
+            except RuntimeError:  # the loop is closed: nobody is left to be told
+                return
+
+        def read() -> None:
+            try:
+                for body in bodies(stream):
+                    self.put(body)
+                    tell()
+            finally:
+                self._ended = True
+                tell()
+
+        threading.Thread(target=read, name="inbox", daemon=True).start()
+
+    def put(self, body: bytes) -> None:
+        try:
+            message = json.loads(body)
+        except ValueError as error:
+            message = error
+        cancelled = _cancelled(message)
+        if cancelled is not None:
+            self._cancelled.add(cancelled)
+        self._messages.append(message)
+
+    # ---------------------------------------------------------------- looking
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there is a message whose turn has not come."""
+        return bool(self._messages)
+
+    def is_cancelled(self, id_: object) -> bool:
+        """Whether a request, or work with a token, is not wanted any more."""
+        return id_ in self._cancelled
+
+    def will_change(self, uri: str) -> bool:
+        """Whether a change of a document waits here."""
+        return any(_changes(message, uri) for message in tuple(self._messages))
+
+    # ----------------------------------------------------------------- taking
+
+    def __aiter__(self) -> Inbox:
+        return self
+
+    async def __anext__(self) -> Any:
+        """The next message as plain data; the error if it is no JSON."""
+        while not self._messages:
+            if self._ended:
+                raise StopAsyncIteration
+            self._news.clear()
+            if not self._messages and not self._ended:
+                await self._news.wait()
+        message = self._messages.popleft()
+        cancelled = _cancelled(message)
+        if cancelled is not None and cancelled not in self.alive:
+            self._cancelled.discard(cancelled)  # it was answered before
+        return message
+
+    def forget(self, id_: object) -> None:
+        """A request was answered, or work has ended."""
+        self.alive.discard(id_)
+        self._cancelled.discard(id_)
+
+
+def bodies(stream: BinaryIO) -> Iterator[bytes]:
+    """The bodies of the messages in a stream; what is no message is passed over."""
+    length = 0
+    for line in iter(stream.readline, b""):
+        match = _LENGTH.fullmatch(line)
+        if match:
+            length = int(match[1])
+        elif length and not line.strip():
+            body = stream.read(length)
+            if len(body) < length:
+                return
+            yield body
+            length = 0
+
+
+def _params(message: object, *methods: str) -> dict[str, Any] | None:
+    """The parameters of a message if its method is one of these."""
+    if isinstance(message, dict) and message.get("method") in methods and isinstance(message.get("params"), dict):
+        params: dict[str, Any] = message["params"]
+        return params
+    return None
+
+
+def _cancelled(message: object) -> str | int | None:
+    """The id or token of what a message cancels."""
+    params = _params(message, *_CANCELLATIONS)
+    if params is None or not isinstance(message, dict):
+        return None
+    found = params.get(_CANCELLATIONS[message["method"]])
+    return found if isinstance(found, (str, int)) else None
+
+
+def _changes(message: object, uri: str) -> bool:
+    params = _params(message, *_CHANGES)
+    document = params.get("textDocument") if params else None
+    return isinstance(document, dict) and document.get("uri") == uri

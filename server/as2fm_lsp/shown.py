@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which hints and lenses the user wants to see: `as2fm.inlayHints` and `as2fm.codeLens` of the client's settings.
+
+    {"inlayHints": {"types": false}, "codeLens": {"references": false}}
+
+Each may also be a plain true or false. What is not said is as below; what makes no sense counts as not said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roaml.ide.hints import HintKind
+
+_ON = {
+    HintKind.TYPES: True,
+    HintKind.PORTS: False,
+    HintKind.TOPICS: True,
+    HintKind.EVENTS: True,
+    HintKind.NODES: True,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """`references`: whether lenses count uses."""
+
+    hints: frozenset[HintKind]
+    references: bool
+
+
+def shown(settings: object) -> Shown:
+    """
+    Args:
+        settings: the client's settings, as they came.
+    """
+    hints = frozenset(kind for kind, on in _ON.items() if _is_on(settings, "inlayHints", kind.value, on))
+    return Shown(hints, _is_on(settings, "codeLens", "references", True))
+
+
+def _is_on(settings: object, section: str, key: str, otherwise: bool) -> bool:
+    found = settings.get(section) if isinstance(settings, Mapping) else None
+    value = found.get(key) if isinstance(found, Mapping) else found
+    return value if isinstance(value, bool) else otherwise

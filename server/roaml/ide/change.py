@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a code action does to the files of a workspace, and what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from roaml.diagnostics import Diagnostic
+from roaml.text import Span, TextEdit
+
+QUICK_FIX = "quickfix"
+EXTRACT = "refactor.extract"
+REWRITE = "refactor.rewrite"
+FIX_ALL = "source.fixAll.as2fm"
+KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
+"""The kinds of actions, in the words of LSP."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Attributes:
+    edits: of files that are there, by path; those of one file do not overlap.
+    created: the text of new files, by path.
+    renamed: files with their new paths. They are edited before they get them.
+    """
+
+    edits: Mapping[str, tuple[TextEdit, ...]] = field(default_factory=dict)
+    created: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.edits or self.created or self.renamed)
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Something that is offered at a place.
+
+    Attributes:
+        title: in the imperative; of one kind and place no two are equal.
+        make: what it does, worked out when it is asked for.
+        mends: the diagnostic that a quick fix removes.
+        preferred: it is the one obvious thing to do.
+        resources: `create` or `rename`, if it makes new files or gives files other names.
+    """
+
+    title: str
+    kind: str
+    make: Callable[[], Change]
+    mends: Diagnostic | None = None
+    preferred: bool = False
+    resources: tuple[str, ...] = ()
+
+
+def known(change: Change) -> Callable[[], Change]:
+    """A change that is worked out already, as `Action.make`."""
+    return lambda: change
+
+
+def whole(before: str, after: str) -> tuple[TextEdit, ...]:
+    """One edit that makes `before` to `after` and leaves alone what they have in common at both ends."""
+    if before == after:
+        return ()
+    least = min(len(before), len(after))
+    head = next((i for i in range(least) if before[i] != after[i]), least)
+    least -= head
+    tail = next((i for i in range(least) if before[-1 - i] != after[-1 - i]), least)
+    return (TextEdit(Span(head, len(before) - tail), after[head : len(after) - tail]),)

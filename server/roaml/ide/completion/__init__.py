@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can be written at a caret.
+
+- Works on whatever is there: the place comes from the tree, or from the text where the tree cannot know it.
+- What the schemas say is said once: elements, attributes and values follow their roles, so a new element needs nothing
+  here.
+- Documentation is not made here but when somebody looks at one item (`roaml.ide.completion.document`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from roaml.ide.completion.attributes import attributes
+from roaml.ide.completion.document import document
+from roaml.ide.completion.documents import documents
+from roaml.ide.completion.elements import elements
+from roaml.ide.completion.item import Completions, Item, ItemKind, Rank, escaped, plain
+from roaml.ide.completion.json_documents import in_json
+from roaml.ide.completion.place import AttributeName, AttributeValue, Content, EndTag, Place, StartTag, place_at
+from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.values import in_attribute, in_text
+from roaml.ide.syntax import Typed, xml_file
+from roaml.project.workspace import Snapshot
+from roaml.text import Span
+
+__all__ = ["Completions", "Item", "ItemKind", "Rank", "complete", "document", "plain"]
+
+TRIGGERS = ("<", " ", '"', "'", "/", "=", ".", "{", "@", "_")
+"""Characters after which an editor asks by itself."""
+
+MOST = 400
+"""More items than this are not sent: the list is to be asked for again when more has been typed."""
+
+
+def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> Completions | None:
+    """What can be written at a caret; None if nothing is known.
+
+    Args:
+        trigger: the character after which the editor asks by itself, "" if a person did.
+    """
+    file = xml_file(snapshot.analysis, path)
+    if file is None:
+        json = in_json(snapshot.analysis, path, offset) if trigger != " " else None
+        source = snapshot.analysis.source(path)
+        if json is not None and source is not None:
+            return _shortened(source.text, offset, *json)
+        return _new_document(snapshot, path)
+    place = place_at(file, offset)
+    if place is None or (trigger == " " and not isinstance(place, AttributeName)):
+        return None
+    found = _at(Request(snapshot, path, offset, file), place)
+    return None if found is None else _shortened(file.document.text, offset, *found)
+
+
+def _at(request: Request, place: Place) -> tuple[Span, Iterable[Item]] | None:
+    match place:
+        case StartTag():
+            items = list(elements(request, place.parents, bare=place.bare))
+            if place.bare and place.parents and not place.parents[-1].element.complete:
+                items.append(_end(place.parents[-1], "/"))
+            return place.span, items
+        case EndTag():
+            name = place.name
+            close = ">" if place.bare else ""
+            return (place.span, [Item(name, ItemKind.ELEMENT, f"{escaped(name)}{close}")]) if name else None
+        case AttributeName():
+            bare = place.attribute is None or not place.attribute.has_value
+            found = attributes(request, place.parents, place.each, bare=bare)
+            if place.attribute is None and request.file.document.text[request.offset : request.offset + 1].isalnum():
+                return place.span, [_with(item, f"{item.snippet} ") for item in found]
+            return place.span, found
+        case AttributeValue():
+            return _value(request, place)
+        case Content():
+            return _content(request, place)
+
+
+def _end(parent: Typed, lead: str) -> Item:
+    label = f"{lead}{parent.element.name}"
+    return Item(label, ItemKind.ELEMENT, f"{escaped(label)}>", "end tag", rank=Rank.BEST)
+
+
+def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[Item]] | None:
+    if place.each.type is None and not any(each.element.name == "BehaviorTree" for each in place.parents):
+        return None
+    type_ = place.each.type or request.file.grammar.elements["Action"]
+    subject = Subject(place.each.element, type_, place.parents)
+    found = in_attribute(request, subject, place.attribute.name, place.span)
+    if found is None:
+        return None
+    span, items = found
+    if not place.quote:
+        return span, [_with(item, f'"{item.snippet}"') for item in items]
+    if place.quote == "'":
+        return span, [_with(item, item.snippet.replace("'", '"')) for item in items]
+    return found
+
+
+def _with(item: Item, insert: str) -> Item:
+    filter_ = item.filter or item.label
+    return Item(item.label, item.kind, insert, item.detail, item.about, item.rank, filter_, item.deprecated)
+
+
+def _content(request: Request, place: Content) -> tuple[Span, Iterable[Item]] | None:
+    parent = place.parents[-1] if place.parents else None
+    if parent is not None and parent.type is not None and (parent.type.value or parent.type.refers):
+        text = request.file.document.text[place.text.start : place.text.end]
+        lead = len(text) - len(text.lstrip())
+        span = Span(place.text.start + lead, max(place.text.start + lead, place.text.start + len(text.rstrip())))
+        if not span.contains(request.offset):
+            span = Span(request.offset, request.offset)
+        subject = Subject(parent.element, parent.type, place.parents[:-1])
+        found = in_text(request, subject, span)
+        if found is not None and (text.strip() or not parent.type.children):
+            return found
+        inner = [*(found[1] if found else ()), *_tags(request, place)]
+        return Span(request.offset, request.offset), inner
+    if parent is None and not request.file.document.text.strip():
+        return place.span, [*documents(request.path), *_tags(request, place)]
+    return place.span, _tags(request, place)
+
+
+def _tags(request: Request, place: Content) -> list[Item]:
+    """Whole elements, where not even their `<` has been written."""
+    found = [
+        Item(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
+        for i in elements(request, place.parents, bare=True)
+    ]
+    if place.parents and not place.parents[-1].element.complete:
+        end = _end(place.parents[-1], "</")
+        found.append(end)
+    return found
+
+
+def _tag(item: Item) -> str:
+    """Skeletons of several elements and of fields have their `<` themselves."""
+    return item.snippet if item.snippet.startswith("<") else f"<{item.snippet}"
+
+
+def _new_document(snapshot: Snapshot, path: str) -> Completions | None:
+    source = snapshot.analysis.source(path)
+    if source is None or source.text.strip(" \t\r\n\ufeff<"):
+        return None
+    items = tuple(documents(path))
+    return Completions(Span(0, len(source.text)), items) if items else None
+
+
+def _shortened(text: str, offset: int, span: Span, items: Iterable[Item]) -> Completions:
+    """Those that what has been typed may become, the best first; no more than an editor can show at once."""
+    before, after = text[span.start : offset], text[offset : span.end]
+    span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
+    unique = {(item.label, item.insert): item for item in items}.values()
+    ordered = sorted(unique, key=lambda item: item.rank)
+    if len(ordered) <= MOST:
+        return Completions(span, tuple(ordered))
+    typed = text[span.start : offset].lower()
+    fitting = [item for item in ordered if _may_become(typed, (item.filter or item.label).lower())]
+    return Completions(span, tuple(fitting[:MOST]), incomplete=True)
+
+
+def _may_become(typed: str, label: str) -> bool:
+    """Whether the characters that have been typed stand in the label in this order."""
+    rest = iter(label)
+    return all(character in rest for character in typed)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The documentation of one suggestion, made when somebody looks at it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.diagnostics import Symbol
+from roaml.expr.operators import FUNCTIONS
+from roaml.ide import describe_language
+from roaml.ide.describe import describe
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
+from roaml.project.analysis import Analysis
+
+_GRAMMARS: Mapping[str, Grammar] = {each.schema: each for each in (HL_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE)}
+
+
+def document(analysis: Analysis, about: Symbol) -> str:
+    """What is known of the thing that an item stands for, as Markdown; "" if nothing is.
+
+    Beyond the symbols that `describe` knows there are `element` (its path is the parent's name, its scope the schema),
+    `attribute` (path `PARENT/ELEMENT`), `choice` (path `PARENT/ELEMENT/ATTRIBUTE`), `function`,
+    `event-variable`, `base-type` and `json`
+    (scope is the text).
+    """
+    grammar = _GRAMMARS.get(about.scope)
+    match about.kind:
+        case "element" if grammar is not None:
+            type_ = _element(grammar, about.path, about.name)
+            return describe_language.element(type_) if type_ else ""
+        case "attribute" if grammar is not None:
+            type_ = _element(grammar, *about.path.split("/", 1))
+            attribute = type_.attributes.get(about.name) if type_ else None
+            return describe_language.attribute(attribute) if attribute else ""
+        case "choice" if grammar is not None:
+            parent, element, name = about.path.split("/", 2)
+            type_ = _element(grammar, parent, element)
+            attribute = type_.attributes.get(name) if type_ else None
+            choices = attribute.simple.choices if attribute else ()
+            return next((describe_language.choice(each) for each in choices if each.value == about.name), "")
+        case "function":
+            found = FUNCTIONS.get(about.name)
+            return describe_language.function(found) if found else ""
+        case "event-variable":
+            return describe_language.EVENT_VARIABLES.get(about.name, "")
+        case "base-type":
+            return describe_language.base_type(about.name)
+        case "json":
+            return about.scope
+    return describe(analysis, about)
+
+
+def _element(grammar: Grammar, parent: str, name: str) -> ElementType | None:
+    """The element as it is inside of a parent, or else wherever it is allowed."""
+    outer = grammar.find(parent) if parent else None
+    inner = grammar.child(outer, name) if outer else None
+    return inner or grammar.find(name)

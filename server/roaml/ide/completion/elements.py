@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Elements that may stand at a caret, with their attributes ready to be filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.ide.completion.fields import fields_to_add, sending
+from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.names import plugins, port_list
+from roaml.ide.completion.parameters import parameters_to_add
+from roaml.ide.completion.ports import add_port, ports_of
+from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.values import candidates
+from roaml.ide.occurrence import HANDLES
+from roaml.ide.syntax import Typed
+from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
+from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.xml import Element
+
+_MOST_CHOICES = 20
+
+
+def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[Item]:
+    """What may stand inside the last of `parents`.
+
+    Args:
+        bare: the element is completed with attributes and end; else its name alone.
+    """
+    if not parents:
+        for name in request.file.grammar.roots:
+            type_ = request.file.grammar.elements[name]
+            if not type_.use and not any(isinstance(node, Element) for node in request.file.document.nodes):
+                yield _item(request, type_, parents, bare=bare)
+        return
+    parent = parents[-1]
+    if parent.type is None:
+        return
+    if bare and "field" in parent.type.children:
+        yield from fields_to_add(request, parent.element)
+    if bare and "param" in parent.type.children:
+        yield from parameters_to_add(request, Subject(parent.element, parent.type, parents[:-1]))
+    if request.file.grammar is BEHAVIOR_TREE and parent.type.any_child is not None:
+        yield from _tree_nodes(request, parents, bare=bare)
+        return
+    for name, occurrence in parent.type.children.items():
+        if sum(child.name == name for child in parent.element.elements) < occurrence.most or not bare:
+            type_child = request.file.grammar.child(parent.type, name)
+            if type_child is not None:
+                if bare:
+                    yield from sending(request, type_child)
+                yield _item(request, type_child, parents, bare=bare)
+
+
+def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:
+    """A whole element: its name, the attributes that it is nothing without, and its end."""
+    made = Snippet().text(type_.name)
+    subject = Subject(None, type_, parents)
+    for attribute in type_.attributes.values():
+        if not _is_wanted(type_, attribute):
+            continue
+        choices = attribute.simple.choices
+        if len(choices) == 1:
+            made.text(f' {attribute.name}="{choices[0].value}"')
+        else:
+            made.text(f' {attribute.name}="').stop(likely(request, subject, attribute)).text('"')
+    _close(made, type_.name, type_)
+    return str(made)
+
+
+def likely(request: Request, subject: Subject, attribute: AttributeType) -> list[str]:
+    """What an attribute is filled with, if there are only a few choices."""
+    if attribute.value == "ros-type":
+        return []
+    found = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
+    return found if len(found) <= _MOST_CHOICES else []
+
+
+def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
+    """Whether an element seldom goes without an attribute, though the schema may not require it."""
+    if attribute.use or attribute.ignored is not None:
+        return False
+    if attribute.required:
+        return True
+    if attribute.name in ("name", "ID") and type_.node:
+        return False
+    names = attribute.defines or attribute.refers or attribute.value in ("type", "ros-type", "number")
+    return bool(names) or attribute.name == "expr"
+
+
+def _close(made: Snippet, name: str, type_: ElementType | None) -> None:
+    """The end of a start tag, and the end tag if something usually stands in the element."""
+    if type_ is not None and type_.text and not type_.attributes:
+        made.text(">").end().text(f"</{name}>")
+    elif type_ is not None and type_.node in ("action", "condition", "subtree"):
+        made.text("/>").end()
+    elif type_ is not None and (type_.any_child or any(child not in type_.attributes for child in type_.children)):
+        made.text(">\n\t").end().text(f"\n</{name}>")
+    else:
+        made.text("/>").end()
+
+
+def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> Item:
+    insert = snippet(request, type_, parents) if bare else ""
+    rank = Rank.LATE if type_.ignored or type_.use or _has_no_handle(request, type_) else Rank.USUAL
+    above = parents[-1].element.name if parents else ""
+    about = Symbol(above, "element", type_.name, request.file.grammar.schema)
+    return Item(type_.name, ItemKind.ELEMENT, insert, about=about, rank=rank, deprecated=bool(type_.use))
+
+
+def _has_no_handle(request: Request, type_: ElementType) -> bool:
+    """Whether an element is about a ROS interface or timer of which the machine declares none."""
+    name = type_.attributes.get("name")
+    wanted = set(name.refers) & HANDLES if name else set()
+    declared = {declaration.kind for declaration in request.machine.declarations} if request.machine else set()
+    return bool(wanted) and not wanted & declared
+
+
+# ------------------------------------------------------------------------ trees
+
+
+def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[Item]:
+    """Plugins of the system, nodes of BehaviorTree.CPP and subtrees."""
+    grammar = request.file.grammar
+    for name, (path, outline) in plugins(request).items():
+        about = Symbol(path, "machine", name)
+        has_children = outline.plugin.children > 0 or outline.plugin.any_child
+        insert = _plugin(request, name, grammar, has_children=has_children) if bare else ""
+        yield Item(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
+    for name in request.trees.trees if bare else ():
+        around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
+        if name and (around is None or around.value != name):
+            about = Symbol(request.trees.owner, "tree", name)
+            insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
+            yield Item(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
+    for type_ in grammar.elements.values():
+        if type_.node:
+            yield _node(request, type_, parents, bare=bare)
+
+
+def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> Item:
+    if type_.name in (*EXPLICIT, *SUBTREES):
+        insert = snippet(request, type_, parents) if bare else ""
+    else:
+        insert = _plugin(request, type_.name, request.file.grammar, has_children=bool(type_.any_child)) if bare else ""
+    rank = Rank.USUAL if type_.translated and not type_.use else Rank.LAST
+    detail = type_.node if type_.translated else f"{type_.node}, cannot be translated"
+    about = Symbol(parents[-1].element.name, "element", type_.name, request.file.grammar.schema)
+    return Item(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
+
+
+def _plugin(request: Request, name: str, grammar: Grammar, *, has_children: bool) -> str:
+    """A node in the compact form, with the ports that it needs."""
+    made = Snippet().text(name)
+    for port in ports_of(request, name, grammar.elements.get(name)):
+        if port.required:
+            add_port(made.text(" "), port)
+    if has_children:
+        made.text(">\n\t").end().text(f"\n</{name}>")
+    else:
+        made.text("/>").end()
+    return str(made)

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an expression may go on with at a caret: names, members of what stands before a dot, functions.
+
+What is before the caret is read as text, not as a tree: it is half-written more often than not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from roaml.diagnostics import Symbol
+from roaml.expr.infer import infer
+from roaml.expr.operators import FUNCTIONS, Function
+from roaml.expr.parse import parse
+from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, Type, fits, unwrap, wrap
+from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.request import Request, Subject
+from roaml.ide.occurrence import variable
+from roaml.model.syntax import PortRead
+from roaml.model.typing import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
+from roaml.text import Decoded, Span
+from roaml.xml import Element
+
+_NAME = re.compile(r"[A-Za-z_$][\w$]*\Z|\Z", re.ASCII)
+_BEHIND = re.compile(r"[\w$]*", re.ASCII)
+_CLOSERS = {"]": "[", ")": "("}
+
+
+class Beginning(NamedTuple):
+    """What has been written of a name: `object` is the text before the dot in front of it, None if there is none."""
+
+    span: Span
+    object: str | None
+
+
+def beginning(text: str, start: int, offset: int) -> Beginning | None:
+    """
+    Args:
+        text: of the file.
+        start: where the expression begins in it.
+
+    Returns:
+        None where no name can stand: in a string or a number, or behind an entity's `&`.
+    """
+    before = text[start:offset]
+    if _in_string(before):
+        return None
+    found = _NAME.search(before)
+    behind = _BEHIND.match(text, offset)
+    assert behind is not None
+    if found is None or before[: found.start()].endswith("&") or before[found.start() - 1 : found.start()].isdigit():
+        return None
+    span = Span(start + found.start(), behind.end())
+    lead = before[: found.start()].rstrip()
+    if not lead.endswith("."):
+        return Beginning(span, None)
+    object_ = _object(lead[:-1].rstrip())
+    return None if not object_ or object_[0].isdigit() else Beginning(span, object_)
+
+
+def _in_string(text: str) -> bool:
+    quote = ""
+    for character in text:
+        if quote:
+            quote = "" if character == quote else quote
+        elif character in "'\"":
+            quote = character
+    return bool(quote)
+
+
+def _object(text: str) -> str:
+    """The chain of names, indexes and calls that a text ends with."""
+    at, open_ = len(text), []
+    while at > 0:
+        character = text[at - 1]
+        if character in _CLOSERS:
+            open_.append(_CLOSERS[character])
+        elif open_ and character == open_[-1]:
+            open_.pop()
+        elif not open_ and not (character.isalnum() or character in "_$."):
+            break
+        at -= 1
+    return "" if open_ else text[at:]
+
+
+def in_expression(request: Request, subject: Subject, part: str, start: int) -> tuple[Span, list[Item]] | None:
+    """What may be written at the caret in an expression that begins at `start`.
+
+    Args:
+        part: the name of the attribute or element that holds the expression.
+
+    Returns:
+        The items and what they replace; None if nothing can be written there.
+    """
+    begun = beginning(request.file.document.text, start, request.offset)
+    if begun is None:
+        return None
+    events = _event_variables(request, part)
+    variables = _variables(request)
+    scope = {**variables, **events}
+    if begun.object is not None:
+        return begun.span, list(_members(request, begun.object, scope))
+    if part == "location":
+        return begun.span, [_variable(request, name, type_, None) for name, type_ in variables.items()]
+    wanted = _wanted(request, subject, part)
+    items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
+    items += [
+        Item(name, ItemKind.VARIABLE, detail=str(type_), about=Symbol("", "event-variable", name), rank=Rank.LIKELY)
+        for name, type_ in events.items()
+        if name not in STATUSES
+    ]
+    items += [
+        Item(name, ItemKind.VALUE, detail="answer of the child", rank=Rank.LIKELY)
+        for name in events
+        if name in STATUSES
+    ]
+    items += [Item(word, ItemKind.VALUE, detail="bool", rank=_fitting(BOOL, wanted)) for word in ("true", "false")]
+    items.append(Item("Math", ItemKind.FUNCTION, detail="functions", rank=Rank.LATE))
+    items += [_function(function, "Math.", Rank.LATE) for function in FUNCTIONS.values()]
+    return begun.span, items
+
+
+def initial_values(type_: Type) -> Iterator[Item]:
+    """Texts that a variable of a type may begin with."""
+    if type_ == UNKNOWN:
+        return
+    if type_ == BOOL:
+        yield Item("false", ItemKind.VALUE, rank=Rank.BEST)
+        yield Item("true", ItemKind.VALUE, rank=Rank.BEST)
+        return
+    snippet = Snippet()
+    _literal(type_, snippet)
+    yield Item(_text(type_), ItemKind.VALUE, str(snippet), detail=str(type_), rank=Rank.BEST)
+
+
+def _text(type_: Type) -> str:
+    inner, bounds = unwrap(type_)
+    if bounds:
+        return "[]"
+    if isinstance(inner, Struct):
+        return "{" + ", ".join(f"'{name}': {_text(member)}" for name, member in inner.members) + "}"
+    return ZEROS.get(inner.kind, "0") if isinstance(inner, Scalar) else "0"
+
+
+def _literal(type_: Type, snippet: Snippet) -> None:
+    if isinstance(type_, Struct):
+        for number, (name, member) in enumerate(type_.members):
+            snippet.text(f"{', ' if number else '{'}'{name}': ")
+            _literal(member, snippet)
+        snippet.text("}")
+    elif isinstance(type_, Array):
+        snippet.text("[").stop().text("]")
+    else:
+        snippet.stop([_text(type_)])
+
+
+ZEROS = {"bool": "false", "int": "0", "real": "0.0", "string": "''"}
+
+
+# ------------------------------------------------------------------------ names
+
+
+def _variables(request: Request) -> Mapping[str, Type]:
+    if request.machine is None or request.chart is None:
+        return {}
+    typed = request.analysis.typed_in(request.path, request.system_path)
+    return typed.variables.get(request.chart.scope, {})
+
+
+def _event_variables(request: Request, part: str) -> Mapping[str, Type]:
+    if request.machine is None or request.handler is None:
+        return {}
+    part = "cond" if part == "cond" and request.handler.element.open_span.contains(request.offset) else "body"
+    known = bindings(request.handler, part, request.machine, request.environment)
+    if part == "cond" and "_bt" in known:
+        known |= dict.fromkeys(STATUSES, STATUS)
+    return known
+
+
+def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> Item:
+    scope = request.chart.scope if request.chart else ""
+    about = variable(request.path, name, scope)
+    return Item(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, wanted))
+
+
+def _fitting(type_: Type, wanted: Type | None) -> Rank:
+    """Values of the wanted type first; those with something of it inside, or to compare, are as usual."""
+    if wanted is None or UNKNOWN in (wanted, type_):
+        return Rank.USUAL
+    return Rank.BEST if fits(type_, wanted) else Rank.USUAL
+
+
+def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Iterator[Item]:
+    if object_ == "Math":
+        yield from (_function(function, "", Rank.USUAL) for function in FUNCTIONS.values())
+        return
+    tree, findings = parse(Decoded(object_, 0))
+    type_ = UNKNOWN if findings else infer(tree, scope.get)[0]
+    if isinstance(type_, Array) or (isinstance(type_, Scalar) and type_.kind == "string"):
+        yield Item("length", ItemKind.MEMBER, detail=str(INT))
+    # The member of an array of structs is the array of the members (spec/01 §3.3).
+    inner, bounds = unwrap(type_)
+    if not isinstance(inner, Struct):
+        return
+    for name, member in inner.members:
+        about = Symbol("", "field", name, inner.name)
+        if inner.what == "struct":
+            about = Symbol(request.system_path or request.path, "member", name, inner.name)
+        yield Item(name, ItemKind.MEMBER, detail=str(wrap(member, bounds)), about=about)
+
+
+def _function(function: Function, prefix: str, rank: Rank) -> Item:
+    snippet = Snippet().text(f"{prefix}{function.name}(")
+    needed = function.parameters[: len(function.parameters) - function.optional]
+    for number, parameter in enumerate(needed):
+        snippet.text(", " if number else "").stop([parameter])
+    snippet.text(")")
+    detail = f"({', '.join(function.parameters)}) → {function.result}"
+    label = f"{prefix}{function.name}"
+    return Item(label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", "function", function.name), rank)
+
+
+# ----------------------------------------------------------------- wanted types
+
+
+def _wanted(request: Request, subject: Subject, part: str) -> Type | None:
+    """The type that the value should have, if that is known."""
+    known = subject.type.attributes.get(part)
+    if known is not None and known.value_type in ("bool", "int"):
+        return BOOL if known.value_type == "bool" else INT
+    around = [each.element for each in subject.parents]
+    if known is not None and subject.element is not None:
+        around.append(subject.element)  # else it is the `<expr>` inside of the element that is meant
+    if not around:
+        return None
+    element = around[-1]
+    match element.name:
+        case "field" if len(around) > 1:
+            return _wanted_field(request, element, around[-2])
+        case "assign":
+            location = element.get("location")
+            return infer(parse(Decoded(location.value, 0))[0], _variables(request).get)[0] if location else None
+        case "bt_set_output":
+            return _wanted_output(request, element)
+    return None
+
+
+def _wanted_field(request: Request, element: Element, holder: Element) -> Type | None:
+    name, statement = element.get("name"), request.communicate(holder)
+    if statement is None or name is None or request.machine is None:
+        return None
+    declaration = find_handle(request.machine, statement)
+    return _at(interface_part(statement.type.sends, declaration, request.environment), name.value)
+
+
+def _wanted_output(request: Request, element: Element) -> Type | None:
+    key = element.get("key")
+    for port in request.machine.ports if request.machine else ():
+        if key is not None and port.key is not None and port.key.value == key.value and request.machine:
+            return port_type(request.machine, PortRead(port.key, element.span))
+    return None
+
+
+def _at(type_: Type, path: str) -> Type:
+    for name in path.split("."):
+        member = type_.member(name) if isinstance(type_, Struct) else None
+        if member is None:
+            return UNKNOWN
+        type_ = member
+    return type_

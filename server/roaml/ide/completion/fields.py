@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The fields of a ROS message that a sending element can set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import Scalar, Struct, Type, leaves
+from roaml.ide.completion.expressions import ZEROS
+from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.request import Request, Subject
+from roaml.language import ElementType
+from roaml.model.machine import Communicate, Declaration
+from roaml.model.ros import InterfaceType
+from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.xml import Element
+
+
+def field_names(request: Request, subject: Subject) -> Iterator[Item]:
+    """For the name of a `<field>`: those not set yet first."""
+    holder = subject.parents[-1].element if subject.parents else None
+    statement = request.communicate(holder) if holder is not None else None
+    if statement is None:
+        return
+    given = {field.name.value for field in statement.fields if field.name and field.element is not subject.element}
+    declaration = find_handle(request.machine, statement) if request.machine else None
+    required = set(_required(request, declaration, statement.type))
+    for path, (type_, owner) in _fields(request, statement).items():
+        if path not in given:
+            about = Symbol("", "field", path.rpartition(".")[2], owner)
+            rank = Rank.LIKELY if path in required else Rank.LATE
+            yield Item(path, ItemKind.MEMBER, detail=str(type_), about=about, rank=rank)
+
+
+def fields_to_add(request: Request, element: Element) -> Iterator[Item]:
+    """Inside of a sending element: each field that is missing, and all of them at once."""
+    statement = request.communicate(element)
+    if statement is None:
+        return
+    known = _fields(request, statement)
+    given = {field.name.value for field in statement.fields if field.name}
+    declaration = find_handle(request.machine, statement) if request.machine else None
+    missing = [path for path in _required(request, declaration, statement.type) if path not in given]
+    if len(missing) > 1:
+        insert = str(_all(Snippet(), {path: known[path][0] for path in missing}, "\n"))
+        detail = ", ".join(missing)
+        yield Item("all missing fields", ItemKind.SKELETON, insert, detail, None, Rank.BEST, "field all missing")
+    for path in missing:
+        about = Symbol("", "field", path.rpartition(".")[2], known[path][1])
+        insert = str(_field(Snippet(), path, known[path][0]))
+        yield Item(f"field {path}", ItemKind.SKELETON, insert, str(known[path][0]), about, Rank.LIKELY)
+
+
+def sending(request: Request, type_: ElementType) -> Iterator[Item]:
+    """For each handle that an element may send through: the element with all fields of the message."""
+    name = type_.attributes.get("name")
+    if name is None or "field" not in type_.children:
+        return
+    for declaration in request.machine.declarations if request.machine else ():
+        if declaration.kind in name.refers and declaration.handle is not None:
+            part, required = _part(request, declaration, type_), _required(request, declaration, type_)
+            types = {".".join(path): leaf for path, leaf in leaves(part)} if part else {}
+            made = Snippet().text(f'{type_.name} name="{declaration.handle.value}"')
+            for attribute in type_.attributes.values():
+                if attribute.required and attribute is not name:
+                    made.text(f' {attribute.name}="').stop().text('"')
+            if required:
+                _all(made.text(">"), {path: types[path] for path in required}, "\n\t")
+                made.text(f"\n</{type_.name}>").end()
+            else:
+                made.text("/>").end()
+            about = Symbol(request.path, declaration.kind, declaration.handle.value)
+            label = f"{type_.name} {declaration.handle.value}"
+            detail = ", ".join(required)
+            yield Item(label, ItemKind.SKELETON, str(made), detail, about, Rank.LIKELY)
+
+
+def _all(made: Snippet, types: Mapping[str, Type], lead: str) -> Snippet:
+    """Several fields, each on a line of its own."""
+    for number, (path, type_) in enumerate(types.items()):
+        made.text(lead if number or "\t" in lead else "")
+        _field(made, path, type_)
+    return made
+
+
+def _field(made: Snippet, path: str, type_: Type) -> Snippet:
+    zero = ZEROS[type_.kind] if isinstance(type_, Scalar) else "[]"
+    return made.text(f'<field name="{path}" expr="').stop([zero]).text('"/>')
+
+
+def _fields(request: Request, statement: Communicate) -> Mapping[str, tuple[Type, str]]:
+    """The dotted paths of all leaf fields, with their types and the message that they stand in."""
+    declaration = find_handle(request.machine, statement) if request.machine else None
+    part = _part(request, declaration, statement.type)
+    found: dict[str, tuple[Type, str]] = {}
+    for path, type_ in leaves(part) if part else ():
+        owner: Type | None = part
+        for name in path[:-1]:
+            owner = owner.member(name) if isinstance(owner, Struct) else None
+        found[".".join(path)] = (type_, owner.name if isinstance(owner, Struct) else "")
+    return found
+
+
+def _interface(request: Request, declaration: Declaration | None) -> InterfaceType | None:
+    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+        return None
+    return request.environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+
+
+def _part(request: Request, declaration: Declaration | None, type_: ElementType) -> Struct | None:
+    """What an element of the type `type_` sends through a declared interface."""
+    interface = _interface(request, declaration) if "field" in type_.children else None
+    return dict(interface.parts).get(_section(type_)) if interface else None
+
+
+def _required(request: Request, declaration: Declaration | None, type_: ElementType) -> tuple[str, ...]:
+    interface = _interface(request, declaration)
+    return interface.required(_section(type_)) if interface and _part(request, declaration, type_) else ()
+
+
+def _section(type_: ElementType) -> str:
+    return SECTIONS.get(type_.sends, type_.sends)

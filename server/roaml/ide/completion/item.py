@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is offered at a caret, as plain data."""
+
+from __future__ import annotations
+
+import enum
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.text import Span
+
+
+class ItemKind(enum.Enum):
+    """What an item stands for; editors show it as an icon."""
+
+    ELEMENT = "element"
+    ATTRIBUTE = "attribute"
+    VALUE = "value"
+    VARIABLE = "variable"
+    FUNCTION = "function"
+    MEMBER = "member"
+    EVENT = "event"
+    STATE = "state"
+    HANDLE = "handle"
+    INTERFACE = "topic, service or action"
+    TYPE = "type"
+    PLUGIN = "plugin"
+    PORT = "port"
+    FILE = "file"
+    OPERATOR = "operator"
+    SKELETON = "skeleton"
+
+
+class Rank(enum.IntEnum):
+    """What comes first in the list; among equals the order of the list counts."""
+
+    BEST = 0
+    LIKELY = 1
+    USUAL = 2
+    LATE = 3
+    LAST = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One suggestion.
+
+    Attributes:
+        insert: what replaces the range, in the snippet syntax of LSP; "" if it is the label.
+        detail: a few words beside the label, such as a type.
+        about: what documentation is about (`roaml.ide.completion.document`).
+        filter: what is compared with what has been typed; "" if it is the label.
+    """
+
+    label: str
+    kind: ItemKind
+    insert: str = ""
+    detail: str = ""
+    about: Symbol | None = None
+    rank: Rank = Rank.USUAL
+    filter: str = ""
+    deprecated: bool = False
+
+    @property
+    def snippet(self) -> str:
+        """What is inserted, in snippet syntax."""
+        return self.insert or escaped(self.label)
+
+
+@dataclass(frozen=True, slots=True)
+class Completions:
+    """`span` is what the items replace. `incomplete` tells that there are more: ask again after more has been typed."""
+
+    span: Span
+    items: tuple[Item, ...]
+    incomplete: bool = False
+
+
+def escaped(text: str) -> str:
+    """A text as a part of a snippet."""
+    return re.sub(r"[\\$}]", r"\\\g<0>", text)
+
+
+_STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\\.)*)?\|\}|\$\{\d+:((?:[^}\\]|\\.)*)\}")
+
+
+def plain(snippet: str) -> str:
+    """The text that a snippet stands for where there are no snippets: the first choice, the default, or nothing."""
+    return _STOP.sub(lambda found: found[1] or _unescaped(found[2] or found[3] or ""), snippet)
+
+
+def _unescaped(text: str) -> str:
+    return re.sub(r"\\(.)", r"\1", text)
+
+
+class Snippet:
+    """Text with places to fill in, one after the other."""
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._stops = 0
+
+    def text(self, text: str) -> Snippet:
+        self._parts.append(escaped(text))
+        return self
+
+    def stop(self, likely: Iterable[str] = ()) -> Snippet:
+        """A place to fill in; `likely` are the texts that it is probably filled with."""
+        self._stops += 1
+        choices = [text for text in dict.fromkeys(likely) if text]
+        if not choices:
+            self._parts.append(f"${self._stops}")
+        elif len(choices) == 1:
+            self._parts.append(f"${{{self._stops}:{escaped(choices[0])}}}")
+        else:
+            listed = ",".join(re.sub(r"[\\$},|]", r"\\\g<0>", text) for text in choices)
+            self._parts.append(f"${{{self._stops}|{listed}|}}")
+        return self
+
+    def end(self) -> Snippet:
+        """Where the caret is left."""
+        self._parts.append("$0")
+        return self
+
+    def __str__(self) -> str:
+        return "".join(self._parts)

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names that an attribute may refer to, and names that are used before anyone defines them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from roaml.diagnostics import Symbol
+from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.parameters import parameter_names
+from roaml.ide.completion.request import Request, Subject
+from roaml.ide.occurrence import HANDLES
+from roaml.ide.occurrences import uses
+from roaml.model.machine import Declaration, Send, all_statements
+from roaml.model.outline import MachineOutline
+from roaml.model.syntax import Name
+from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
+
+_SHOWN = 3
+
+
+def referred(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
+    """The things of a kind of symbol that `subject` may name."""
+    if kind in HANDLES:
+        yield from _handles(request, kind)
+    elif kind in _PROVIDERS:
+        yield from _PROVIDERS[kind](request, subject)
+
+
+def undefined(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
+    """Names for a new thing: those that are used as if it were there already."""
+    if kind == "event":
+        yield from _events_to_send(request)
+    elif kind == "parameter":
+        yield from parameter_names(request, subject)
+    elif kind == "machine":
+        yield from _machine_names(request)
+    elif kind == "port":
+        yield from _missing_ports(request)
+    else:
+        defined: set[Symbol] = set()
+        used: dict[Symbol, None] = {}
+        for each in uses(request.analysis, request.path, request.system_path).all:
+            if each.symbol.kind == kind:
+                if each.defines:
+                    defined.add(each.symbol)
+                else:
+                    used[each.symbol] = None
+        for symbol in used:
+            if symbol not in defined:
+                yield Item(symbol.name, _KINDS.get(kind, ItemKind.VALUE), detail="used, not defined", rank=Rank.BEST)
+
+
+_KINDS = {"state": ItemKind.STATE, "variable": ItemKind.VARIABLE, "port": ItemKind.PORT}
+
+
+# ------------------------------------------------------------------- machines
+
+
+def _states(request: Request, subject: Subject) -> Iterator[Item]:
+    for state in request.chart.states if request.chart else ():
+        if state.id is not None:
+            about = Symbol(request.path, "state", state.id.value, request.chart.scope if request.chart else "")
+            yield Item(state.id.value, ItemKind.STATE, about=about)
+
+
+def _handles(request: Request, kind: str) -> Iterator[Item]:
+    for declaration in request.machine.declarations if request.machine else ():
+        if declaration.kind == kind and declaration.handle is not None:
+            about = Symbol(request.path, kind, declaration.handle.value)
+            yield Item(declaration.handle.value, ItemKind.HANDLE, detail=_declared(declaration), about=about)
+
+
+def _declared(declaration: Declaration) -> str:
+    if declaration.kind == "timer":
+        return f"{declaration.rate.value} Hz" if isinstance(declaration.rate, Name) else ""
+    name = declaration.interface.value if isinstance(declaration.interface, Name) else ""
+    return " : ".join(filter(None, (name, declaration.type.value if declaration.type else "")))
+
+
+def _ports(request: Request, subject: Subject) -> Iterator[Item]:
+    """Of a plugin, those that can be read or written there; in a tree file, those of the plugin that is described."""
+    if request.machine is None:
+        id_ = subject.parents[-1].element.get("ID") if subject.parents else None
+        path, outline = plugins(request).get(id_.value if id_ else "", ("", None))
+        for declared in outline.ports if outline else ():
+            if subject.type.name == f"{declared.direction}put_port":
+                about = Symbol(path, "port", declared.key)
+                yield Item(declared.key, ItemKind.PORT, detail=declared.type, about=about)
+        return
+    wanted = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
+    for port in request.machine.ports:
+        if port.key is not None and wanted in (None, port.direction):
+            detail = port.type.text if port.type else ""
+            yield Item(port.key.value, ItemKind.PORT, detail=detail, about=Symbol(request.path, "port", port.key.value))
+
+
+def _machine_names(request: Request) -> Iterator[Item]:
+    stem = request.path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
+    yield Item(stem, ItemKind.VALUE, detail="the file's name", rank=Rank.LIKELY)
+    for system in request.systems:
+        for name in _unknown_plugins(system):
+            yield Item(name, ItemKind.PLUGIN, detail="used in the tree", rank=Rank.BEST)
+
+
+def _unknown_plugins(system: System) -> Iterator[str]:
+    yield from dict.fromkeys(each.plugin for each in system.instances if system.plugin(each.plugin)[1] is None)
+
+
+def _missing_ports(request: Request) -> Iterator[Item]:
+    """Ports that trees set for this plugin and it does not declare."""
+    machine = request.machine
+    if machine is None or machine.name is None:
+        return
+    known = {port.key.value for port in machine.ports if port.key}
+    for system in request.systems:
+        for instance in system.instances:
+            if instance.plugin == machine.name.value:
+                for key, _ in instance.ports:
+                    if key not in known:
+                        yield Item(key, ItemKind.PORT, detail="set in the tree", rank=Rank.BEST)
+    yield Item(CHILDREN_COUNT, ItemKind.PORT, detail="how many children the node has", rank=Rank.LATE)
+
+
+# --------------------------------------------------------------------- events
+
+
+def _events_received(request: Request, subject: Subject) -> Iterator[Item]:
+    """Events to wait for: those that someone sends."""
+    for system in request.systems:
+        for event in system.events.values():
+            senders = dict.fromkeys(automaton.name for automaton, _ in event.senders)
+            detail = f"from {_some(senders)}" if senders else "nobody sends it"
+            yield _event(system.path, event.name, detail, sound=bool(senders))
+    if not request.systems:
+        sent = (s for chart in (request.machine.charts if request.machine else ()) for s in all_statements(chart))
+        for name in dict.fromkeys(s.event.value for s in sent if isinstance(s, Send) and s.event):
+            yield _event(request.path, name, "sent here", sound=True)
+
+
+def _events_to_send(request: Request) -> Iterator[Item]:
+    """Events that someone waits for go first."""
+    for system in request.systems:
+        for event in system.events.values():
+            receivers = dict.fromkeys(automaton.name for automaton, _ in event.receivers)
+            detail = f"to {_some(receivers)}" if receivers else "nobody waits for it"
+            yield _event(system.path, event.name, detail, sound=bool(receivers))
+    if not request.systems:
+        states = (state for chart in (request.machine.charts if request.machine else ()) for state in chart.states)
+        handlers = (handler for state in states for handler in state.handlers)
+        for name in dict.fromkeys(h.event.value for h in handlers if h.event):
+            yield _event(request.path, name, "awaited here", sound=True)
+
+
+def _event(owner: str, name: str, detail: str, *, sound: bool) -> Item:
+    rank = Rank.USUAL if sound else Rank.LATE
+    return Item(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, "event", name), rank=rank)
+
+
+# ----------------------------------------------------------- ROS and the tree
+
+
+def channels(request: Request, kind: str, type_: str = "") -> Iterator[Item]:
+    """The topics, services or actions of the workspace; those of ROS type `type_` first, the file's own system before
+    others."""
+    seen = set()
+    for system in request.all_systems:
+        for name, channel in _channels(system, kind).items():
+            written = next((e.use.name for e in channel.endpoints if e.use.name), channel.name)
+            if not written or written in seen:
+                continue
+            seen.add(written)
+            types = dict.fromkeys(endpoint.use.type for endpoint in channel.endpoints)
+            fitting = not type_ or type_ in types
+            own = system in request.systems
+            rank = Rank.LAST if not fitting else Rank.LIKELY if own else Rank.USUAL
+            detail = " · ".join(filter(None, (", ".join(types), _some(_machines(channel)))))
+            yield Item(written, ItemKind.INTERFACE, detail=detail, about=Symbol(system.path, kind, name), rank=rank)
+
+
+def _channels(system: System, kind: str) -> Mapping[str, Channel]:
+    return {"topic": system.topics, "service": system.services, "action": system.actions}[kind]
+
+
+def _machines(channel: Channel) -> dict[str, None]:
+    return dict.fromkeys(endpoint.automaton.name for endpoint in channel.endpoints)
+
+
+def _of_kind(kind: str) -> Callable[[Request, Subject], Iterator[Item]]:
+    def provide(request: Request, subject: Subject) -> Iterator[Item]:
+        element = subject.element
+        if subject.type.text and subject.parents:
+            element = subject.parents[-1].element  # `<topic>` stands in the declaration
+        type_ = element.get("type") if element else None
+        yield from channels(request, kind, type_.value if type_ else "")
+
+    return provide
+
+
+def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
+    """The plugins that the systems of a tree file list: name -> file and outline."""
+    found: dict[str, tuple[str, MachineOutline]] = {}
+    for system in request.systems:
+        for path, outline in system.plugins:
+            if outline.name:
+                found.setdefault(outline.name, (path, outline))
+    return found
+
+
+def _plugin_names(request: Request, subject: Subject) -> Iterator[Item]:
+    for name, (path, outline) in plugins(request).items():
+        about = Symbol(path, "machine", name)
+        yield Item(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
+    wanted = subject.type.name.lower()
+    for name in builtin_plugins():
+        type_ = request.file.grammar.elements[name]
+        if type_.node == wanted:
+            yield Item(
+                name,
+                ItemKind.PLUGIN,
+                detail="BehaviorTree.CPP",
+                about=Symbol("", "element", name, request.file.grammar.schema),
+            )
+
+
+def port_list(outline: MachineOutline) -> str:
+    """The ports of a plugin in a line."""
+    return ", ".join(
+        f"{port.direction} {port.key}: {port.type}" for port in outline.ports if port.key != CHILDREN_COUNT
+    )
+
+
+def _tree_names(request: Request, subject: Subject) -> Iterator[Item]:
+    for name, (path, _) in request.trees.trees.items():
+        if name:
+            file = path.replace("\\", "/").rpartition("/")[2]
+            yield Item(name, ItemKind.PLUGIN, detail=file, about=Symbol(request.trees.owner, "tree", name))
+
+
+def _some(names: Iterable[str]) -> str:
+    listed = list(names)
+    more = f" and {len(listed) - _SHOWN} more" if len(listed) > _SHOWN else ""
+    return ", ".join(listed[:_SHOWN]) + more
+
+
+_PROVIDERS: Mapping[str, Callable[[Request, Subject], Iterator[Item]]] = {
+    "state": _states,
+    "port": _ports,
+    "event": _events_received,
+    "topic": _of_kind("topic"),
+    "service": _of_kind("service"),
+    "action": _of_kind("action"),
+    "plugin": _plugin_names,
+    "tree": _tree_names,
+}

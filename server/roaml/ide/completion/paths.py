@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Paths of files in the workspace, as a file beside them writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.request import Request, Subject
+from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
+from roaml.model.machine import Machine
+from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES
+from roaml.project.files import relative
+
+_BY_SECTION = {
+    "data_declarations": (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
+    "behavior_tree": (FileKind.TREE, FileKind.MACHINE),
+    "node_models": (FileKind.MACHINE,),
+    "properties": (FileKind.PROPERTIES,),
+}
+
+_BY_TYPE = {
+    **dict.fromkeys(TREE_TYPES, (FileKind.TREE,)),
+    **dict.fromkeys((*PLUGIN_TYPES, *NODE_TYPES), (FileKind.MACHINE,)),
+    "xml": (FileKind.STRUCTS,),
+    "json": (FileKind.JSON_STRUCTS,),
+    "jani": (FileKind.PROPERTIES,),
+}
+
+
+def paths(request: Request, subject: Subject) -> Iterator[Item]:
+    """The files that may be meant; those that nobody in this file names yet go first."""
+    analysis = request.analysis
+    wanted, plugin = _wanted(subject)
+    named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}
+    for path in request.snapshot.candidates():
+        if path == request.path or analysis.kind(path) not in wanted:
+            continue
+        rank = Rank.LATE if path in named else Rank.USUAL
+        if FileKind.MACHINE in wanted and path.endswith(MACHINE_EXTENSIONS):
+            machine = analysis.machine(path)
+            fitting = plugin is None or machine is None or _is_plugin(machine) == plugin
+            rank = Rank.LAST if not fitting else Rank.LIKELY if rank is Rank.USUAL else rank
+        written = relative(request.path, path)
+        if written is not None:
+            yield Item(written, ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
+
+
+def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:
+    """What the file should be, and whether, if it is a machine, a plugin (None: either will do)."""
+    if subject.type.name == "include":
+        return (FileKind.TREE,), None
+    section = subject.parents[-1].element.name if subject.parents else ""
+    written = subject.element.get("type") if subject.element else None
+    type_ = written.value if written else ""
+    kinds = _BY_TYPE.get(type_) or _BY_SECTION.get(section, ())
+    return kinds, {"behavior_tree": True, "node_models": False}.get(section)
+
+
+def _is_plugin(machine: Machine) -> bool:
+    handlers = (handler for chart in machine.charts for state in chart.states for handler in state.handlers)
+    return bool(machine.ports) or any(handler.trigger == "bt-tick" for handler in handlers)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is being written at a caret in an XML document: a tag, an attribute, a value or content.
+
+The tree has the places; only what the parser cannot give a place, a lone `<` or `</`, is looked for in the text.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.ide.closing import open_element
+from roaml.ide.syntax import Typed, XmlFile, path_at
+from roaml.text import Span
+from roaml.xml import Attribute, CData, Comment, Document, Element, Instruction, Text
+
+_WORD_BEFORE = re.compile(r"[\w:.-]*\Z")
+_WORD_AFTER = re.compile(r"[\w:.-]*")
+_TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StartTag:
+    """The name of a start tag, `span`, perhaps empty. `bare` tells that nothing of the tag stands behind the name."""
+
+    parents: tuple[Typed, ...]
+    span: Span
+    bare: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EndTag:
+    """The name of an end tag; `name` is the element that is open there, "" if none is."""
+
+    name: str
+    span: Span
+    bare: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AttributeName:
+    """The name of an attribute of the element `each`; `attribute` is what stands there already."""
+
+    parents: tuple[Typed, ...]
+    each: Typed
+    span: Span
+    attribute: Attribute | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AttributeValue:
+    """The value of an attribute; `quote` is "" if it has none yet."""
+
+    parents: tuple[Typed, ...]
+    each: Typed
+    attribute: Attribute
+    span: Span
+    quote: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Content:
+    """Between tags: the word at the caret, and all the text around it up to the next tags."""
+
+    parents: tuple[Typed, ...]
+    span: Span
+    text: Span
+
+
+Place: TypeAlias = StartTag | EndTag | AttributeName | AttributeValue | Content
+
+
+def place_at(file: XmlFile, offset: int) -> Place | None:
+    """What is being written at a caret; None in comments, CDATA sections and instructions."""
+    document = file.document
+    path = tuple(path_at(file, offset))
+    if _is_skipped(document, path, offset):
+        return None
+    if path and (found := _in_start_tag(document.text, path, offset)) is not None:
+        return found[0]
+    if tag := _TAG.search(document.text, max(0, offset - 200), offset):
+        return _tag(document, path, tag, offset)
+    if path and _in_end_tag(path[-1].element, offset):
+        return None
+    return _content(document, path, offset)
+
+
+def _is_skipped(document: Document, path: tuple[Typed, ...], offset: int) -> bool:
+    nodes = path[-1].element.nodes if path else document.nodes
+    for node in nodes:
+        if isinstance(node, (Comment, CData, Instruction)) and node.span.start < offset:
+            closed = document.text[: node.span.end].endswith(("-->", "]]>", "?>"))
+            if offset < node.span.end or (offset == node.span.end and not closed):
+                return True
+    return False
+
+
+def _in_start_tag(text: str, path: tuple[Typed, ...], offset: int) -> tuple[Place | None] | None:
+    """What stands in the start tag at the caret; None if the caret is not in it."""
+    each, parents = path[-1], path[:-1]
+    element = each.element
+    end = element.open_span.end
+    is_ended = text[:end].endswith(">")
+    if not element.open_span.start < offset or (offset >= end if is_ended else offset > end):
+        return None
+    if offset <= element.name_span.end:
+        behind = text[element.name_span.end : end].strip()
+        bare = not element.attributes and not behind
+        return (StartTag(parents, element.name_span, bare),)
+    for attribute in element.attributes:
+        if attribute.name_span.start < offset <= attribute.name_span.end:
+            return (AttributeName(parents, each, attribute.name_span, attribute),)
+        if attribute.has_value and attribute.value_span.start <= offset <= attribute.value_span.end:
+            before = text[attribute.value_span.start - 1]
+            quote = before if before in "\"'" else ""
+            return (AttributeValue(parents, each, attribute, attribute.value_span, quote),)
+        if offset == attribute.span.end and text[offset - 1] == "=":
+            return (AttributeValue(parents, each, attribute, Span(offset, offset), ""),)
+    if not text[offset - 1].isspace():
+        return (None,)
+    return (AttributeName(parents, each, Span(offset, offset), None),)
+
+
+def _tag(document: Document, path: tuple[Typed, ...], tag: re.Match[str], offset: int) -> Place:
+    span = Span(tag.start(2), offset)
+    behind = document.text[offset : offset + 1]
+    if tag[1]:
+        return EndTag(open_element(document.text, tag.start()), span, behind != ">")
+    return StartTag(path, span, not behind or behind.isspace() or behind == "<")
+
+
+def _in_end_tag(element: Element, offset: int) -> bool:
+    close = element.close_span
+    return close is not None and close.start < offset < close.end
+
+
+def _content(document: Document, path: tuple[Typed, ...], offset: int) -> Content:
+    before = _WORD_BEFORE.search(document.text, max(0, offset - 200), offset)
+    after = _WORD_AFTER.match(document.text, offset)
+    assert before is not None
+    assert after is not None
+    nodes = path[-1].element.nodes if path else document.nodes
+    texts = (node.span for node in nodes if isinstance(node, Text) and node.span.contains(offset))
+    return Content(path, Span(before.start(), after.end()), next(texts, Span(offset, offset)))

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ports of tree nodes: which there are, and what they may hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.names import channels, plugins
+from roaml.ide.completion.request import Request, Subject
+from roaml.ide.frames import names_in
+from roaml.ide.in_machine import INTERFACE_SYMBOLS
+from roaml.language import ElementType
+from roaml.model.outline import MachineOutline
+from roaml.model.system import CHILDREN_COUNT
+from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name
+from roaml.model.typing import INTERFACE_KINDS
+from roaml.xml import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """A port that a node may set. `about` leads to its documentation."""
+
+    key: str
+    type: str
+    direction: str
+    required: bool
+    default: str
+    about: Symbol
+
+    @property
+    def detail(self) -> str:
+        default = f" = {self.default}" if self.default else ""
+        return f"{self.direction} {self.type}{default}".strip()
+
+
+def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Port, ...]:
+    """The ports of the plugin called `name`, or of the node of BehaviorTree.CPP that `type_` describes."""
+    if type_ is not None and type_.node and type_.name == name:
+        found = []
+        for attribute in type_.ports:
+            assert attribute.port is not None
+            about = Symbol(f"/{type_.name}", "attribute", attribute.name, request.file.grammar.schema)
+            port = attribute.port
+            found.append(Port(attribute.name, port.type, port.direction, port.required, port.default, about))
+        return tuple(found)
+    path, outline = plugins(request).get(name, ("", None))
+    if outline is None:
+        return ()
+    defaults = request.trees.defaults.get(name, {})
+    return tuple(
+        Port(
+            port.key,
+            port.type,
+            port.direction,
+            port.key not in defaults,
+            defaults[port.key].value.value if port.key in defaults else "",
+            Symbol(path, "port", port.key),
+        )
+        for port in outline.ports
+        if port.key != CHILDREN_COUNT
+    )
+
+
+def node_name(element: Element) -> str:
+    """What a node is an instance of."""
+    if element.name in (*EXPLICIT, *SUBTREES):
+        id_ = element.get("ID")
+        return id_.value if id_ else ""
+    return element.name
+
+
+def _type_of(request: Request, name: str) -> ElementType | None:
+    return request.file.grammar.elements.get(name)
+
+
+def port_values(request: Request, subject: Subject, key: str) -> list[Item]:
+    """What the port `key` of a node may hold: blackboard variables, and constants where its type tells them."""
+    element = subject.element
+    if element is None or not _in_tree(subject):
+        return []
+    name = node_name(element)
+    if element.name in SUBTREES:
+        known = subject.type.attributes.get(key)
+        is_port = known is None
+        port = None
+    else:
+        found = {port.key: port for port in ports_of(request, name, _type_of(request, name))}
+        port = found.get(key)
+        is_port = port is not None
+    if not is_port:
+        return []
+    items = [*_constants(request, name, port)] if port else []
+    if element.name in SUBTREES:
+        items.append(Item("{=}", ItemKind.VARIABLE, detail="the variable of the same name", rank=Rank.LIKELY))
+    return [*items, *_variables(request, key, port)]
+
+
+def _in_tree(subject: Subject) -> bool:
+    return any(each.element.name == "BehaviorTree" for each in subject.parents)
+
+
+def _variables(request: Request, key: str, port: Port | None) -> Iterator[Item]:
+    tree = next((t for t in request.trees.files[request.path].trees if _around(t.element, request.offset)), None)
+    if tree is None:
+        return
+    own = dict.fromkeys(name for name in names_in(tree) if is_variable_name(name))
+    id_ = tree.id.value if tree.id else ""
+    for name in own:
+        about = request.trees.variable(request.path, id_, name)
+        yield Item(f"{{{name}}}", ItemKind.VARIABLE, detail="blackboard", about=about, rank=Rank.LIKELY)
+    if key not in own and is_variable_name(key):
+        yield Item(f"{{{key}}}", ItemKind.VARIABLE, detail="new blackboard variable", rank=Rank.USUAL)
+    main = request.trees.main
+    if main is not None and main[1] is not tree:
+        for name in dict.fromkeys(names_in(main[1])):
+            if is_variable_name(name) and not name.startswith("@"):
+                yield Item(f"{{@{name}}}", ItemKind.VARIABLE, detail="of the main tree", rank=Rank.LATE)
+
+
+def _around(element: Element, offset: int) -> bool:
+    return element.span.start < offset <= element.span.end
+
+
+def _constants(request: Request, name: str, port: Port) -> Iterator[Item]:
+    if port.direction == "out":
+        return
+    if port.default and blackboard_variable(port.default) is None:
+        yield Item(port.default, ItemKind.VALUE, detail="default", rank=Rank.LIKELY)
+    if port.type == "bool":
+        yield Item("true", ItemKind.VALUE, rank=Rank.LIKELY)
+        yield Item("false", ItemKind.VALUE, rank=Rank.LIKELY)
+    _, outline = plugins(request).get(name, ("", None))
+    yield from _interfaces(request, outline, port.key)
+
+
+def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[Item]:
+    """If the port names a topic, service or action: those of the workspace."""
+    for use in outline.interfaces if outline else ():
+        if use.port == key and use.kind in INTERFACE_KINDS:
+            yield from channels(request, INTERFACE_SYMBOLS[INTERFACE_KINDS[use.kind]], use.type)
+
+
+def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:
+    """As attributes: each port that is not set, and all that must be set at once."""
+    element = subject.element
+    assert element is not None
+    given = {attribute.name for attribute in element.attributes}
+    name = node_name(element)
+    missing = [port for port in ports_of(request, name, _type_of(request, name)) if port.key not in given]
+    required = [port for port in missing if port.required]
+    if len(required) > 1:
+        snippet = Snippet()
+        for number, port in enumerate(required):
+            snippet.text(" " if number else "")
+            add_port(snippet, port)
+        detail = ", ".join(port.key for port in required)
+        yield Item("all ports", ItemKind.SKELETON, str(snippet), detail, rank=Rank.BEST)
+    for port in missing:
+        snippet = Snippet()
+        add_port(snippet, port)
+        rank = Rank.LIKELY if port.required else Rank.USUAL
+        yield Item(port.key, ItemKind.PORT, str(snippet), port.detail, port.about, rank)
+
+
+def add_port(snippet: Snippet, port: Port) -> None:
+    """`key="…"`; an output goes to a variable of its own name unless told otherwise."""
+    snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction == "out" else [port.default]).text('"')

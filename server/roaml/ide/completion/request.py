@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a completion is asked about: a caret in an XML file, and what the file is part of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from roaml.ide.find import systems_of
+from roaml.ide.frames import Trees
+from roaml.ide.occurrences import trees_of
+from roaml.ide.syntax import Typed, XmlFile
+from roaml.language import ElementType
+from roaml.model.machine import Chart, Communicate, Handler, Machine, all_statements
+from roaml.model.system import System
+from roaml.model.typing import Environment
+from roaml.project.analysis import Analysis
+from roaml.project.workspace import Snapshot
+from roaml.xml import Element
+
+
+class Subject(NamedTuple):
+    """The element whose attribute or content is written; `element` is None while it is only being proposed."""
+
+    element: Element | None
+    type: ElementType
+    parents: tuple[Typed, ...]
+
+    @property
+    def key(self) -> str:
+        """Which element of the grammar it is, as `roaml.ide.completion.document` reads it."""
+        return f"{self.parents[-1].element.name if self.parents else ''}/{self.type.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    snapshot: Snapshot
+    path: str
+    offset: int
+    file: XmlFile
+
+    @property
+    def analysis(self) -> Analysis:
+        return self.snapshot.analysis
+
+    @cached_property
+    def system_path(self) -> str | None:
+        """The system that types are looked up in: of several the first."""
+        return systems_of(self.analysis, self.path)[0]
+
+    @cached_property
+    def systems(self) -> tuple[System, ...]:
+        """The systems that the file belongs to; a system file to its own."""
+        paths = (self.path, *systems_of(self.analysis, self.path))
+        found = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
+        return tuple(system for system in found if system is not None)
+
+    @cached_property
+    def all_systems(self) -> tuple[System, ...]:
+        """All systems of the workspace, the file's own first."""
+        others = (self.analysis.system(path) for path in self.analysis.system_paths)
+        return tuple(dict.fromkeys((*self.systems, *(system for system in others if system is not None))))
+
+    @cached_property
+    def machine(self) -> Machine | None:
+        return self.analysis.machine(self.path)
+
+    @cached_property
+    def environment(self) -> Environment:
+        return self.analysis.environment(self.system_path)
+
+    @cached_property
+    def trees(self) -> Trees:
+        return trees_of(self.analysis, self.path, self.system_path)
+
+    @cached_property
+    def chart(self) -> Chart | None:
+        """The states and data around the caret: a thread's or the machine's."""
+        charts = self.machine.charts if self.machine else ()
+        around = [chart for chart in charts if chart.element.span.start <= self.offset <= chart.element.span.end]
+        return around[-1] if around else None
+
+    @cached_property
+    def handler(self) -> Handler | None:
+        """The transition or callback around the caret."""
+        states = self.chart.states if self.chart else ()
+        handlers = (handler for state in states for handler in state.handlers)
+        return next((each for each in handlers if _is_around(each.element, self.offset)), None)
+
+    def communicate(self, element: Element) -> Communicate | None:
+        """The sending statement that an element is."""
+        statements = all_statements(self.chart) if self.chart else ()
+        return next((each for each in statements if isinstance(each, Communicate) and each.element is element), None)
+
+
+def _is_around(element: Element, offset: int) -> bool:
+    return element.span.start < offset < element.span.end or (offset == element.span.end and not element.complete)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an attribute's value, or the text of an element, may be: as its roles in the schema say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, UNKNOWN, Scalar, Type, resolve_type, unwrap
+from roaml.ide.completion.expressions import in_expression, initial_values
+from roaml.ide.completion.fields import field_names
+from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.names import referred, undefined
+from roaml.ide.completion.paths import paths
+from roaml.ide.completion.ports import port_values
+from roaml.ide.completion.request import Request, Subject
+from roaml.interfaces.types import Kind
+from roaml.language import AttributeType
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import type_of
+from roaml.model.typing import STATUSES
+from roaml.text import Span
+
+_EXPRESSIONS = ("expression", "location")
+
+
+def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[Item]] | None:
+    """What the value of the attribute `name` may be, and what of `span`, the value, is replaced."""
+    known = subject.type.attributes.get(name)
+    if known is not None and known.value in _EXPRESSIONS:
+        return in_expression(request, subject, name, span.start)
+    if request.file.grammar.title == "BehaviorTree.CPP XML" and (ports := port_values(request, subject, name)):
+        return span, ports
+    if known is None:
+        return None
+    return span, list(candidates(request, subject, known))
+
+
+def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[Item]:
+    """What the whole value of an attribute may be."""
+    for choice in attribute.simple.choices:
+        about = Symbol(f"{subject.key}/{attribute.name}", "choice", choice.value, request.file.grammar.schema)
+        yield Item(choice.value, ItemKind.VALUE, about=about, deprecated=bool(choice.use))
+    for kind in attribute.refers:
+        if kind == "field":
+            yield from field_names(request, subject)
+        else:
+            yield from referred(request, kind, subject)
+    if attribute.defines:
+        yield from undefined(request, attribute.defines, subject)
+    yield from _of_value(request, subject, attribute.name, attribute.value, attribute.value_type)
+
+
+def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[Item]] | None:
+    """What the text of an element may be."""
+    type_ = subject.type
+    if type_.value in _EXPRESSIONS:
+        return in_expression(request, subject, type_.name, span.start)
+    items = [item for kind in type_.refers for item in referred(request, kind, subject)]
+    return span, [*items, *_of_value(request, subject, type_.name, type_.value, type_.value_type)]
+
+
+def _of_value(request: Request, subject: Subject, name: str, value: str, value_type: str) -> Iterator[Item]:
+    match value:
+        case "type":
+            yield from types(request)
+        case "ros-type":
+            yield from ros_types(request, value_type)
+        case "constant" if "bound" in name:
+            yield from _bounds(request, subject)
+        case "constant":
+            yield from _constants(request, subject)
+        case "flag":
+            yield from (Item(word, ItemKind.VALUE) for word in ("true", "false"))
+        case "status":
+            yield from (Item(name, ItemKind.VALUE) for name in STATUSES)
+        case "child-index":
+            yield from _children(request)
+        case "path":
+            yield from paths(request, subject)
+        case "number" if subject.type.name == "target":
+            yield from _remaining_probability(subject)
+
+
+# ------------------------------------------------------------------------ types
+
+
+def types(request: Request) -> Iterator[Item]:
+    """Base types and the structs of the system."""
+    for name in BASE_TYPES:
+        yield Item(name, ItemKind.TYPE, about=Symbol("", "base-type", name))
+    structs = request.analysis.structs(request.system_path).types
+    names = [name for system in request.systems for name in system.structs] or list(structs)
+    if request.analysis.kind(request.path) is FileKind.STRUCTS:
+        declared = request.analysis.struct_declarations(request.path)
+        names += [each.outline.name for each in declared if each.outline is not None]
+    for name in dict.fromkeys(names):
+        owner = request.system_path or request.path
+        yield Item(name, ItemKind.TYPE, detail="struct", about=Symbol(owner, "struct", name), rank=Rank.LIKELY)
+
+
+def ros_types(request: Request, kind: str) -> Iterator[Item]:
+    """All ROS types of a kind that can be found; those that the file's systems use go first."""
+    if kind not in ("msg", "srv", "action"):
+        return
+    ros_kind: Kind = kind  # type: ignore[assignment]
+    uses = (use for system in request.systems for automaton in system.automata for use in automaton.outline.interfaces)
+    used = {use.type for use in uses}
+    for package, kinds in request.analysis.registry.search_path.packages().items():
+        for name in kinds[ros_kind]:
+            label = f"{package}/{name}"
+            rank = Rank.LIKELY if label in used else Rank.USUAL
+            yield Item(label, ItemKind.TYPE, about=Symbol("", "ros-type", label, kind), rank=rank)
+
+
+def _constants(request: Request, subject: Subject) -> Iterator[Item]:
+    """What a variable may begin with."""
+    yield from initial_values(_data_type(request, subject))
+
+
+def _bounds(request: Request, subject: Subject) -> Iterator[Item]:
+    """The least and the greatest value of an integer type."""
+    inner, _ = unwrap(_data_type(request, subject))
+    for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
+        yield Item(str(number), ItemKind.VALUE, detail=str(inner))
+
+
+def _data_type(request: Request, subject: Subject) -> Type:
+    """The declared type of the variable that a value is for."""
+    element = subject.element
+    if subject.type.name != "data" and subject.parents:
+        element = subject.parents[-1].element  # `<expr>` stands in the variable
+    type_ = type_of(element.get("type")) if element is not None else None
+    if type_ is None or type_.name is None:
+        return UNKNOWN
+    return resolve_type(type_.name, request.environment.struct) or UNKNOWN
+
+
+# ----------------------------------------------------------------------- others
+
+
+def _children(request: Request) -> Iterator[Item]:
+    """The indexes of the children that the plugin's nodes have, and int variables."""
+    machine = request.machine
+    if machine is None:
+        return
+    counts = [
+        len(instance.children)
+        for system in request.systems
+        for instance in system.instances
+        if machine.name and instance.plugin == machine.name.value
+    ]
+    for index in range(max(counts, default=1)):
+        yield Item(str(index), ItemKind.VALUE, detail="child", rank=Rank.BEST)
+    for data in request.chart.data if request.chart else ():
+        if data.id is not None and data.type is not None and "int" in data.type.text:
+            yield Item(data.id.value, ItemKind.VARIABLE, detail=data.type.text)
+
+
+def _remaining_probability(subject: Subject) -> Iterator[Item]:
+    """What is missing to 1."""
+    if not subject.parents:
+        return
+    others = [child for child in subject.parents[-1].element.elements if child is not subject.element]
+    given = 0.0
+    for child in others:
+        probability = child.get("prob")
+        try:
+            given += float(probability.value) if probability else 0.0
+        except ValueError:
+            return
+    rest = round(1 - given, 9)
+    if 0 < rest <= 1:
+        yield Item(f"{rest:g}", ItemKind.VALUE, detail="what is missing to 1", rank=Rank.BEST)

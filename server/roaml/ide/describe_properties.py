@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Property files as Markdown: operators, members, formulas in the usual notation, global variables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.ide.json_tree import members
+from roaml.ide.markdown import code, lines, name, paragraphs
+from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
+from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.language.property_syntax import MemberType, Shape, by_operator
+from roaml.model.globals import GlobalVariable
+
+_DEPTH = 12
+_LENGTH = 400
+
+_SAYS: Mapping[str, str] = {
+    "∨": "At least one of both holds.",
+    "∧": "Both hold.",
+    "⇒": "If the left one holds, the right one does.",
+    "¬": "The operand does not hold.",
+    "=": "Both are equal.",
+    "≠": "Both differ.",
+    "<": "The left one is less.",
+    "≤": "The left one is less or equal.",
+    ">": "The left one is greater.",
+    "≥": "The left one is greater or equal.",
+    "+": "The sum.",
+    "-": "The difference.",
+    "*": "The product.",
+    "min": "The lesser of both.",
+    "max": "The greater of both.",
+    "abs": "The number without its sign.",
+    "floor": "The greatest integer that is not greater.",
+    "ceil": "The smallest integer that is not less.",
+    "%": "The remainder, never negative.",
+    "/": "The quotient, a real number.",
+    "pow": "`left` to the power of `right`.",
+    "log": "The logarithm of `left` to the base `right`.",
+    "sgn": "−1, 0 or 1, as the number is below, at or above 0.",
+    "trc": "The number without what stands behind its point.",
+    "F": "`exp` holds at some time.",
+    "G": "`exp` holds always.",
+    "X": "`exp` holds after the next step.",
+    "U": "`right` holds at some time and `left` until then.",
+    "W": "`right` holds at some time and `left` until then, or `left` holds for ever.",
+    "R": "`right` holds up to and including the time at which `left` does, or for ever.",
+    "Pmin": "The least probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
+    "Pmax": "The greatest probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
+    "initial": "Holds in the initial states.",
+    "deadlock": "Holds where nothing can happen any more.",
+    "timelock": "Holds where time cannot pass any more.",
+}
+"""Where one object of the schema stands for several operators: what each of them says."""
+
+
+def operator(symbol: str) -> str:
+    """An operator as it is written behind `op`; "" if there is none such."""
+    shape = by_operator().get(symbol)
+    if shape is None:
+        return ""
+    known = BINARY_OPERATORS.get(symbol) or UNARY_OPERATORS.get(symbol)
+    usual = known.symbol if known else symbol
+    function = "The function of that name; angles in radians." if symbol in UNARY_OPERATORS else shape.documentation
+    return paragraphs(
+        _SAYS.get(usual, function),
+        lines(
+            f"Takes {known.signature.value}".replace("->", "→") if known else "",
+            f"Another spelling of {name(usual)}" if usual != symbol else "",
+        ),
+    )
+
+
+def member(found: MemberType) -> str:
+    """A key of a JSON object."""
+    head = (f"**{found.title}**" if found.title else "", name(found.key), "required" if found.required else "")
+    return paragraphs(" · ".join(filter(None, head)), found.documentation)
+
+
+def shape(found: Shape) -> str:
+    """A kind of JSON object."""
+    return paragraphs(f"**{found.title}**", found.documentation)
+
+
+def global_variable(variable: GlobalVariable) -> str:
+    """A global variable of the translated system, as properties name it."""
+    if variable.parameter == "valid" and variable.name.endswith(".valid"):
+        what = f"Whether event {name(variable.event)} was ever sent"
+    elif variable.name.endswith("_len"):
+        what = f"How many elements {name(variable.name.rpartition('.')[0])} has"
+    else:
+        what = f"What event {name(variable.event)} carried last"
+    return paragraphs(code(f"{variable.name} : {variable.type}"), what)
+
+
+def formula(value: JsonValue) -> str:
+    """A formula in the usual notation, in one line."""
+    text = _formula(value, 0)
+    return text if len(text) <= _LENGTH else f"{text[: _LENGTH - 1]}…"
+
+
+def _formula(value: JsonValue | None, depth: int) -> str:
+    if depth > _DEPTH:
+        return "…"
+    match value:
+        case JsonString():
+            return value.value or "…"
+        case JsonNumber():
+            return value.text
+        case JsonBool():
+            return str(value.value).lower()
+        case JsonArray():
+            return f"[{', '.join(_formula(each, depth + 1) for each in value.items)}]"
+        case JsonObject():
+            return _operation(members(value), depth)
+    return "…"
+
+
+def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
+    def part(key: str) -> str:
+        return _formula(parts.get(key), depth + 1)
+
+    def inner(key: str) -> str:
+        """In parentheses if something binds looser there."""
+        value = parts.get(key)
+        has_two = isinstance(value, JsonObject) and value.get("left") is not None
+        text = part(key)
+        return f"({text})" if has_two and " " in text else text
+
+    operator = parts.get("op")
+    op = operator.value if isinstance(operator, JsonString) else ""
+    if op in BINARY_OPERATORS and BINARY_OPERATORS[op].symbol.isalpha():
+        return f"{op}({part('left')}, {part('right')})"
+    if "left" in parts and "right" in parts:
+        return f"{inner('left')} {op} {inner('right')}"
+    match op:
+        case "filter":
+            fun = part("fun")
+            return part("values") if fun == "values" else f"{fun} {inner('values')} in {part('states')}"
+        case "ite":
+            return f"{inner('if')} ? {inner('then')} : {inner('else')}"
+        case "aa":
+            return f"{inner('exp')}[{part('index')}]"
+        case "av":
+            return part("elements")
+        case "Pmin" | "Pmax" | "Emin" | "Emax" | "Smin" | "Smax":
+            return f"{op}({part('exp')})"
+        case "F" | "G" | "X" | "¬" | "!" | "∀" | "∃":
+            return f"{op} {inner('exp')}" if op.isalpha() else f"{op}{inner('exp')}"
+    if not op:
+        return part("constant") if "constant" in parts else "…"
+    return f"{op}({part('exp')})" if "exp" in parts else op

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of a place in a property file: operators, keys, formulas, global variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.ide import describe_properties, describe_system
+from roaml.ide.find import systems_of
+from roaml.ide.json_tree import members
+from roaml.ide.markdown import code, paragraphs
+from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.language.property_syntax import Shape, by_operator, shapes
+from roaml.model.system import Automaton, System
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+_NODE = re.compile(r"bt_(\d{1,9})_")
+
+
+def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """The global variable whose name stands at a place, in each system of the file."""
+    value = analysis.json(path)
+    found = value_at(value[0], offset) if value else None
+    if not isinstance(found, JsonString) or not found.content_span.contains(offset):
+        return None
+    texts: dict[str, None] = {}
+    for each in systems_of(analysis, path):
+        system = analysis.system(each) if each else None
+        variable = analysis.globals(each).get(found.value) if each else None
+        if system is not None and variable is not None:
+            node = node_of(system, found.value)
+            about = describe_system.node(system, node) if node else ""
+            texts[paragraphs(describe_properties.global_variable(variable), about)] = None
+    return (found.content_span, paragraphs(*texts)) if texts else None
+
+
+def node_of(system: System, variable: str) -> Automaton | None:
+    """The node of the tree that a global variable is about."""
+    number = _NODE.match(variable)
+    return system.by_instance.get(int(number[1])) if number else None
+
+
+def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """What the syntax of properties says of a key or an operator; the formula of a property."""
+    value = analysis.json(path)
+    if value is None:
+        return None
+    for shape, owner, member in _members_at(value[0], offset):
+        known = shape.members.get(member.key) if shape else None
+        if member.key_span.contains(offset):
+            return (member.key_span, describe_properties.member(known)) if known else None
+        held = member.value
+        if not isinstance(held, JsonString) or not held.content_span.contains(offset):
+            continue
+        text = ""
+        if member.key == "op":
+            head = code(describe_properties.formula(owner))
+            said = describe_properties.operator(held.value)
+            text = paragraphs(head, said) if said else ""
+        elif member.key == "name" and shape is not None and shape.name == "property":
+            expression = members(owner).get("expression")
+            text = code(describe_properties.formula(expression)) if expression else ""
+        elif known is not None and not known.shape and known.key in ("fun", "constant", "distribution"):
+            text = describe_properties.member(known)
+        return (held.content_span, text) if text else None
+    return None
+
+
+def value_at(value: JsonValue, offset: int) -> JsonValue | None:
+    """The innermost value around an offset; None on keys and between values."""
+    found: JsonValue | None = value
+    while found is not None:
+        if isinstance(found, JsonObject):
+            member = next((each for each in found.members if each.span.contains(offset)), None)
+            if member is None:
+                return found
+            if member.key_span.contains(offset) or member.value is None or not member.value.span.contains(offset):
+                return None
+            found = member.value
+        elif isinstance(found, JsonArray):
+            inner = next((each for each in found.items if each.span.contains(offset)), None)
+            if inner is None:
+                return found
+            found = inner
+        else:
+            return found if found.span.contains(offset) else None
+    return None
+
+
+def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Shape | None, JsonObject, Member]]:
+    """The members around an offset, innermost first, with their objects and what these are."""
+    found: list[tuple[Shape | None, JsonObject, Member]] = []
+    wanted = "file"
+    inner: JsonValue | None = value
+    while inner is not None:
+        if isinstance(inner, JsonArray):
+            inner = next((each for each in inner.items if each.span.contains(offset)), None)
+            continue
+        if not isinstance(inner, JsonObject):
+            break
+        shape = shapes().get(wanted) or _by_operator(inner)
+        member = next((each for each in inner.members if each.span.contains(offset)), None)
+        if member is None:
+            break
+        found.append((shape, inner, member))
+        known = shape.members.get(member.key) if shape else None
+        wanted, inner = known.shape if known else "", member.value
+    yield from reversed(found)
+
+
+def _by_operator(value: JsonObject) -> Shape | None:
+    operator = value.get("op")
+    if isinstance(operator, JsonString):
+        return by_operator().get(operator.value)
+    return next((shape for shape in shapes().values() if not shape.operators and value.get(_key(shape))), None)
+
+
+def _key(shape: Shape) -> str:
+    """The member by which an object without operator is known."""
+    return {"namedNumber": "constant", "distribution": "distribution"}.get(shape.name, "\0")

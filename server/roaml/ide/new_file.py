@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What new files begin with, and where they are put."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from roaml.expr.types import BASE_TYPES
+from roaml.model.system import safe_name
+from roaml.project.analysis import Analysis
+from roaml.project.paths import inside, seen_from, split_name
+from roaml.rules.invalid_name import variable_problem
+from roaml.rules.zero import zero
+from roaml.text import SourceFile
+
+_DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def stem_of(path: str) -> str:
+    return safe_name(split_name(path)[0])
+
+
+def camel_case(stem: str) -> str:
+    """`battery_above` as the name of a machine: `BatteryAbove`."""
+    return "".join(part[:1].upper() + part[1:] for part in stem.split("_"))
+
+
+def file_name(machine: str) -> str:
+    """`BatteryAbove` as the name of a file: `battery_above.ascxml`."""
+    return _CAMEL.sub("_", machine).lower() + ".ascxml"
+
+
+def free_path(analysis: Analysis, folder: str, name: str) -> str:
+    """A path in a folder at which there is no file."""
+    stem, extension = split_name(name)
+    path, number = inside(folder, name), 2
+    while isinstance(analysis.files.read(path), SourceFile):
+        path, number = inside(folder, f"{stem}_{number}{extension}"), number + 1
+    return path
+
+
+def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
+    """A path as `src` of a system file names it: like the others there, with or without `./`."""
+    src = seen_from(path, system)
+    others = [other for other in written if not other.startswith("..")]
+    dotted = bool(others) and all(other.startswith("./") for other in others)
+    return f"./{src}" if dotted and not src.startswith("..") else src
+
+
+def node(name: str) -> str:
+    """A machine that does nothing yet."""
+    return f"""{_DECLARATION}<ascxml name="{name}" version="1.0" initial="run">
+    <state id="run" />
+</ascxml>
+"""
+
+
+def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool = False) -> str:
+    """A plugin that reads and sets its ports and succeeds at once or, with a child, does as the child does.
+
+    Args:
+        name: of the plugin.
+        ports: direction, key and type of each.
+        child: whether the node has a child.
+    """
+    ports = tuple(ports)
+    inputs = [
+        (key, f"{key}_input" if variable_problem(key) else key, type_) for way, key, type_ in ports if way == "in"
+    ]
+    outputs = [(key, type_) for way, key, type_ in ports if way == "out"]
+    parts = []
+    if ports:
+        parts.append(
+            "".join(f'    <bt_declare_port_{way} key="{key}" type="{type_}" />\n' for way, key, type_ in ports)
+        )
+    if inputs:
+        data = (f'        <data id="{id_}" type="{type_}" expr="{_zero(type_)}" />\n' for _, id_, type_ in inputs)
+        parts.append(f"    <datamodel>\n{''.join(data)}    </datamodel>\n")
+    work = "".join(
+        f"""\
+            <assign location="{id_}">
+                <expr><bt_get_input key="{key}" /></expr>
+            </assign>
+"""
+        for key, id_, _ in inputs
+    )
+    work += "".join(f'            <bt_set_output key="{key}" expr="{_zero(type_)}" />\n' for key, type_ in outputs)
+    parts.append((_WITH_CHILD if child else _LEAF).format(work=work))
+    body = "\n".join(parts)
+    return f'{_DECLARATION}<ascxml name="{name}" version="1.0" initial="ready">\n{body}</ascxml>\n'
+
+
+def _zero(type_: str) -> str:
+    return zero(BASE_TYPES[type_]) if type_ in BASE_TYPES else "0"
+
+
+_LEAF = """\
+    <state id="ready">
+        <bt_tick target="ready">
+{work}            <bt_return_status status="SUCCESS" />
+        </bt_tick>
+        <bt_halt target="ready">
+            <bt_return_halted />
+        </bt_halt>
+    </state>
+"""
+
+_ANSWERS = "".join(
+    f"""\
+        <bt_child_status id="0" cond="_bt.status == {status}" target="ready">
+            <bt_return_status status="{status}" />
+        </bt_child_status>
+"""
+    for status in ("SUCCESS", "FAILURE", "RUNNING")
+)
+
+_WITH_CHILD = f"""\
+    <state id="ready">
+        <bt_tick target="ticking">
+{{work}}            <bt_tick_child id="0" />
+        </bt_tick>
+        <bt_halt target="halting">
+            <bt_halt_child id="0" />
+        </bt_halt>
+    </state>
+
+    <state id="ticking">
+{_ANSWERS}    </state>
+
+    <state id="halting">
+        <bt_child_halted id="0" target="ready">
+            <bt_return_halted />
+        </bt_child_halted>
+    </state>
+"""
+
+
+def tree() -> str:
+    """A tree of one node that succeeds."""
+    return f"""{_DECLARATION}<root BTCPP_format="4" main_tree_to_execute="MainTree">
+    <BehaviorTree ID="MainTree">
+        <AlwaysSuccess />
+    </BehaviorTree>
+</root>
+"""
+
+
+def properties() -> str:
+    return '{\n    "properties": []\n}\n'

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a JSON Schema of ours says of a place in a JSON document.
+
+- Understands what the schemas in `schemas/` use: references, `allOf`, `if`/`then`/`else`, `properties`,
+  `additionalProperties`, `items`, `required`, `enum` and `const`.
+- Nothing is validated here: of a half-written document one wants to know what may still be written.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.language.resources import schema_path
+
+Schema: TypeAlias = Mapping[str, Any]
+
+_MAX_DEPTH = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A member that an object may have."""
+
+    name: str
+    schema: Schema
+    required: bool
+
+
+@dataclass(frozen=True)
+class JsonGrammar:
+    """One schema file."""
+
+    name: str
+
+    @functools.cached_property
+    def root(self) -> Schema:
+        schema: Schema = json.loads(schema_path(self.name).read_text(encoding="utf-8"))
+        return schema
+
+    def definition(self, name: str) -> Schema:
+        found: Schema = self.root["$defs"][name]
+        return found
+
+    def applying(self, schema: Schema, value: JsonValue | None) -> Iterator[Schema]:
+        """The parts of a schema that count for a value, the outermost first; None stands for a value to come."""
+        stack, seen = [schema], 0
+        while stack and seen < _MAX_DEPTH:
+            seen += 1
+            each = stack.pop()
+            if "$ref" in each:
+                stack.append(self._resolve(each["$ref"]))
+            yield each
+            branches = list(each.get("allOf", ()))
+            if "if" in each:
+                branch = "then" if self.matches(each["if"], value) else "else"
+                branches += [each[branch]] if branch in each else []
+            stack += reversed(branches)
+
+    def keys(self, schema: Schema, value: JsonObject) -> dict[str, Key]:
+        """The members that an object may have."""
+        found: dict[str, Key] = {}
+        applying = list(self.applying(schema, value))
+        required = {name for each in applying for name in each.get("required", ())}
+        for each in applying:
+            for name, inner in each.get("properties", {}).items():
+                # Of several that speak of one key the first that documents it says most.
+                if name not in found or not self.text(found[name].schema):
+                    found[name] = Key(name, inner, name in required)
+        return found
+
+    def member(self, schema: Schema, value: JsonObject, key: str) -> Schema:
+        """What is said of the member `key` of an object."""
+        parts = []
+        for each in self.applying(schema, value):
+            if key in each.get("properties", {}):
+                parts.append(each["properties"][key])
+            elif isinstance(each.get("additionalProperties"), dict):
+                parts.append(each["additionalProperties"])
+        return parts[0] if len(parts) == 1 else {"allOf": parts}
+
+    def item(self, schema: Schema, value: JsonArray) -> Schema:
+        """What is said of the items of a list."""
+        return {"allOf": [each["items"] for each in self.applying(schema, value) if "items" in each]}
+
+    def choices(self, schema: Schema) -> tuple[str, ...]:
+        """The texts of which the value must be one; () if it may be any."""
+        for each in self.applying(schema, None):
+            if "enum" in each:
+                return tuple(each["enum"])
+            if "const" in each:
+                return (each["const"],)
+        return ()
+
+    def text(self, schema: Schema) -> str:
+        """The documentation of a place, Markdown."""
+        for each in self.applying(schema, None):
+            if "description" in each:
+                return str(each["description"])
+        return ""
+
+    def is_a(self, schema: Schema, definition: str) -> bool:
+        """Whether a place is said to be what a definition describes."""
+        wanted = self.definition(definition)
+        return any(each is wanted for each in self.applying(schema, None))
+
+    def matches(self, schema: Schema, value: JsonValue | None) -> bool:
+        """Whether a value meets a condition (of an `if`)."""
+        if "$ref" in schema and not self.matches(self._resolve(schema["$ref"]), value):
+            return False
+        if "type" in schema and not _has_type(value, schema["type"]):
+            return False
+        if "const" in schema and _plain(value) != schema["const"]:
+            return False
+        if "enum" in schema and _plain(value) not in schema["enum"]:
+            return False
+        if isinstance(value, JsonObject):
+            members = {member.key: member.value for member in value.members}
+            if any(name not in members for name in schema.get("required", ())):
+                return False
+            inner = schema.get("properties", {})
+            return all(self.matches(inner[name], members[name]) for name in inner if name in members)
+        return True
+
+    def _resolve(self, reference: str) -> Schema:
+        return self.definition(reference.rpartition("/")[2])
+
+
+PROPERTIES = JsonGrammar("jani-properties.schema.json")
+JSON_STRUCTS = JsonGrammar("structs.schema.json")
+
+
+def _has_type(value: JsonValue | None, types: str | list[str]) -> bool:
+    wanted = [types] if isinstance(types, str) else types
+    match value:
+        case JsonObject():
+            return "object" in wanted
+        case JsonArray():
+            return "array" in wanted
+        case JsonString():
+            return "string" in wanted
+        case JsonNumber():
+            return "number" in wanted
+        case JsonBool():
+            return "boolean" in wanted
+    return False
+
+
+def _plain(value: JsonValue | None) -> str | int | float | bool | None:
+    return value.value if isinstance(value, (JsonString, JsonNumber, JsonBool)) else None

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Making fixes: one file at a time, or all of a kind until none is left.
+
+- Fixes that touch each other are not made together: the later one waits for the next pass, which sees what the first
+  has done.
+- Of fixes that are made without a look, those that would bring an error, alone or together, are not made.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Callable, Iterable
+
+from roaml.diagnostics import Diagnostic, Fix, Severity
+from roaml.project.workspace import Snapshot
+from roaml.text import TextEdit, apply_edits
+
+MAX_PASSES = 100
+
+Choice = Callable[[Diagnostic], "Fix | None"]
+"""Which fix of a diagnostic is to be made, if any."""
+
+
+def safe_fix(diagnostic: Diagnostic) -> Fix | None:
+    """The fix that may be made without a look."""
+    return next((fix for fix in diagnostic.fixes if fix.safe), None)
+
+
+def preferred_fix(diagnostic: Diagnostic) -> Fix | None:
+    """The one obvious fix."""
+    return next((fix for fix in diagnostic.fixes if fix.preferred), None)
+
+
+def fix_edits(snapshot: Snapshot, path: str, choose: Choice) -> tuple[TextEdit, ...]:
+    """The edits of all chosen fixes of a file that do not touch each other."""
+    return tuple(edit for fix in _fixes(snapshot, path, choose) for edit in fix.edits)
+
+
+def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful: bool) -> dict[str, str]:
+    """The texts of files after all chosen fixes, made until none is left. Files that stay as they are are left out.
+
+    Args:
+        snapshot: what is known.
+        paths: the files.
+        choose: which fix of a diagnostic is to be made, if any.
+        careful: make no fix that brings an error to its file.
+    """
+    texts: dict[str, str] = {}
+    for path in dict.fromkeys(paths):
+        for _ in range(MAX_PASSES):
+            found = _pass(snapshot, path, choose, careful=careful)
+            if found is None:
+                break
+            texts[path], snapshot = found
+    return texts
+
+
+def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tuple[str, Snapshot] | None:
+    """The text after as many fixes at once as go together, and what is known then. None if there is none to make."""
+    source, fixes = snapshot.analysis.source(path), _fixes(snapshot, path, choose)
+    if source is None:
+        return None
+    together = [fixes, *([fix] for fix in fixes if len(fixes) > 1)] if careful else [fixes]
+    for chosen in together:
+        text = apply_edits(source.text, tuple(edit for fix in chosen for edit in fix.edits))
+        if text != source.text:
+            changed = snapshot.with_texts({path: text})
+            if not careful or _errors(changed, path) <= _errors(snapshot, path):
+                return text, changed
+    return None
+
+
+def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
+    fixes: list[Fix] = []
+    made: list[TextEdit] = []  # sorted; none touches another one's fix
+    for diagnostic in snapshot.checker.diagnostics(path):
+        fix = choose(diagnostic)
+        if fix is not None and not any(_touches_one_of(made, edit) for edit in fix.edits):
+            fixes.append(fix)
+            for edit in fix.edits:
+                bisect.insort(made, edit)
+    return fixes
+
+
+def _errors(snapshot: Snapshot, path: str) -> int:
+    return sum(diagnostic.severity is Severity.ERROR for diagnostic in snapshot.checker.diagnostics(path))
+
+
+def _touches_one_of(made: list[TextEdit], edit: TextEdit) -> bool:
+    at = bisect.bisect(made, edit)
+    near = made[max(0, at - 1) : at + 1]
+    return any(each.span.start <= edit.span.end and edit.span.start <= each.span.end for each in near)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fixes that give a variable another type, where a value does not fit into the one that it has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Fix
+from roaml.expr.tree import Name
+from roaml.expr.types import INTEGER_RANGES
+from roaml.model.machine import Data
+from roaml.model.syntax import Expression
+from roaml.model.typing import TypedValue, Use
+from roaml.rules.rule import MachineContext
+from roaml.text import TextEdit
+
+
+def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
+    """The declaration of the variable that a value is for, if it is for a whole one."""
+    data = value.place.chart.data
+    if value.use is Use.INITIAL:
+        return next((each for each in data if each.element is value.element), None)
+    if value.use is not Use.ASSIGNED:
+        return None
+    for other in context.typed.values:
+        if other.use is Use.LOCATION and other.element is value.element and isinstance(other.value, Expression):
+            tree = other.value.tree
+            name = tree.name if isinstance(tree, Name) else ""
+            return next((each for each in data if each.id and each.id.value == name), None)
+    return None
+
+
+def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[Fix]:
+    """Declare the variable of a value with another base type."""
+    data = declared_for(context, value)
+    if data is not None and data.id is not None and data.type is not None and data.type.name is not None:
+        new = data.type.text.replace(data.type.name.base, type_, 1)
+        edit = TextEdit(data.type.span, new)
+        yield Fix(f"Declare `{data.id.value}` as {new}", (edit,), preferred=False)
+
+
+def wide_enough(number: int, type_: str) -> str | None:
+    """The smallest integer type that holds a number besides what `type_` holds, or at least the number."""
+    low, high = INTEGER_RANGES[type_]
+    like = sorted(INTEGER_RANGES, key=lambda name: name.startswith("int") is not type_.startswith("int"))
+    for least, most in ((min(low, number), max(high, number)), (number, number)):
+        for name in like:
+            if INTEGER_RANGES[name][0] <= least and most <= INTEGER_RANGES[name][1]:
+                return str(name)
+    return None

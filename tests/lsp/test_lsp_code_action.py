@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Code actions over standard input and output: of the kinds that are wanted, resolved when they are chosen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from client import Client, connect
+from lsprotocol import types
+from test_lsp_navigate import place
+
+from fixture import split_files
+
+WARNED = """\
+<!-- 🤖 --><ascxml name="A" version="1.0" initial="a">
+    <state id="a">
+        <transition event="e" target="a">
+            <log expr="1" />
+            <log expr="2" />
+        </transition>
+        <transition event="f" target="b" />
+    </state>
+</ascxml>
+"""
+SYSTEM = """\
+-- main.xml --
+<roaml>
+    <parameters><max_time value="1" unit="s" /></parameters>
+    <behavior_tree>
+        <input type="bt.cpp-xml" src="tree.xml" />
+    </behavior_tree>
+</roaml>
+-- tree.xml --
+<root BTCPP_format="4"><BehaviorTree ID="MainTree"><GoHome /></BehaviorTree></root>
+"""
+
+LAZY = types.ClientCapabilities(
+    text_document=types.TextDocumentClientCapabilities(
+        code_action=types.CodeActionClientCapabilities(
+            data_support=True, resolve_support=types.ClientCodeActionResolveOptions(["edit"])
+        )
+    ),
+    workspace=types.WorkspaceClientCapabilities(
+        workspace_edit=types.WorkspaceEditClientCapabilities(
+            document_changes=True,
+            resource_operations=[types.ResourceOperationKind.Create, types.ResourceOperationKind.Rename],
+        )
+    ),
+)
+
+
+async def ask(client: Client, path: Path, text: str, at: str, *only: str) -> list[types.CodeAction]:
+    """What is offered at a place, given as `place` takes it."""
+    position = place(path, text, at)[1]
+    context = types.CodeActionContext([], only=list(only) or None)
+    range_ = types.Range(position, position)
+    params = types.CodeActionParams(types.TextDocumentIdentifier(path.as_uri()), range_, context)
+    found = await client.text_document_code_action_async(params)
+    return [action for action in found or () if isinstance(action, types.CodeAction)]
+
+
+def applied(text: str, edits: list[types.TextEdit]) -> str:
+    """The text with edits in UTF-16 positions made."""
+    lines = text.splitlines(keepends=True)
+
+    def offset(position: types.Position) -> int:
+        before = "".join(lines[: position.line])
+        line = lines[position.line] if position.line < len(lines) else ""
+        units = line.encode("utf-16-le")[: 2 * position.character]
+        return len(before) + len(units.decode("utf-16-le"))
+
+    for edit in sorted(edits, key=lambda e: offset(e.range.start), reverse=True):
+        text = text[: offset(edit.range.start)] + edit.new_text + text[offset(edit.range.end) :]
+    return text
+
+
+def changed(action: types.CodeAction, path: Path, text: str) -> str:
+    assert action.edit is not None
+    assert action.edit.changes is not None
+    return applied(text, list(action.edit.changes[path.as_uri()]))
+
+
+async def test_a_client_that_does_not_resolve_gets_the_edits(tmp_path: Path) -> None:
+    path = tmp_path / "a.ascxml"
+    async with connect(tmp_path) as client:
+        client.open(path, WARNED)
+        found = await ask(client, path, WARNED, 'target="|b"')
+        added = next(action for action in found if action.title == "Add the state `b`")
+        assert added.kind == "quickfix"
+        assert added.is_preferred
+        assert [d.code for d in added.diagnostics or ()] == ["undefined-state"]
+        assert changed(added, path, WARNED) == WARNED.replace("</state>", '</state>\n    <state id="b" />')
+
+
+async def test_edits_are_made_when_an_action_is_resolved(tmp_path: Path) -> None:
+    """Against the text as it is then."""
+    path = tmp_path / "a.ascxml"
+    async with connect(tmp_path, capabilities=LAZY) as client:
+        client.open(path, WARNED)
+        found = await ask(client, path, WARNED, "<l|og", "quickfix")
+        assert [action.title for action in found] == ["Remove `<log>`", "Fix all `ignored-element` in this file"]
+        assert all(action.edit is None and action.data is not None for action in found)
+        resolved = await client.code_action_resolve_async(found[1])
+        assert "<log" not in changed(resolved, path, WARNED)
+        later = WARNED.replace('<log expr="2" />', '<log expr="23" />')
+        client.replace(path, later)
+        one = changed(await client.code_action_resolve_async(found[0]), path, later)
+        assert one == later.replace('            <log expr="1" />\n', "")
+        client.replace(path, WARNED.replace("<log", "<asign"), 3)
+        gone = await client.code_action_resolve_async(found[0])
+        assert gone.edit is None
+
+
+async def test_only_what_is_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "a.ascxml"
+    async with connect(tmp_path, capabilities=LAZY) as client:
+        client.open(path, WARNED)
+        whole = await ask(client, path, WARNED, "|<!--", "source.fixAll")
+        assert [(action.kind, action.title) for action in whole] == [
+            ("source.fixAll.as2fm", "Make all safe fixes in this file")
+        ]
+        resolved = await client.code_action_resolve_async(whole[0])
+        assert "<log" not in changed(resolved, path, WARNED)
+        assert await ask(client, path, WARNED, "<l|og", "refactor") == []
+        assert {action.kind for action in await ask(client, path, WARNED, "<l|og")} == {"quickfix"}
+
+
+async def test_a_new_plugin(tmp_path: Path) -> None:
+    for name, text in split_files(SYSTEM).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    tree = tmp_path / "tree.xml"
+    text = tree.read_text(encoding="utf-8")
+    title = "Create the plugin `GoHome` in `go_home.ascxml`"
+    async with connect(tmp_path, capabilities=LAZY) as client:
+        client.open(tree, language="xml")
+        found = await ask(client, tree, text, "<Go|Home", "refactor.extract")
+        assert [action.title for action in found] == [title]
+        edit = (await client.code_action_resolve_async(found[0])).edit
+        assert edit is not None
+        create, content, listing = edit.document_changes or ()
+        new = tmp_path / "go_home.ascxml"
+        assert isinstance(create, types.CreateFile)
+        assert create.uri == new.as_uri()
+        assert isinstance(content, types.TextDocumentEdit)
+        assert isinstance(listing, types.TextDocumentEdit)
+        new.write_text(applied("", [e for e in content.edits if isinstance(e, types.TextEdit)]), encoding="utf-8")
+        main = tmp_path / "main.xml"
+        edits = [e for e in listing.edits if isinstance(e, types.TextEdit)]
+        main.write_text(applied(main.read_text(encoding="utf-8"), edits), encoding="utf-8")
+        client.changed(new, kind=types.FileChangeType.Created)
+        client.changed(main)
+        await client.until_codes(tree)
+
+
+async def test_files_are_made_for_clients_that_can(tmp_path: Path) -> None:
+    for name, text in split_files(SYSTEM).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    tree = tmp_path / "tree.xml"
+    async with connect(tmp_path) as client:
+        client.open(tree, language="xml")
+        found = await ask(client, tree, tree.read_text(encoding="utf-8"), "<Go|Home")
+        assert not [action.title for action in found if action.title.startswith("Create")]
+
+
+async def test_an_action_of_nobody(tmp_path: Path) -> None:
+    """What a client makes up is given back as it is."""
+    async with connect(tmp_path, capabilities=LAZY) as client:
+        for data in (None, 3, {"uri": "file:///nowhere"}, {"uri": "file:///nowhere", "start": "x", "end": 1}):
+            action = types.CodeAction("Do it", kind="quickfix", data=data)
+            assert (await client.code_action_resolve_async(action)).edit is None

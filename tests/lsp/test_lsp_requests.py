@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Requests that are not wanted any more, work that is shown, and what is agreed on with the client."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+from client import Client, connect, frame, start_raw
+from lsprotocol import types
+from pygls.exceptions import JsonRpcContentModified, JsonRpcRequestCancelled
+
+import clock
+from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.requests import Requests
+from bench.generate import machine, write_system
+
+LONG = machine(0, 2, 2500)
+"""A machine that takes a good while to be checked: what is sent right behind is read before it is done."""
+
+CANCELLED, MODIFIED = -32800, -32801
+
+
+async def answers(*messages: tuple[str, object, int | None], **capabilities: object) -> dict[object, dict[str, object]]:
+    """What is answered to messages that are sent at once, behind a request that takes long (with the id 9)."""
+    server = await start_raw()
+    server.tell(
+        "initialize", {"processId": None, "capabilities": {"textDocument": {"diagnostic": {}}, **capabilities}}, 1
+    )
+    server.tell("initialized", {})
+    document = {"uri": "untitled:long", "languageId": "ascxml", "version": 1, "text": LONG}
+    server.tell("textDocument/didOpen", {"textDocument": document})
+    server.tell("textDocument/diagnostic", {"textDocument": {"uri": "untitled:long"}}, 9)
+    for method, params, id_ in messages:
+        server.tell(method, params, id_)
+    server.tell("shutdown", None, 2)
+    server.tell("exit")
+    status, found, log = await server.end()
+    assert (status, log) == (0, "")
+    return {message["id"]: message for message in found if "id" in message and "method" not in message}
+
+
+def code(answer: dict[str, object]) -> object:
+    error = answer.get("error")
+    return error["code"] if isinstance(error, dict) else None
+
+
+OF_LONG = {"textDocument": {"uri": "untitled:long"}}
+TOKENS = "textDocument/semanticTokens/full"
+CHANGE = {"textDocument": {"uri": "untitled:long", "version": 2}, "contentChanges": [{"text": "<ascxml/>"}]}
+
+
+async def test_cancelled_before_it_has_begun() -> None:
+    found = await answers(
+        ("textDocument/foldingRange", OF_LONG, 10),
+        (TOKENS, OF_LONG, "eleven"),
+        ("$/cancelRequest", {"id": 10}, None),
+        ("$/cancelRequest", {"id": "eleven"}, None),
+        ("textDocument/foldingRange", OF_LONG, 12),
+    )
+    assert [code(found[id_]) for id_ in (9, 10, "eleven", 12)] == [None, CANCELLED, CANCELLED, None]
+    assert found[12]["result"]
+
+
+async def test_cancelled_while_it_runs() -> None:
+    found = await answers(("$/cancelRequest", {"id": 9}, None), ("textDocument/foldingRange", OF_LONG, 10))
+    assert [code(found[id_]) for id_ in (9, 10)] == [CANCELLED, None]
+
+
+async def test_cancelled_when_it_is_answered() -> None:
+    found = await answers(
+        ("textDocument/foldingRange", OF_LONG, 10),
+        ("textDocument/foldingRange", {"textDocument": {"uri": "untitled:none"}}, 11),
+        ("$/cancelRequest", {"id": 9999}, None),
+    )
+    assert [code(found[id_]) for id_ in (9, 10, 11)] == [None, None, None]
+
+
+@pytest.mark.parametrize(("again", "expected"), [([TOKENS], MODIFIED), (["textDocument/hover"], None), (None, None)])
+async def test_a_text_that_is_about_to_change(again: list[str] | None, expected: int | None) -> None:
+    """Only who says that it asks again is told to."""
+    support = {"cancel": True, "retryOnContentModified": again}
+    general = {} if again is None else {"general": {"staleRequestSupport": support}}
+    found = await answers(
+        (TOKENS, OF_LONG, 10), ("textDocument/didChange", CHANGE, None), (TOKENS, OF_LONG, 11), **general
+    )
+    assert code(found[10]) == expected
+    assert found[11]["result"] != found[10].get("result")
+
+
+async def test_a_cancelled_translation_writes_nothing(tmp_path: Path) -> None:
+    main = clock.write(tmp_path)
+    command = {"command": "as2fm.translateToJani", "arguments": [main.as_uri()]}
+    found = await answers(("workspace/executeCommand", command, 10), ("$/cancelRequest", {"id": 10}, None))
+    assert code(found[10]) == CANCELLED
+    assert not main.with_suffix(".jani").exists()
+
+
+async def test_what_cannot_be_understood_is_answered() -> None:
+    server = await start_raw()
+    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
+    server.tell("textDocument/hover", {"textDocument": 5}, 10)
+    server.tell("textDocument/hover", None, 11)
+    server.tell("shutdown", None, 2)
+    server.tell("exit")
+    _, messages, _ = await server.end()
+    found = {message["id"]: message for message in messages}
+    assert [code(found[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
+
+
+async def test_a_refusal_is_no_failure_of_ours(tmp_path: Path) -> None:
+    """The log stays empty."""
+    main = clock.write(tmp_path)
+    server = await start_raw()
+    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
+    params = {"textDocument": {"uri": main.as_uri()}, "position": {"line": 0, "character": 0}, "newName": "x"}
+    server.tell("textDocument/rename", params, 10)
+    server.tell("no/such", {}, 11)
+    server.tell("shutdown", None, 2)
+    server.tell("exit")
+    _, messages, log = await server.end()
+    assert [code(message) for message in messages] == [None, -32803, -32601, None]
+    assert log == ""
+
+
+# ------------------------------------------------------------------ checkpoints
+
+
+def guarded(inbox: Inbox, handler: Callable[[Requests], object], again: frozenset[str] = frozenset()) -> object:
+    """What a handler of a request with the id 7 answers, which the client sends while it runs."""
+    requests = Requests(inbox, lambda: 7)
+    requests.asked_again = again
+
+    def handle(_: types.HoverParams) -> object:
+        return handler(requests)
+
+    params = types.HoverParams(types.TextDocumentIdentifier("untitled:1"), types.Position(0, 0))
+    return requests.guarded("textDocument/hover", handle)(params)
+
+
+def sends(inbox: Inbox, method: str, params: object) -> None:
+    inbox.put(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}).encode())
+
+
+def test_checkpoints() -> None:
+    inbox = Inbox()
+
+    def handler(requests: Requests) -> str:
+        requests.checkpoint()
+        sends(inbox, "$/cancelRequest", {"id": 8})
+        sends(inbox, "textDocument/didChange", {"textDocument": {"uri": "untitled:1"}})
+        requests.checkpoint()
+        sends(inbox, "$/cancelRequest", {"id": 7})
+        requests.checkpoint()
+        return "done"
+
+    with pytest.raises(JsonRpcRequestCancelled):
+        guarded(inbox, handler)
+    assert not inbox.is_cancelled(7), "the id is forgotten"
+    with pytest.raises(JsonRpcContentModified):
+        guarded(inbox, Requests.checkpoint, frozenset(["textDocument/hover"]))
+
+
+def test_checkpoints_of_work_that_nobody_asked_for() -> None:
+    inbox = Inbox()
+    sends(inbox, "$/cancelRequest", {"id": 7})
+    Requests(inbox, lambda: None).checkpoint()
+
+
+# --------------------------------------------------------------------- progress
+
+SHOWS = types.ClientCapabilities(window=types.WindowClientCapabilities(work_done_progress=True))
+
+
+async def until(reached: Callable[[], object]) -> None:
+    for _ in range(60_000):
+        if reached():
+            return
+        await asyncio.sleep(0.001)
+    raise AssertionError("it does not come")
+
+
+def titles(client: Client) -> list[str]:
+    begun = (report for reports in client.progress_reports.values() for report in reports)
+    return [report.title for report in begun if isinstance(report, types.WorkDoneProgressBegin)]
+
+
+def is_over(reports: Sequence[object]) -> bool:
+    return bool(reports) and isinstance(reports[-1], types.WorkDoneProgressEnd)
+
+
+async def test_the_user_cancels_a_translation(tmp_path: Path) -> None:
+    main = write_system(tmp_path, 80)
+    async with connect(capabilities=SHOWS) as client:
+        params = types.ExecuteCommandParams("as2fm.translateToJani", [main.as_uri()])
+        answer = asyncio.ensure_future(client.workspace_execute_command_async(params))
+        await until(lambda: titles(client))
+        (token,) = client.progress_reports
+        client.window_work_done_progress_cancel(types.WorkDoneProgressCancelParams(token))
+        assert await answer is None
+        assert isinstance(client.progress_reports[token][-1], types.WorkDoneProgressEnd)
+        assert client.messages == []
+    assert not main.with_suffix(".jani").exists()
+    assert len(list(tmp_path.iterdir())) == 80
+
+
+async def test_a_long_check_is_shown(tmp_path: Path) -> None:
+    write_system(tmp_path, 120)
+    async with connect(tmp_path, capabilities=SHOWS) as client:
+        await until(
+            lambda: any(r and isinstance(r[-1], types.WorkDoneProgressEnd) for r in client.progress_reports.values())
+        )
+        assert titles(client) == ["Checking models"]
+        (reports,) = client.progress_reports.values()
+    shares = [each.percentage for each in reports[1:-1]]
+    assert shares == sorted(set(shares))
+    assert 0 < shares[0] < shares[-1] <= 100
+
+
+async def test_a_short_check_is_not_shown(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    async with connect(tmp_path, capabilities=SHOWS) as client:
+        await client.until_codes(tmp_path / "clock.ascxml", "undeclared-variable")
+        client.open(tmp_path / "clock.ascxml")
+        client.replace(tmp_path / "clock.ascxml", clock.CLOCK)
+        await client.until_codes(tmp_path / "clock.ascxml")
+        assert titles(client) == []
+
+
+# -------------------------------------------------------------------- agreements
+
+UNITS = {"utf-8": 6, "utf-16": 3, "utf-32": 2}
+"""How many units a robot and an accented letter have."""
+
+
+@pytest.mark.parametrize("encoding", UNITS)
+async def test_position_encodings(tmp_path: Path, encoding: str) -> None:
+    line = '<assign location="coutn"'
+    clock.write(tmp_path)
+    path = tmp_path / "clock.ascxml"
+    text = clock.CLOCK.replace('<assign location="count"', f"<!-- 🤖é -->{line}")
+    ours = types.PositionEncodingKind(encoding)
+    general = types.GeneralClientCapabilities(position_encodings=[ours])
+    async with connect(tmp_path, capabilities=types.ClientCapabilities(general=general)) as client:
+        client.open(path, text)
+        (found,) = await client.until_codes(path, "undeclared-variable")
+        before = len("            <!--  -->") + UNITS[encoding] + len('<assign location="')
+        assert found.range == types.Range(types.Position(8, before), types.Position(8, before + 5))
+        client.edit(path, types.TextDocumentContentChangePartial(found.range, "count"))
+        await client.until_codes(path)
+
+
+@pytest.mark.parametrize("offers", [["utf-7", "utf-8", "utf-16"], ["utf-7"]], ids=["some", "none"])
+async def test_encodings_that_we_do_not_know(offers: list[str]) -> None:
+    server = await start_raw()
+    server.send(
+        frame(
+            {
+                "jsonrpc": "2.0",
+                "id": 1,
+                "method": "initialize",
+                "params": {"processId": None, "capabilities": {"general": {"positionEncodings": offers}}},
+            }
+        )
+    )
+    server.tell("shutdown", None, 2)
+    server.tell("exit")
+    _, (answer, _), _ = await server.end()
+    expected = "utf-8" if "utf-8" in offers else "utf-16"
+    assert answer["result"]["capabilities"]["positionEncoding"] == expected  # type: ignore[index]
+
+
+async def test_settings_change_while_it_runs(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    path = tmp_path / "clock.ascxml"
+    async with connect(tmp_path, settings={}) as client:
+        await client.until_codes(path, "undeclared-variable")
+        client.set_configuration({"as2fm": {"severity": {"undeclared-variable": "hint"}}})
+        client.workspace_did_change_configuration(types.DidChangeConfigurationParams(None))
+        await client.until(lambda: _severities(client, path) == [types.DiagnosticSeverity.Hint])
+        client.set_configuration({"as2fm": {"ignore": ["undeclared-variable"]}})
+        client.workspace_did_change_configuration(types.DidChangeConfigurationParams(None))
+        await client.until_codes(path)
+
+
+def _severities(client: Client, path: Path) -> list[types.DiagnosticSeverity | None]:
+    return [each.severity for each in client.published[path.as_uri()].diagnostics]
+
+
+async def test_settings_that_are_sent(tmp_path: Path) -> None:
+    """By a client that cannot be asked for them."""
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    path = tmp_path / "clock.ascxml"
+    async with connect(tmp_path) as client:
+        await client.until_codes(path, "undeclared-variable")
+        settings = {"as2fm": {"ignore": ["undeclared-variable"]}}
+        client.workspace_did_change_configuration(types.DidChangeConfigurationParams(settings))
+        await client.until_codes(path)
+        client.workspace_did_change_configuration(types.DidChangeConfigurationParams({"as2fm": {}}))
+        await client.until_codes(path, "undeclared-variable")
+
+
+async def test_a_configuration_file_that_changes(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    path, configuration = tmp_path / "clock.ascxml", tmp_path / "as2fm.toml"
+    async with connect(tmp_path) as client:
+        await client.until_codes(path, "undeclared-variable")
+        configuration.write_text('ignore = ["undeclared-variable"]\n')
+        client.changed(configuration, kind=types.FileChangeType.Created)
+        await client.until_codes(path)
+        configuration.unlink()
+        client.changed(configuration, kind=types.FileChangeType.Deleted)
+        await client.until_codes(path, "undeclared-variable")

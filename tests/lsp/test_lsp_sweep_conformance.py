@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything the server offers, asked at some places of some conformance models; `sweep.py` asks at all."""
+
+from __future__ import annotations
+
+from random import Random
+
+from lsp_sweep import Sweep, some_places
+
+import conformance
+
+SEED = 4
+SYSTEMS = 6
+PLACES = 6
+
+
+def test_sample() -> None:
+    for main in sorted(Random(SEED).sample(conformance.systems(), SYSTEMS)):
+        sweep = Sweep(main, (str(conformance.INTERFACES),), some_places(SEED, PLACES))
+        assert list(sweep.failures()) == [], main

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models typed from nothing, character by character, with everything asked that an editor asks after each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bench.server import is_answer, started
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "delivery_robot"
+TYPED = ("main.xml", "tree.xml", "nodes/building.ascxml", "plugins/charge.ascxml", "properties.jani")
+
+
+@pytest.mark.parametrize("name", TYPED)
+def test_typed(name: str) -> None:
+    path = EXAMPLE / name
+    text = path.read_text(encoding="utf-8")
+    uri = path.as_uri()
+    with started() as server:
+        server.initialize(EXAMPLE, capabilities={"textDocument": {"diagnostic": {}}})
+        asked = [
+            method
+            for method, capability in (
+                ("textDocument/completion", "completionProvider"),
+                ("textDocument/diagnostic", "diagnosticProvider"),
+                ("textDocument/documentSymbol", "documentSymbolProvider"),
+            )
+            if capability in server.capabilities
+        ]
+        assert "textDocument/diagnostic" in asked
+        server.open(path, "")
+        line = column = 0
+        last: dict[str, object] = {}
+        for number, character in enumerate(text):
+            start = {"line": line, "character": column}
+            server.change(path, number + 2, {"range": {"start": start, "end": start}, "text": character})
+            line, column = (line + 1, 0) if character == "\n" else (line, column + 1)
+            ids = range(10 + number * 10, 10 + number * 10 + len(asked))
+            for id_, method in zip(ids, asked, strict=True):
+                params = {"textDocument": {"uri": uri}, "position": {"line": line, "character": column}}
+                server.tell(method, params, id_)
+            for _, answer in server.wait_for_all(*map(is_answer, ids)):
+                assert "error" not in answer, (text[: number + 1][-80:], answer["error"])
+                last[asked[answer["id"] - ids.start]] = answer["result"]
+        typed = last["textDocument/diagnostic"]
+        server.change(path, len(text) + 2, {"text": text})
+        server.tell("textDocument/diagnostic", {"textDocument": {"uri": uri}}, 1)
+        whole = server.answer(1)[1]["result"]
+    assert isinstance(typed, dict)
+    assert typed["items"] == whole["items"] == []
