@@ -31,7 +31,7 @@ def extensions() -> list[Extension]:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    flags = [] if os.name == "nt" else ["-O3", "-fwrapv"]
+    flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv"]
     kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags)
     (made,) = cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython", quiet=True)
     made.optional = True  # Cython does not keep that of `kernel`.
