@@ -208,11 +208,19 @@ def _plain(value: Plain) -> str:
         case bool():
             return "true" if value else "false"
         case list():
-            return f"[{', '.join(map(_plain, value))}]"
+            return _text(value) or f"[{', '.join(map(_plain, value))}]"
         case float():
             return f"{value:g}"
         case _:
             return str(value)
+
+
+def _text(value: list[Plain]) -> str:
+    """A string, which JANI has as an array of bytes filled up with zeros; "" if it is none."""
+    while value and value[-1] == 0:
+        value = value[:-1]
+    printable = all(isinstance(each, int) and 32 <= each < 127 for each in value)
+    return repr("".join(chr(each) for each in value if isinstance(each, int))) if value and printable else ""
 
 
 def _short(text: str) -> str:
@@ -221,4 +229,7 @@ def _short(text: str) -> str:
 
 def _escaped(text: str) -> str:
     """Mermaid ends a line at `;` and takes `#` for the start of a character's number."""
-    return text.replace("#", "#35;").replace(";", "#59;").replace("%%", "%").replace(":", "#58;")
+    return text.translate(_CODES)
+
+
+_CODES = {ord(character): f"#{ord(character)};" for character in "#;:%"}
