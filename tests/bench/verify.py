@@ -146,7 +146,7 @@ def confidences() -> dict[float, tuple[int, float]]:
     main = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
     found = {}
     for confidence in CONFIDENCES:
-        options = ("--property", "recovers_or_succeeds", "--confidence", str(confidence), "--jobs", "1")
+        options = ("--property", "block_placed", "--confidence", str(confidence), "--jobs", "1")
         (result,) = json.loads(call(main, *options).output)["results"]
         found[confidence] = (result["traces"], result["seconds"])
     return found
@@ -162,7 +162,7 @@ def confidence() -> list[Row]:
 
 def workers() -> list[Row]:
     main = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
-    options = ("--property", "recovers_or_succeeds", "--method", "fixed", "--max-traces", "400000", "--jobs")
+    options = ("--property", "block_placed", "--method", "fixed", "--max-traces", "400000", "--jobs")
     took = [json.loads(call(main, *options, jobs).output)["results"][0]["seconds"] for jobs in ("1", "2")]
     value = f"{took[0] / took[1]:.2f} times as fast"
     return [Row("two workers", value, "nearly 2", f"400,000 traces: {seconds(took[0])} and {seconds(took[1])}")]
@@ -170,7 +170,7 @@ def workers() -> list[Row]:
 
 def million() -> list[Row]:
     main = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
-    options = ("--property", "recovers_or_succeeds", "--method", "fixed", "--max-traces", "1000000")
+    options = ("--property", "block_placed", "--method", "fixed", "--max-traces", "1000000")
     with tempfile.TemporaryDirectory() as folder:
         cost = call(main, *options, "--resume", str(Path(folder, "state.json")), "--jobs", "1")
     value = f"{seconds(cost.wall)}, {megabytes(cost.memory)}"
