@@ -194,6 +194,11 @@ class Session:
         outside = [root for root in roots if not is_inside(root, folder)]
         return tuple(filter(os.path.isabs, dict.fromkeys((folder, *outside, *self._folders))))
 
+    def settings_of(self, path: str) -> Settings:
+        """The settings that a file is checked with."""
+        near = [folder for folder in self._folders if is_inside(path, folder)]
+        return self._settings(max(near, key=len) if near else _surroundings(path))
+
     def _settings(self, folder: str) -> Settings:
         """The configuration in a folder, with the client's settings added."""
         settings, problems = find_settings(folder) if os.path.isabs(folder) else (Settings(), ())

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from as2fm_lsp.handlers import (
+    about,
     call_hierarchy,
     code_action,
     code_lens,
@@ -13,7 +14,10 @@ from as2fm_lsp.handlers import (
     formatting,
     hover,
     inlay_hint,
+    migrate,
     navigate,
+    pictures,
+    plain_scxml,
     rename,
     semantic_tokens,
     signature_help,
@@ -29,6 +33,7 @@ if TYPE_CHECKING:
 
 
 _FEATURES = (
+    about,
     call_hierarchy,
     code_action,
     code_lens,
@@ -36,7 +41,10 @@ _FEATURES = (
     formatting,
     hover,
     inlay_hint,
+    migrate,
     navigate,
+    pictures,
+    plain_scxml,
     rename,
     semantic_tokens,
     signature_help,

@@ -11,24 +11,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 from xml.sax.saxutils import escape
 
 from roaml.expr.format import format_expr
 from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Send, State, Target, Transition
+from roaml.text import Location
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 NOBODY = "NONE"
 DRAWN = "__RAND__"
 _INDENT = "    "
 
-Lines = Iterator[str]
+
+class Line(NamedTuple):
+    """A line without its end, and the place in the models that it exists for."""
+
+    text: str
+    origin: Location
+
+
+Lines = Iterator[Line]
 
 
 def write(network: Network) -> Iterator[tuple[str, str]]:
     """(automaton name, text of its document) for each automaton, in order."""
+    for automaton, lines in write_lines(network):
+        yield automaton.name, "".join(f"{line.text}\n" for line in lines)
+
+
+def write_lines(network: Network) -> Iterator[tuple[Automaton, Lines]]:
+    """The same line by line, each with its origin."""
     receivers = _receivers(network)
     for automaton in network.automata:
-        yield automaton.name, "".join(f"{line}\n" for line in _Writer(automaton, receivers).document())
+        yield automaton, _Writer(automaton, receivers).document()
 
 
 def _receivers(network: Network) -> dict[str, list[str]]:
@@ -59,50 +75,54 @@ class _Writer:
             datamodel="ecmascript",
             initial=automaton.initial,
         )
-        yield f"<scxml{root}>"
-        yield from _indented(_element("datamodel", {}, self.datamodel()))
+        yield Line(f"<scxml{root}>", automaton.origin)
+        yield from _indented(_element("datamodel", {}, self.datamodel(), automaton.origin))
         for state in automaton.states:
             yield from _indented(self.state(state))
-        yield "</scxml>"
+        yield Line("</scxml>", automaton.origin)
 
     def datamodel(self) -> Lines:
         for data in self.automaton.data:
             yield from _data(data)
         if self.draws:
-            yield f"<!-- TYPE {self.drawn}:float64 -->"
-            yield f"<data{_attributes(id=self.drawn, expr='0.0')}/>"
+            yield Line(f"<!-- TYPE {self.drawn}:float64 -->", self.automaton.origin)
+            yield Line(f"<data{_attributes(id=self.drawn, expr='0.0')}/>", self.automaton.origin)
 
     # ------------------------------------------------------------------- states
 
     def state(self, state: State) -> Lines:
         drawing: list[tuple[str, Transition]] = []
-        lines = [*_element("onentry", {}, self.body(state.entry)), *_element("onexit", {}, self.body(state.exit))]
+        lines = [
+            *_element("onentry", {}, self.body(state.entry), state.origin),
+            *_element("onexit", {}, self.body(state.exit), state.origin),
+        ]
         for transition in state.transitions:
             if len(transition.targets) == 1:
                 lines += self.transition(transition.event, _cond(transition), transition.targets[0])
             else:
                 drawing.append((_fresh(f"{state.id}_draw_{len(drawing) + 1}", self.ids), transition))
                 self.ids.add(drawing[-1][0])
-                lines += _element(
-                    "transition", {"event": transition.event, "cond": _cond(transition), "target": drawing[-1][0]}, ()
-                )
-        yield from _element("state", {"id": state.id}, lines, always=True)
+                attributes = {"event": transition.event, "cond": _cond(transition), "target": drawing[-1][0]}
+                lines += _element("transition", attributes, (), transition.origin)
+        yield from _element("state", {"id": state.id}, lines, state.origin, always=True)
         for identifier, transition in drawing:
             yield from self.draw(identifier, transition)
 
     def draw(self, identifier: str, transition: Transition) -> Lines:
         """The state in which it is decided which of several targets is taken."""
-        lines = [*_element("onentry", {}, (f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>",))]
+        origin = transition.origin
+        assign = Line(f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>", origin)
+        lines = [*_element("onentry", {}, (assign,), origin)]
         bound = 0.0
         for target in transition.targets[:-1]:
             bound += target.probability
             lines += self.transition("", f"{self.drawn} < {bound:.15g}", target)
         lines += self.transition("", "", transition.targets[-1])
-        yield from _element("state", {"id": identifier}, lines)
+        yield from _element("state", {"id": identifier}, lines, origin)
 
     def transition(self, event: str, cond: str, target: Target) -> Lines:
         attributes = {"event": event, "cond": cond, "target": target.state}
-        yield from _element("transition", attributes, self.body(target.body), always=True)
+        yield from _element("transition", attributes, self.body(target.body), target.origin, always=True)
 
     # ------------------------------------------------------------------- bodies
 
@@ -111,7 +131,7 @@ class _Writer:
             match statement:
                 case Assign():
                     location, value = format_expr(statement.location), format_expr(statement.value)
-                    yield f"<assign{_attributes(location=location, expr=value)}/>"
+                    yield Line(f"<assign{_attributes(location=location, expr=value)}/>", statement.origin)
                 case Send():
                     yield from self.send(statement)
                 case If():
@@ -119,27 +139,29 @@ class _Writer:
 
     def send(self, statement: Send) -> Lines:
         params = [
-            f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>" for param in statement.params
+            Line(f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>", param.origin)
+            for param in statement.params
         ]
         for target in self.receivers.get(statement.event, (NOBODY,)):
-            yield from _element("send", {"event": statement.event, "target": target}, params, always=True)
+            attributes = {"event": statement.event, "target": target}
+            yield from _element("send", attributes, params, statement.origin, always=True)
 
     def choice(self, statement: If) -> Lines:
         first, *others = statement.branches
-        yield f"<if{_attributes(cond=format_expr(first.cond))}>"
+        yield Line(f"<if{_attributes(cond=format_expr(first.cond))}>", statement.origin)
         yield from _indented(self.body(first.body))
         for branch in others:
-            yield f"<elseif{_attributes(cond=format_expr(branch.cond))}/>"
+            yield Line(f"<elseif{_attributes(cond=format_expr(branch.cond))}/>", branch.origin)
             yield from _indented(self.body(branch.body))
         if statement.otherwise:
-            yield "<else/>"
+            yield Line("<else/>", statement.origin)
             yield from _indented(self.body(statement.otherwise))
-        yield "</if>"
+        yield Line("</if>", statement.origin)
 
 
 def _data(data: Data) -> Lines:
-    yield f"<!-- TYPE {data.id}:{data.type} -->"
-    yield f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>"
+    yield Line(f"<!-- TYPE {data.id}:{data.type} -->", data.origin)
+    yield Line(f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>", data.origin)
 
 
 def _cond(transition: Transition) -> str:
@@ -153,15 +175,17 @@ def _fresh(wanted: str, taken: Iterable[str]) -> str:
     return wanted
 
 
-def _element(name: str, attributes: Mapping[str, str], content: Iterable[str], always: bool = False) -> Lines:
+def _element(
+    name: str, attributes: Mapping[str, str], content: Iterable[Line], origin: Location, always: bool = False
+) -> Lines:
     """An element; one without content or attributes is left out unless `always`."""
     start, lines = f"<{name}{_attributes(**attributes)}", list(content)
     if lines:
-        yield f"{start}>"
+        yield Line(f"{start}>", origin)
         yield from _indented(lines)
-        yield f"</{name}>"
+        yield Line(f"</{name}>", origin)
     elif always or attributes:
-        yield f"{start}/>"
+        yield Line(f"{start}/>", origin)
 
 
 def _attributes(**attributes: str) -> str:
@@ -172,5 +196,5 @@ def _attributes(**attributes: str) -> str:
 _QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 
-def _indented(lines: Iterable[str]) -> Lines:
-    return (f"{_INDENT}{line}" for line in lines)
+def _indented(lines: Iterable[Line]) -> Lines:
+    return (Line(f"{_INDENT}{line.text}", line.origin) for line in lines)

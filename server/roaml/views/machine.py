@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.model.machine import Chart, Handler, Machine
+from roaml.model.machine import Chart, Handler, Machine, Target
 from roaml.views.graph import Graph, Kind, Link, Node
 
 
@@ -29,18 +29,22 @@ def _chart(chart: Chart, title: str) -> Graph:
 
 
 def _links(source: str, handler: Handler) -> Iterator[Link]:
-    label = _trigger(handler)
+    label = trigger_label(handler)
     for target in handler.targets:
-        if target.state is None:
-            continue
-        chance = [f"p = {target.probability.value}"] if target.probability else []
-        if handler.is_probabilistic and not chance:
-            chance = ["otherwise"]
-        yield Link(source, target.state.value, (*label, *chance))
+        if target.state is not None:
+            yield Link(source, target.state.value, (*label, *chance_label(handler, target)))
 
 
-def _trigger(handler: Handler) -> list[str]:
+def trigger_label(handler: Handler) -> tuple[str, ...]:
+    """What a transition waits for, and its condition: a line for each."""
     words = [handler.element.name.removeprefix("ros_").removeprefix("bt_")] if handler.trigger != "event" else []
     words += [name.value for name in (handler.event, handler.handle, handler.child) if name]
     lines = [" ".join(words)] if handler.trigger else []
-    return [*lines, *([f"[{' '.join(handler.cond.text.split())}]"] if handler.cond else [])]
+    return (*lines, *([f"[{' '.join(handler.cond.text.split())}]"] if handler.cond else []))
+
+
+def chance_label(handler: Handler, target: Target) -> tuple[str, ...]:
+    """How likely one of several targets is; nothing if there is but one."""
+    if target.probability:
+        return (f"p = {target.probability.value}",)
+    return ("otherwise",) if handler.is_probabilistic else ()

@@ -18,10 +18,18 @@ def tree_graph(system: System) -> Graph:
 
 
 def _node(instance: Instance) -> Node:
-    title = instance.plugin if instance.name == instance.plugin else f"{instance.name} : {instance.plugin}"
-    ports = tuple(
+    return Node(str(instance.number), (title_of(instance), *ports_of(instance), str(instance.number)))
+
+
+def title_of(instance: Instance) -> str:
+    """The node's name, if it has one of its own, and its plugin."""
+    return instance.plugin if instance.name == instance.plugin else f"{instance.name} : {instance.plugin}"
+
+
+def ports_of(instance: Instance) -> tuple[str, ...]:
+    """What each port holds, in one line for each."""
+    return tuple(
         f"{key} = {value.text if isinstance(value, Constant) else f'{{{value.variable}}}'}"
         for key, value in instance.ports
         if key not in _OWN
     )
-    return Node(str(instance.number), (title, *ports, str(instance.number)))

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm/migrate`: moves a system to the current dialect, as an edit and a list of what it changes.
+
+What stands on the disk is migrated: the client saves first.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, TypedDict
+
+from lsprotocol import types
+
+from roaml import api
+from roaml.project.migrate import Migration
+from roaml.text import SourceFile, Span
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+METHOD = "as2fm/migrate"
+
+
+class Migrated(TypedDict):
+    """`files` tells which ones change and are renamed. `problem` tells why nothing can be done; else it is empty."""
+
+    edit: types.WorkspaceEdit | None
+    files: list[str]
+    problem: str
+
+
+def shown(migration: Migration, system: str) -> str:
+    """A file as its system would name it, with its new name."""
+    names = (os.path.relpath(path, os.path.dirname(system)) for path in (migration.path, migration.new_path))
+    return " → ".join(dict.fromkeys(names))
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.feature(METHOD)
+    def migrate(params: Any) -> Migrated:
+        path = session.convert.path(params.textDocument.uri)
+        try:
+            migrations = api.migrate([path], settings=session.settings_of(path))
+        except api.PathError as error:
+            return {"edit": None, "files": [], "problem": str(error)}
+        taken = [each.new_path for each in migrations if each.new_path != each.path and os.path.exists(each.new_path)]
+        if taken:
+            return {"edit": None, "files": [], "problem": f"{taken[0]}: there is such a file already"}
+        changes = [change for migration in migrations for change in edits(migration)]
+        edit = types.WorkspaceEdit(document_changes=changes)
+        return {
+            "edit": edit if migrations else None,
+            "files": [shown(each, path) for each in migrations],
+            "problem": "",
+        }
+
+    def edits(migration: Migration) -> list[types.TextDocumentEdit | types.RenameFile]:
+        uri = session.convert.uri(migration.path)
+        source = SourceFile(migration.path, migration.before)
+        whole = session.convert.range(source, Span(0, len(source.text)))
+        found: list[types.TextDocumentEdit | types.RenameFile] = []
+        if migration.after != migration.before:
+            edit = types.TextEdit(whole, migration.after)
+            found.append(types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri), [edit]))
+        if migration.new_path != migration.path:
+            new = session.convert.uri(migration.new_path)
+            found.append(types.RenameFile(uri, new))
+        return found

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm/picture`: a machine, the behavior tree or the ROS graph, to be drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from roaml.ide.pictures import Picture, machine_picture, ros_picture, tree_picture
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+METHOD = "as2fm/picture"
+
+_PICTURES = {"machine": machine_picture, "tree": tree_picture, "ros": ros_picture}
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    def place(analysis: Analysis, location: Location | None) -> dict[str, object] | None:
+        source = analysis.source(location.path) if location else None
+        if source is None or location is None:
+            return None
+        start, end = (session.convert.position(source, offset) for offset in location.span)
+        return {
+            "uri": session.convert.uri(location.path),
+            "range": {
+                "start": {"line": start.line, "character": start.character},
+                "end": {"line": end.line, "character": end.character},
+            },
+        }
+
+    def convert(analysis: Analysis, kind: str, picture: Picture) -> dict[str, object]:
+        return {
+            "kind": kind,
+            "title": picture.title,
+            "nodes": [
+                {
+                    "id": node.id,
+                    "kind": node.kind.value,
+                    "label": node.label,
+                    "details": list(node.details),
+                    "parent": node.parent,
+                    "initial": node.initial,
+                    "place": place(analysis, node.place),
+                }
+                for node in picture.nodes
+            ],
+            "edges": [
+                {
+                    "source": edge.source,
+                    "target": edge.target,
+                    "kind": edge.kind.value,
+                    "labels": list(edge.labels),
+                    "probabilistic": edge.probabilistic,
+                    "place": place(analysis, edge.place),
+                }
+                for edge in picture.edges
+            ],
+        }
+
+    @server.feature(METHOD)
+    def picture(params: Any) -> dict[str, object] | None:
+        """null where there is nothing of the kind to draw."""
+        make = _PICTURES.get(params.kind)
+        path = session.convert.path(params.textDocument.uri)
+        analysis = session.moment().snapshot(path).analysis
+        found = make(analysis, path) if make else None
+        return None if found is None else convert(analysis, params.kind, found)

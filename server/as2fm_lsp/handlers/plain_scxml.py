@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm/plainScxml`: what a machine becomes in its system, line by line with the places that the lines exist for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypedDict
+
+from lsprotocol import types
+
+from roaml import api
+from roaml.project.analysis import Analysis
+from roaml.scxml.model import Role
+from roaml.scxml.writer import Line, write_lines
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+METHOD = "as2fm/plainScxml"
+
+
+class PlainLine(TypedDict):
+    """A line, counted from 0, that stands for a place in the models."""
+
+    line: int
+    uri: str
+    range: types.Range
+
+
+class PlainScxml(TypedDict):
+    """`problem` tells why there is no text; else it is empty."""
+
+    text: str
+    lines: list[PlainLine]
+    problem: str
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    def convert(analysis: Analysis, lines: list[Line]) -> PlainScxml:
+        places: list[PlainLine] = []
+        for number, line in enumerate(lines):
+            source = analysis.source(line.origin.path)
+            if source is not None:
+                uri = session.convert.uri(line.origin.path)
+                places.append({"line": number, "uri": uri, "range": session.convert.range(source, line.origin.span)})
+        return {"text": "".join(f"{line.text}\n" for line in lines), "lines": places, "problem": ""}
+
+    @server.feature(METHOD)
+    def plain_scxml(params: Any) -> PlainScxml:
+        """Of a plugin that the tree has several times, the first: the others differ in their ports only."""
+        path = session.convert.path(params.textDocument.uri)
+        snapshot = session.moment().snapshot(path)
+        analysis = snapshot.analysis
+        systems = analysis.memberships.get(path, ())
+        if not systems or analysis.machine(path) is None:
+            return _problem("This is no machine of a system.")
+        try:
+            network = api.to_scxml(api.loaded(snapshot, systems[0]))
+        except api.ModelError as error:
+            count = len(error.result.diagnostics)
+            return _problem(f"The system has {count} error{'' if count == 1 else 's'}; there is no plain SCXML of it.")
+        linked = analysis.system(systems[0])
+        automata = linked.automata_of(path) if linked else ()
+        if not automata:
+            return _problem("The behavior tree does not use this plugin.")
+        found = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
+        # The automata of action threads come with the machine's own.
+        first = automata[0].name
+        shown = [lines for name, lines in found if automata[0].instance is None or name.startswith(first)]
+        return convert(analysis, [line for lines in shown for line in lines])
+
+
+def _is_of(role: Role, origin: str, path: str) -> bool:
+    return role is Role.MACHINE and origin == path
+
+
+def _problem(text: str) -> PlainScxml:
+    return {"text": "", "lines": [], "problem": text}

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a picture shows, whoever draws it.
+
+- The ids of nodes are unique; the ends of every edge, and every parent, are nodes of the picture.
+- The values of the enumerations are names for programs: the contract with what draws the picture.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.text import Location
+
+
+class NodeKind(enum.Enum):
+    STATE = "state"
+    THREAD = "thread"
+    CONTROL = "control"
+    DECORATOR = "decorator"
+    ACTION = "action"
+    CONDITION = "condition"
+    VARIABLE = "variable"
+    ROS_NODE = "node"
+    PLUGIN = "plugin"
+    TOPIC = "topic"
+    SERVICE = "service"
+    ACTION_INTERFACE = "action-interface"
+
+
+class EdgeKind(enum.Enum):
+    """What a transition waits for; how things in a tree or a system hang together."""
+
+    EVENTLESS = "eventless"
+    EVENT = "event"
+    ROS = "ros"
+    BT = "bt"
+    CHILD = "child"
+    READS = "reads"
+    WRITES = "writes"
+    PUBLISHES = "publishes"
+    SUBSCRIBES = "subscribes"
+    SERVES = "serves"
+    CALLS = "calls"
+    SENDS = "sends"
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """
+    Attributes:
+        details: lines below the label.
+        parent: id of the node that it is drawn inside of, "" if none.
+        place: what it stands for; None if that is not written anywhere.
+    """
+
+    id: str
+    kind: NodeKind
+    label: str
+    details: tuple[str, ...] = ()
+    parent: str = ""
+    initial: bool = False
+    place: Location | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """`probabilistic` tells that it is one of several ways that chance decides between."""
+
+    source: str
+    target: str
+    kind: EdgeKind
+    labels: tuple[str, ...] = ()
+    probabilistic: bool = False
+    place: Location | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    title: str
+    nodes: tuple[Node, ...]
+    edges: tuple[Edge, ...]

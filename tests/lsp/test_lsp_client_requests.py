@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What our own client asks beyond the protocol: about, pictures, plain SCXML, migration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from client import Client, RawServer, connect, start_raw
+from lsprotocol import types
+
+import clock
+from as2fm_lsp.cli.init import template
+
+OLD_MAIN = """\
+<convince_mc_tc>
+    <mc_parameters><max_time value="10" unit="s" /></mc_parameters>
+    <node_models><input type="ros-scxml" src="clock.scxml" /></node_models>
+</convince_mc_tc>
+"""
+SPARE = '<input type="bt-plugin-ascxml" src="plugins/spare.ascxml" />'
+OLD_CLOCK = clock.CLOCK.replace("<ascxml", "<scxml").replace("</ascxml", "</scxml")
+
+
+async def asked(folder: Path, method: str, *files: str, **more: object) -> list[Any]:
+    """The answers for some files, asked as bytes: a library of the client would make objects of them."""
+    server = await start_raw()
+    folders = [{"uri": folder.as_uri(), "name": "robot"}]
+    server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
+    server.tell("initialized", {})
+    for number, name in enumerate(files):
+        server.tell(method, {"textDocument": {"uri": (folder / name).as_uri()}, **more}, 10 + number)
+    return await answers(server, len(files))
+
+
+async def answers(server: RawServer, count: int) -> list[Any]:
+    server.tell("shutdown", None, 2)
+    server.tell("exit")
+    _, said, _ = await server.end()
+    by_id = {message["id"]: message for message in said if "id" in message and "method" not in message}
+    return [by_id[10 + number]["result"] for number in range(count)]
+
+
+def write_example(folder: Path) -> None:
+    for name, text in template("delivery_robot"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+async def test_about(tmp_path: Path) -> None:
+    write_example(tmp_path)
+    (tmp_path / "other.xml").write_text("<html/>")
+    files = ("main.xml", "tree.xml", "nodes/battery.ascxml", "properties.jani", "other.xml", "none.xml")
+    main = (tmp_path / "main.xml").as_uri()
+    inside = {"systems": [main], "hasTree": True}
+    nothing = {"kind": "", "systems": [], "hasTree": False}
+    assert await asked(tmp_path, "as2fm/about", *files) == [
+        {"kind": "system", **inside},
+        {"kind": "tree", **inside},
+        {"kind": "machine", **inside},
+        {"kind": "properties", **inside},
+        nothing,
+        nothing,
+    ]
+
+
+async def test_pictures(tmp_path: Path) -> None:
+    write_example(tmp_path)
+    (machine,) = await asked(tmp_path, "as2fm/picture", "nodes/battery.ascxml", kind="machine")
+    uri = (tmp_path / "nodes/battery.ascxml").as_uri()
+    assert (machine["kind"], machine["title"]) == ("machine", "Battery")
+    assert machine["nodes"][0] == {
+        "id": "/driving",
+        "kind": "state",
+        "label": "driving",
+        "details": [],
+        "parent": "",
+        "initial": True,
+        "place": {"uri": uri, "range": {"start": {"line": 12, "character": 4}, "end": {"line": 22, "character": 12}}},
+    }
+    assert machine["edges"][1] == {
+        "source": "/driving",
+        "target": "/charging",
+        "kind": "ros",
+        "labels": ["topic_callback dock"],
+        "probabilistic": False,
+        "place": {"uri": uri, "range": {"start": {"line": 19, "character": 8}, "end": {"line": 21, "character": 29}}},
+    }
+    (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
+    assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "Fallback", "BatteryAbove"]
+    ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
+    assert "/hand_over" in [node["label"] for node in ros["nodes"]]
+    assert none is None
+    assert await asked(tmp_path, "as2fm/picture", "main.xml", kind="cake") == [None]
+
+
+async def test_plain_scxml(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    plain, no_machine = await asked(tmp_path, "as2fm/plainScxml", "clock.ascxml", "main.xml")
+    lines = plain["text"].splitlines()
+    assert plain["problem"] == ""
+    assert lines[0].startswith('<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" name="Clock"')
+    assert [place["line"] for place in plain["lines"]] == list(range(len(lines)))
+    at = next(i for i, line in enumerate(lines) if '<assign location="count"' in line)
+    source = clock.CLOCK.splitlines()
+    written = next(i for i, line in enumerate(source) if '<assign location="count"' in line)
+    assert plain["lines"][at]["uri"] == (tmp_path / "clock.ascxml").as_uri()
+    assert plain["lines"][at]["range"]["start"]["line"] == written
+    assert no_machine == {"text": "", "lines": [], "problem": "This is no machine of a system."}
+
+
+async def test_plain_scxml_of_plugins(tmp_path: Path) -> None:
+    """Of those that the tree has twice, one is shown."""
+    write_example(tmp_path)
+    tree = tmp_path / "tree.xml"
+    tree.write_text(tree.read_text().replace("<Charge />", '<Charge /><Charge name="again" />'))
+    (plain,) = await asked(tmp_path, "as2fm/plainScxml", "plugins/charge.ascxml")
+    assert plain["text"].count("<scxml ") == 1
+    assert 'name="BT_plugin_1003_Charge"' in plain["text"]
+    charge, main = (tmp_path / "plugins/charge.ascxml").read_text(), tmp_path / "main.xml"
+    (tmp_path / "plugins/spare.ascxml").write_text(charge.replace('name="Charge"', 'name="Spare"'))
+    main.write_text(main.read_text().replace("</behavior_tree>", f"{SPARE}</behavior_tree>"))
+    (unused,) = await asked(tmp_path, "as2fm/plainScxml", "plugins/spare.ascxml")
+    assert unused["problem"] == "The behavior tree does not use this plugin."
+
+
+async def test_plain_scxml_of_a_broken_system(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    (plain,) = await asked(tmp_path, "as2fm/plainScxml", "clock.ascxml")
+    assert plain["text"] == ""
+    assert plain["problem"] == "The system has 1 error; there is no plain SCXML of it."
+
+
+async def test_migrate(tmp_path: Path) -> None:
+    (tmp_path / "main.xml").write_text(OLD_MAIN)
+    (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
+    (found,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
+    assert (found["files"], found["problem"]) == (["main.xml", "clock.scxml → clock.ascxml"], "")
+    changes = found["edit"]["documentChanges"]
+    old, new = (tmp_path / "clock.scxml").as_uri(), (tmp_path / "clock.ascxml").as_uri()
+    assert {"kind": "rename", "oldUri": old, "newUri": new} in changes
+    texts = {each["textDocument"]["uri"]: each["edits"][0]["newText"] for each in changes if "edits" in each}
+    assert texts[(tmp_path / "main.xml").as_uri()].startswith("<roaml>")
+    assert texts[old].startswith("<ascxml")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["clock.scxml", "main.xml"]
+
+
+async def test_what_cannot_be_migrated(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
+    assert current == {"edit": None, "files": [], "problem": ""}
+    assert no_system["problem"].endswith("only systems are migrated; name their system file")
+    (tmp_path / "main.xml").write_text(OLD_MAIN)
+    (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
+    (taken,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
+    assert taken["edit"] is None
+    assert taken["problem"].endswith("clock.ascxml: there is such a file already")
+
+
+async def test_unsaved_text_is_drawn(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    async with connect(tmp_path) as client:
+        path = tmp_path / "clock.ascxml"
+        client.open(path, clock.CLOCK.replace('<state id="on">', '<state id="off"/><state id="on">'))
+        found = await _picture(client, path)
+    assert [node.label for node in found.nodes] == ["off", "on"]
+
+
+async def _picture(client: Client, path: Path) -> Any:
+    params = {"kind": "machine", "textDocument": types.TextDocumentIdentifier(path.as_uri())}
+    return await client.protocol.send_request_async("as2fm/picture", params)

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# The VS Code extension: lint, types, unit tests, the package, and what it does in a real workbench.
+# Arguments choose end-to-end tests by name. Says nothing while all is well.
+set -eu
+cd "$(dirname "$0")/../vscode-extension"
+. ../tests/environment.sh
+
+command -v node >/dev/null 2>&1 && command -v npm >/dev/null 2>&1 ||
+    fail "The VS Code extension cannot be tested: Node.js 20 or newer with npm is needed"
+[ "$(node -p 'process.versions.node.split(".")[0] >= 20')" = true ] ||
+    fail "The VS Code extension cannot be tested: Node.js $(node --version) is too old, 20 is needed"
+
+quietly() {
+    log=$(mktemp)
+    "$@" >"$log" 2>&1 || {
+        cat "$log" >&2
+        rm -f "$log"
+        fail "failed: $*"
+    }
+    rm -f "$log"
+}
+
+wanted="$(cat package.json package-lock.json | cksum) $(node --version)"
+if [ "$(cat node_modules/.prepared 2>/dev/null)" != "$wanted" ]; then
+    quietly npm ci
+    echo "$wanted" >node_modules/.prepared
+fi
+quietly npm run package
+quietly npm run lint
+quietly npm run unit
+sh e2e/workbench/setup.sh
+quietly npm run e2e -- "$@"

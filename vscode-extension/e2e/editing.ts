@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { MEND, sample, type Stage } from "./support/stage";
+
+export function editing(stage: Stage): void {
+    stage.use();
+
+    stage.test("the quick fix mends the mistake", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.squiggles.first().waitFor();
+        await window.goBehind("nodes/battery.ascxml", 'location="levl');
+        await window.press("Control+.");
+        const fix = window.page.locator(".action-widget .monaco-list-row", { hasText: "level" }).first();
+        await fix.waitFor();
+        await window.screenshot("quick-fix");
+        await window.press("Enter");
+        await window.squiggles.first().waitFor({ state: "detached" });
+        await window.save();
+        const file = path.join(window.folder, "nodes/battery.ascxml");
+        await window.until(() => fs.readFileSync(file, "utf8").includes('location="level" expr="100"'));
+    });
+
+    stage.test(
+        "completion after _msg. lists the fields",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.goBehind("nodes/battery.ascxml", "_msg.data");
+            await window.press(...Array.from(".data", () => "Backspace"));
+            await window.type(".");
+            const list = window.page.locator(".suggest-widget.visible");
+            await list.locator('.monaco-list-row[aria-label^="data"]').waitFor();
+            await window.screenshot("completion");
+        },
+    );
+
+    stage.test(
+        "hover shows the ROS definition",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.goBehind("nodes/battery.ascxml", "std_msgs/UI");
+            await window.press("Control+K", "Control+I");
+            const hover = window.page.locator(".monaco-hover:not(.hidden)", { hasText: "uint8 data" });
+            await hover.waitFor();
+            await window.screenshot("hover");
+        },
+    );
+
+    stage.test(
+        "go to definition opens the plugin",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("tree.xml");
+            await window.running();
+            await window.goBehind("tree.xml", "<Deli");
+            await window.press("F12");
+            await window.page.locator('.tab.active[data-resource-name="deliver.ascxml"]').waitFor();
+            await window.statusItem("Ln 3").waitFor();
+            await window.screenshot("definition");
+        },
+    );
+
+    stage.test(
+        "a lens counts the uses of a thing and shows them",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            const lens = window.page.locator(".codelens-decoration a", { hasText: /^\d+ / }).first();
+            await lens.waitFor();
+            await lens.click();
+            await window.page.locator(".peekview-widget, .reference-zone-widget").first().waitFor();
+            await window.screenshot("lens");
+        },
+    );
+
+    stage.test(
+        "rename changes both files",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("charge.ascxml");
+            await window.running();
+            await window.goBehind("plugins/charge.ascxml", 'topic="/do');
+            await window.press("F2");
+            const input = window.page.locator(".rename-box input");
+            await input.waitFor();
+            await input.fill("/docking");
+            await window.screenshot("rename");
+            await window.press("Enter");
+            await input.waitFor({ state: "hidden" });
+            await window.run("File: Save All");
+            const texts = ["plugins/charge.ascxml", "nodes/battery.ascxml"].map((file) =>
+                path.join(window.folder, file),
+            );
+            await window.until(() => texts.every((file) => fs.readFileSync(file, "utf8").includes('topic="/docking"')));
+        },
+    );
+
+    stage.test(
+        "a node from the template has no mistakes",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: New Node");
+            await window.page.locator(".quick-input-widget", { hasText: "Name of the new node" }).waitFor();
+            await window.press("Enter");
+            await window.page.locator('.tab.active[data-resource-name="my_node.ascxml"]').waitFor();
+            const text = fs.readFileSync(path.join(window.folder, "nodes/my_node.ascxml"), "utf8");
+            assert.match(text, /<ascxml name="MyNode"/);
+            // A file of no system is checked by itself: its outline tells that the server has seen it.
+            await window.run("Go to Symbol in Editor");
+            await window.page.locator(".quick-input-list", { hasText: "waiting" }).waitFor();
+            assert.equal(await window.squiggles.count(), 0);
+        },
+    );
+}

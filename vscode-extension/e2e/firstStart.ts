@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { sample, type Stage } from "./support/stage";
+
+export function firstStart(stage: Stage): void {
+    stage.use();
+
+    stage.test("one click creates the private environment, and the mistake is shown", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        const offer = window.notification("is not installed yet");
+        await offer.waitFor();
+        await window.statusItem("AS2FM: not installed").waitFor();
+        await window.screenshot("first-start");
+        await offer.getByRole("button", { name: "Install" }).click();
+        await window.running();
+        await window.squiggles.first().waitFor();
+        assert.equal(await window.squiggles.count(), 1);
+        await window.run("View: Focus Problems");
+        const problem = window.page.locator(".markers-panel .monaco-list-row", { hasText: "levle" });
+        await problem.waitFor();
+        assert.match((await problem.textContent()) ?? "", /there is no variable `levle`; did you mean `level`\?/);
+        await window.screenshot("mistake");
+    });
+
+    stage.test("the next start needs nothing", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.squiggles.first().waitFor();
+        assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+    });
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { MEND, sample, type Stage } from "./support/stage";
+import { temporaryFolder, write } from "./support/workbench";
+
+/** Stands in for the XML extension: the part of its interface that is used, and what it says of ill-formed files. */
+const XML_EXTENSION = `
+const vscode = require("vscode");
+exports.activate = () => {
+    const found = vscode.languages.createDiagnosticCollection("xml");
+    const look = (document) => {
+        if (document.languageId !== "xml") return;
+        const bad = document.getText().includes("<ill");
+        const range = new vscode.Range(0, 0, 0, 1);
+        found.set(document.uri, bad ? [new vscode.Diagnostic(range, "XML extension: not well-formed")] : []);
+    };
+    vscode.workspace.textDocuments.forEach(look);
+    vscode.workspace.onDidOpenTextDocument(look);
+    vscode.workspace.onDidChangeTextDocument((event) => look(event.document));
+    return { addXMLCatalogs: (catalogs) => vscode.window.showInformationMessage("catalogs: " + catalogs.join()) };
+};
+`;
+
+/** Stands in for the extension for Python: the active interpreter is what the folder's `.python` names. */
+const PYTHON_EXTENSION = `
+const vscode = require("vscode");
+const fs = require("fs");
+const active = (folder) => {
+    try { return { path: fs.readFileSync(vscode.Uri.joinPath(folder, ".python").fsPath, "utf8") }; }
+    catch { return { path: "" }; }
+};
+exports.activate = () => ({
+    environments: {
+        getActiveEnvironmentPath: active,
+        resolveEnvironment: async ({ path }) => path && { executable: { uri: vscode.Uri.file(path) } },
+        onDidChangeActiveEnvironmentPath: new vscode.EventEmitter().event,
+    },
+});
+`;
+
+export function harmony(stage: Stage): void {
+    const xml = fakeExtension("redhat", "vscode-xml", XML_EXTENSION, ["onLanguage:xml"]);
+    const python = fakeExtension("ms-python", "python", PYTHON_EXTENSION, []);
+    stage.use({ extensions: [xml, python] });
+    const illFormed = () => sample({ ...MEND, "tree.xml": (text) => text.replace("<Charge />", "<ill") });
+
+    stage.test("nothing is said twice, and the schemas are offered", illFormed, async (window) => {
+        await window.openFile("tree.xml");
+        await window.running();
+        await window.notification(path.join("dist", "schemas", "catalog.xml")).waitFor();
+        await window.run("View: Focus Problems");
+        const rows = window.page.locator(".markers-panel .monaco-list-row");
+        await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
+        // What the model lacks is still said, by us alone.
+        await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
+        await window.screenshot("harmony");
+        assert.equal(await rows.filter({ hasText: "xml-syntax" }).count(), 0);
+    });
+
+    const withPython = () => {
+        const folder = sample();
+        write(path.join(folder, ".python"), privatePython(stage.workbench.home));
+        return folder;
+    };
+    stage.test("the server of the active Python environment is used", withPython, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.squiggles.first().waitFor();
+        await window.run("AS2FM: Show Versions");
+        await window.notification("from the Python environment").waitFor();
+    });
+}
+
+function privatePython(home: string): string {
+    const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
+    const [name] = fs.readdirSync(environments);
+    assert.ok(name !== undefined);
+    return path.join(environments, name, "bin/python");
+}
+
+function fakeExtension(publisher: string, name: string, main: string, activationEvents: readonly string[]): string {
+    const version = "0.0.1";
+    const folder = path.join(temporaryFolder(name), `${publisher}.${name}-${version}`);
+    const manifest = { name, publisher, version, engines: { vscode: "^1.90.0" }, main: "./main.js", activationEvents };
+    write(path.join(folder, "package.json"), JSON.stringify(manifest));
+    write(path.join(folder, "main.js"), main);
+    return folder;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import * as fs from "node:fs";
+import { sample, type Stage } from "./support/stage";
+
+export function life(stage: Stage): void {
+    stage.use();
+
+    stage.test("a server that is killed is restarted, and says so", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.squiggles.first().waitFor();
+        const [before] = servers(stage.workbench.home);
+        assert.ok(before !== undefined);
+        process.kill(before, "SIGKILL");
+        await window.notification("ended unexpectedly and was restarted").waitFor();
+        await window.screenshot("restarted");
+        const [after] = servers(stage.workbench.home);
+        assert.ok(after !== undefined && after !== before);
+        // It knows the open documents again.
+        await window.goBehind("nodes/battery.ascxml", 'location="levle');
+        await window.press("Backspace", "Backspace");
+        await window.type("el");
+        await window.squiggles.first().waitFor({ state: "detached" });
+    });
+
+    stage.test("a server that keeps ending is left alone", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        for (let i = 0; i < 4; i++) {
+            await window.running();
+            const pid = await window.until(() => servers(stage.workbench.home)[0]);
+            process.kill(pid, "SIGKILL");
+            await window.until(() => !fs.existsSync(`/proc/${pid}`));
+            if (i < 3) await window.until(() => servers(stage.workbench.home)[0]);
+        }
+        await window.notification("ended by itself 4 times").waitFor();
+        await window.statusItem("AS2FM: stopped").waitFor();
+        await window.run("AS2FM: Restart Language Server");
+        await window.squiggles.first().waitFor();
+    });
+
+    stage.test("restart and versions", sample, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.running();
+        const [before] = servers(stage.workbench.home);
+        await window.run("AS2FM: Restart Language Server");
+        await window.until(() => servers(stage.workbench.home).some((pid) => pid !== before));
+        await window.running();
+        await window.run("AS2FM: Show Versions");
+        await window.notification("as2fm-lsp 0.1.0").waitFor();
+    });
+}
+
+/** The process ids of the language servers of this workbench's private environment. */
+function servers(home: string): number[] {
+    return fs.readdirSync("/proc").flatMap((name) => {
+        try {
+            const command = fs.readFileSync(`/proc/${name}/cmdline`, "utf8");
+            return /^\d+$/.test(name) && command.startsWith(home) && command.includes("as2fm_lsp")
+                ? [Number(name)]
+                : [];
+        } catch {
+            return [];
+        }
+    });
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import * as fs from "node:fs";
+import * as path from "node:path";
+import type { Frame } from "playwright-core";
+import { MEND, sample, type Stage } from "./support/stage";
+import { OUTPUT } from "./support/workbench";
+
+export function pictures(stage: Stage): void {
+    stage.use();
+
+    stage.test(
+        "the machine: its states, a click, the caret",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.run("AS2FM: Show State Machine");
+            const picture = await window.picture();
+            assert.deepEqual(await labels(picture), ["driving", "charging"]);
+            assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
+            assert.equal(await picture.locator(".dot").count(), 1);
+            await picture.locator('.node[data-label="charging"]').click();
+            await window.statusItem("Ln 25, Col 5").waitFor();
+            await picture.locator('.node.here[data-label="charging"]').waitFor();
+            await window.screenshot("machine");
+            await window.goBehind("nodes/battery.ascxml", "Math.max(");
+            await picture.locator(".edge.here").waitFor();
+            // Another machine is drawn as soon as it is looked at, and edits show before they are saved.
+            await window.openFile("building.ascxml");
+            await picture.locator('.node[data-label="open"]').waitFor();
+            assert.equal(await picture.locator(".scene .edge.chance").count(), 2);
+            await window.goBehind("nodes/building.ascxml", '<state id="open');
+            await window.type("ed");
+            await picture.locator('.node[data-label="opened"]').waitFor();
+        },
+    );
+
+    stage.test(
+        "the behavior tree with its ports",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("tree.xml");
+            await window.running();
+            await window.run("AS2FM: Show Behavior Tree");
+            const picture = await window.picture();
+            const names = ["ReactiveSequence", "Fallback", "BatteryAbove", "Charge", "Deliver"];
+            assert.deepEqual(await labels(picture), names);
+            assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
+            assert.equal(await picture.locator(".edge.is-child").count(), 4);
+            await picture.locator('.node[data-label="Deliver"]').click();
+            await window.statusItem("Ln 10, Col 13").waitFor();
+            await window.screenshot("tree");
+        },
+    );
+
+    stage.test(
+        "the ROS graph, its keyboard and its search",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: Show ROS Graph");
+            const picture = await window.picture();
+            const machines = ["Battery", "Building", "BatteryAbove", "Charge", "Deliver"];
+            assert.deepEqual(await labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
+            await window.screenshot("ros-graph");
+            await picture.locator("svg.picture").focus();
+            await window.press("/");
+            await window.type("hand");
+            await picture.locator('.node.found[data-label="/hand_over"]').waitFor();
+            assert.equal(await picture.locator(".node.found").count(), 1);
+            await window.screenshot("search");
+            await window.press("Escape", "ArrowLeft");
+            await picture.locator(".node.selected:not([data-label='/hand_over'])").waitFor();
+            await picture.locator('.node[data-label="/hand_over"]').click();
+            await window.page.locator('.tab.active[data-resource-name="building.ascxml"]').waitFor();
+            await picture.locator('.node.here[data-label="/hand_over"], .edge.here').first().waitFor();
+        },
+    );
+
+    stage.test(
+        "a picture is saved as SVG and as PNG",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: Show ROS Graph");
+            const picture = await window.picture();
+            for (const format of ["SVG", "PNG"]) {
+                await picture.getByRole("button", { name: `Save as ${format}` }).click();
+                const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
+                const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
+                await window.until(async () => (await input.inputValue()) === file);
+                await window.press("Enter");
+                await window.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
+            }
+            const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");
+            assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
+            assert.match(svg, />\/hand_over</);
+            assert.doesNotMatch(svg, /var\(--/);
+            const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
+            assert.equal(png.subarray(1, 4).toString(), "PNG");
+            keep(window.folder, "main.ros.svg", "main.ros.png");
+        },
+    );
+}
+
+function labels(picture: Frame): Promise<string[]> {
+    return picture.locator(".node").evaluateAll((nodes) => nodes.map((node) => node.getAttribute("data-label") ?? ""));
+}
+
+function keep(folder: string, ...names: string[]): void {
+    for (const name of names) fs.copyFileSync(path.join(folder, name), path.join(OUTPUT, name));
+}

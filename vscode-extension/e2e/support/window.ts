@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+/** What a user does in a window of VS Code, and sees there. Waits for what is to be seen, never for a time. */
+
+import * as fs from "node:fs";
+import * as path from "node:path";
+import type { Frame, Locator, Page } from "playwright-core";
+import { OUTPUT } from "./workbench";
+
+export class Window {
+    constructor(
+        readonly page: Page,
+        readonly folder: string,
+    ) {}
+
+    /** Open a file by its name, as one does with Ctrl+P. */
+    async openFile(name: string): Promise<void> {
+        const { page } = this;
+        await page.keyboard.press("Control+P");
+        await page.locator(".quick-input-widget input").fill(name);
+        await page
+            .locator(`.quick-input-list [aria-label*="${path.basename(name)}"]`)
+            .first()
+            .waitFor();
+        await page.keyboard.press("Enter");
+        await page
+            .locator(`.tab.active[data-resource-name="${path.basename(name)}"]`)
+            .first()
+            .waitFor();
+        await this.editor.locator(".view-line").first().waitFor();
+    }
+
+    /** Run a command by its title in the palette. */
+    async run(title: string): Promise<void> {
+        await this.page.keyboard.press("F1");
+        await this.page.locator(".quick-input-widget input").fill(`>${title}`);
+        await this.page.locator(`.quick-input-list [aria-label^="${title}"]`).first().waitFor();
+        await this.page.keyboard.press("Enter");
+    }
+
+    /** The titles of the palette that a text finds. */
+    async commands(text: string): Promise<string[]> {
+        await this.page.keyboard.press("F1");
+        await this.page.locator(".quick-input-widget input").fill(`>${text}`);
+        await this.page.locator(".quick-input-list .monaco-list-row").first().waitFor();
+        const rows = await this.page.locator(".quick-input-list .monaco-list-row").all();
+        const labels = await Promise.all(rows.map((row) => row.getAttribute("aria-label")));
+        await this.page.keyboard.press("Escape");
+        return labels.map((label) => label ?? "");
+    }
+
+    /** Put the caret at a line and column, counted from 1. */
+    async goTo(line: number, column = 1): Promise<void> {
+        await this.page.keyboard.press("Control+G");
+        await this.page.locator(".quick-input-widget input").fill(`:${line}:${column}`);
+        await this.page.keyboard.press("Enter");
+        await this.statusItem(`Ln ${line}, Col ${column}`).waitFor();
+    }
+
+    /** Put the caret behind the first occurrence of a text in a file of the workspace. */
+    async goBehind(file: string, text: string): Promise<void> {
+        const [line, column] = placeOf(fs.readFileSync(path.join(this.folder, file), "utf8"), text);
+        await this.goTo(line, column + text.length);
+    }
+
+    async save(): Promise<void> {
+        await this.page.keyboard.press("Control+S");
+        await this.page.locator(".tab.active:not(.dirty)").first().waitFor();
+    }
+
+    /** The editor with the focus, else the first. */
+    get editor(): Locator {
+        return this.page
+            .locator(
+                ".editor-group-container.active .monaco-editor[role='code'], .editor-group-container.active .monaco-editor",
+            )
+            .first();
+    }
+
+    get squiggles(): Locator {
+        return this.page.locator(".squiggly-error");
+    }
+
+    statusItem(text: string): Locator {
+        return this.page.locator(".statusbar-item", { hasText: text });
+    }
+
+    notification(text: string): Locator {
+        return this.page.locator(".notification-list-item", { hasText: text });
+    }
+
+    /** Until the language server runs. */
+    async running(): Promise<void> {
+        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 120_000 });
+    }
+
+    /** Until something holds that cannot be seen in the page; what it gives. */
+    async until<T>(get: () => T | Promise<T>): Promise<NonNullable<T>> {
+        const end = Date.now() + PATIENCE;
+        for (;;) {
+            const found = await get();
+            if (found) return found;
+            if (Date.now() > end) throw new Error(`still not: ${get.toString()}`);
+            await this.page.waitForFunction(
+                () =>
+                    new Promise((resolve) =>
+                        requestAnimationFrame(() => {
+                            resolve(true);
+                        }),
+                    ),
+            );
+        }
+    }
+
+    /** The text of the line that the caret of an editor group is in. */
+    async caretLine(group: number): Promise<string> {
+        const editor = this.page.locator(".editor-group-container").nth(group);
+        const caret = await editor.locator(".cursors-layer .cursor").first().boundingBox();
+        const lines = await editor.locator(".view-line").all();
+        for (const line of lines) {
+            const box = await line.boundingBox();
+            if (caret && box && Math.abs(box.y - caret.y) < 3) return plain((await line.textContent()) ?? "");
+        }
+        return "";
+    }
+
+    async press(...keys: string[]): Promise<void> {
+        for (const key of keys) await this.page.keyboard.press(key);
+    }
+
+    async type(text: string): Promise<void> {
+        await this.page.keyboard.type(text);
+    }
+
+    /** The document of a picture, inside of the frames of its webview. */
+    async picture(): Promise<Frame> {
+        for (;;) {
+            for (const frame of this.page.frames()) {
+                if (
+                    await frame
+                        .locator("svg.picture")
+                        .count()
+                        .catch(() => 0)
+                )
+                    return frame;
+            }
+            await this.page.waitForEvent("framenavigated", { timeout: 1000 }).catch(() => undefined);
+        }
+    }
+
+    /** Kept as output of the tests, and for the README. */
+    async screenshot(name: string): Promise<void> {
+        fs.mkdirSync(OUTPUT, { recursive: true });
+        await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`) });
+    }
+
+    async close(): Promise<void> {
+        await this.page.context().close();
+    }
+}
+
+const PATIENCE = 30_000;
+
+/** Text with the spaces that the editor draws. */
+function plain(text: string): string {
+    return text.replaceAll("\u00a0", " ");
+}
+
+/** Line and column of a text, counted from 1. */
+export function placeOf(content: string, text: string): [line: number, column: number] {
+    const at = content.indexOf(text);
+    if (at < 0) throw new Error(`${text} is not there`);
+    const before = content.slice(0, at).split("\n");
+    return [before.length, (before.at(-1) ?? "").length + 1];
+}

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+/** A VS Code server with the packaged extension in it, and a browser in which its workbench is used. */
+
+import { spawn, execFileSync, type ChildProcess } from "node:child_process";
+import * as fs from "node:fs";
+import * as net from "node:net";
+import * as os from "node:os";
+import * as path from "node:path";
+import { chromium, type Browser } from "playwright-core";
+import { Window } from "./window";
+
+export const EXTENSION = path.resolve(import.meta.dirname, "..", "..");
+export const ROOT = path.resolve(EXTENSION, "..");
+const VSCODE = path.join(ROOT, ".cache/workbench/node_modules/code-server/lib/vscode");
+const MAIN = path.join(VSCODE, "out/server-main.js");
+export const OUTPUT = path.join(EXTENSION, "out", "e2e-output");
+
+export interface Options {
+    /** A fresh home if not given; of an earlier workbench to go on with what it has installed. */
+    readonly home?: string;
+    readonly settings?: Readonly<Record<string, unknown>>;
+    readonly trustEverything?: boolean;
+    /** In place of what the tests themselves have. */
+    readonly environment?: Readonly<Record<string, string>>;
+    /** Further extensions, as folders. */
+    readonly extensions?: readonly string[];
+}
+
+export class Workbench {
+    private constructor(
+        readonly home: string,
+        readonly port: number,
+        private readonly server: ChildProcess,
+        private readonly browser: Browser,
+    ) {}
+
+    static async start(options: Options = {}): Promise<Workbench> {
+        const home = options.home ?? temporaryFolder("home");
+        const environment = { ...process.env, HOME: path.join(home, "user"), ...options.environment };
+        fs.mkdirSync(environment.HOME, { recursive: true });
+        const folders = [
+            "--server-data-dir",
+            path.join(home, "data"),
+            "--extensions-dir",
+            path.join(home, "extensions"),
+        ];
+        const settings = { ...SETTINGS, ...options.settings };
+        write(path.join(home, "data/data/Machine/settings.json"), JSON.stringify(settings));
+        if (options.home === undefined) {
+            const install = [
+                "--install-extension",
+                path.join(EXTENSION, "as2fm.vsix"),
+                "--accept-server-license-terms",
+            ];
+            execFileSync(process.execPath, [MAIN, ...install, ...folders], { stdio: "pipe", env: environment });
+        }
+        for (const each of options.extensions ?? []) addExtension(path.join(home, "extensions"), each);
+        const port = await freePort();
+        const server = spawn(
+            process.execPath,
+            [
+                MAIN,
+                ...["--host", "127.0.0.1", "--port", String(port), "--without-connection-token"],
+                ...["--accept-server-license-terms", "--telemetry-level", "off", "--force-disable-user-env"],
+                ...folders,
+                ...(options.trustEverything === false ? [] : ["--disable-workspace-trust"]),
+            ],
+            { stdio: ["ignore", "pipe", "pipe"], env: environment, detached: true },
+        );
+        await listening(server, port);
+        const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: FLAGS });
+        return new Workbench(home, port, server, browser);
+    }
+
+    /** The workbench with a folder open. */
+    async open(folder: string): Promise<Window> {
+        const context = await this.browser.newContext({
+            viewport: { width: 1280, height: 760 },
+            locale: "en-US",
+            reducedMotion: "reduce",
+        });
+        await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+        const page = await context.newPage();
+        await page.goto(`http://127.0.0.1:${this.port}/?folder=${folder}`);
+        await page.locator(".monaco-workbench").waitFor();
+        return new Window(page, folder);
+    }
+
+    async stop(): Promise<void> {
+        await this.browser.close();
+        const ended = new Promise((resolve) => this.server.once("close", resolve));
+        // The server and all that it has started: its process group.
+        if (this.server.pid !== undefined && this.server.exitCode === null) {
+            process.kill(-this.server.pid, "SIGTERM");
+            const timer = setTimeout(() => process.kill(-(this.server.pid ?? 0), "SIGKILL"), 5000);
+            await ended;
+            clearTimeout(timer);
+        }
+    }
+}
+
+const SETTINGS = {
+    "workbench.startupEditor": "none",
+    "workbench.reduceMotion": "on",
+    "workbench.tips.enabled": false,
+    "workbench.enableExperiments": false,
+    "extensions.ignoreRecommendations": true,
+    "update.mode": "none",
+    "git.enabled": false,
+    "editor.minimap.enabled": false,
+    "files.simpleDialog.enable": true,
+    "security.workspace.trust.banner": "never",
+    "terminal.integrated.gpuAcceleration": "off",
+};
+
+const FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+];
+
+/** As an installation would do: the folder, and its entry in the list. */
+function addExtension(extensions: string, folder: string): void {
+    const target = path.join(extensions, path.basename(folder));
+    fs.cpSync(folder, target, { recursive: true });
+    const { name, publisher, version } = JSON.parse(
+        fs.readFileSync(path.join(folder, "package.json"), "utf8"),
+    ) as Manifest;
+    const list = path.join(extensions, "extensions.json");
+    const known = JSON.parse(fs.readFileSync(list, "utf8")) as unknown[];
+    const location = { $mid: 1, path: target, scheme: "file" };
+    known.push({
+        identifier: { id: `${publisher}.${name}` },
+        version,
+        location,
+        relativeLocation: path.basename(folder),
+    });
+    fs.writeFileSync(list, JSON.stringify(known));
+}
+
+interface Manifest {
+    readonly name: string;
+    readonly publisher: string;
+    readonly version: string;
+}
+
+const folders: string[] = [];
+
+/** An empty folder that goes when the tests have ended. */
+export function temporaryFolder(name: string): string {
+    const folder = fs.realpathSync(fs.mkdtempSync(path.join(os.tmpdir(), `as2fm-${name}-`)));
+    if (folders.length === 0) {
+        process.once("exit", () => {
+            for (const each of folders) fs.rmSync(each, { recursive: true, force: true, maxRetries: 3 });
+        });
+    }
+    folders.push(folder);
+    return folder;
+}
+
+export function write(file: string, text: string): void {
+    fs.mkdirSync(path.dirname(file), { recursive: true });
+    fs.writeFileSync(file, text);
+}
+
+function freePort(): Promise<number> {
+    return new Promise((resolve, reject) => {
+        const server = net.createServer();
+        server.once("error", reject);
+        server.listen(0, "127.0.0.1", () => {
+            const address = server.address();
+            server.close(() => {
+                if (address !== null && typeof address === "object") resolve(address.port);
+                else reject(new Error("no free port"));
+            });
+        });
+    });
+}
+
+function listening(server: ChildProcess, port: number): Promise<void> {
+    return new Promise((resolve, reject) => {
+        let said = "";
+        const hear = (chunk: Buffer) => {
+            said += chunk.toString();
+            if (said.includes(`Extension host agent listening on ${port}`)) resolve();
+        };
+        server.stdout?.on("data", hear);
+        server.stderr?.on("data", hear);
+        server.once("error", reject);
+        server.once("close", () => {
+            reject(new Error(`The VS Code server has ended:\n${said}`));
+        });
+    });
+}

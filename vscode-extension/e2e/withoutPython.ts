@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { test } from "node:test";
+import { sample } from "./support/stage";
+import { temporaryFolder, Workbench, write } from "./support/workbench";
+
+export function withoutPython(): void {
+    test("a machine without Python gets a message that helps", async () => {
+        await install({ PATH: programs("sh", "cat", "uname", "env") }, async (said) => {
+            await said("needs Python 3.10 or newer", "no-python");
+        });
+    });
+
+    test("without a package index the message says what to do", async () => {
+        const nowhere = { PIP_INDEX_URL: "http://127.0.0.1:9/simple", PIP_RETRIES: "0", PIP_CONFIG_FILE: "/dev/null" };
+        await install(nowhere, async (said) => {
+            await said("pip could not get the packages", "no-index");
+        });
+    });
+
+    test("a Python without venv is told of, with the package to install", async () => {
+        const folder = programs("sh", "cat", "uname", "env");
+        // It answers what it is asked about itself, and nothing else.
+        const script = ["#!/bin/sh", 'case "$*" in', '*" venv "*) echo "ensurepip is not available" >&2; exit 1 ;;'];
+        script.push('*) echo "$0"; echo 3; echo 11 ;;', "esac", "");
+        write(path.join(folder, "python3"), script.join("\n"));
+        fs.chmodSync(path.join(folder, "python3"), 0o755);
+        await install({ PATH: folder }, async (said) => {
+            await said("apt install python3-venv", "no-venv");
+        });
+    });
+}
+
+async function install(
+    environment: Record<string, string>,
+    check: (said: (text: string, name: string) => Promise<void>) => Promise<void>,
+): Promise<void> {
+    const workbench = await Workbench.start({ environment });
+    try {
+        const window = await workbench.open(sample());
+        await window.openFile("battery.ascxml");
+        await window.notification("is not installed yet").getByRole("button", { name: "Install" }).click();
+        await check(async (text, name) => {
+            await window.notification(text).waitFor({ timeout: 60_000 });
+            await window.screenshot(name);
+        });
+    } finally {
+        await workbench.stop();
+    }
+}
+
+/** A folder for PATH with some programs and nothing else. */
+function programs(...names: string[]): string {
+    const folder = temporaryFolder("path");
+    for (const name of names) {
+        const found = ["/bin", "/usr/bin"].map((each) => path.join(each, name)).find((file) => fs.existsSync(file));
+        if (found !== undefined) fs.symlinkSync(found, path.join(folder, name));
+    }
+    return folder;
+}

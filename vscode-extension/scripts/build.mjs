@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bundles the extension and its view into dist/, with the files of the repository that they carry.
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { fileURLToPath } from "node:url";
+import * as esbuild from "esbuild";
+
+const here = fileURLToPath(new URL("..", import.meta.url));
+const root = path.join(here, "..");
+const dist = path.join(here, "dist");
+const production = process.argv.includes("--production");
+
+for (const name of fs.existsSync(dist) ? fs.readdirSync(dist) : []) {
+    if (name !== "wheel") fs.rmSync(path.join(dist, name), { recursive: true });
+}
+const common = { absWorkingDir: here, bundle: true, minify: production, sourcemap: false, logLevel: "warning" };
+await esbuild.build({
+    ...common,
+    entryPoints: ["src/extension.ts"],
+    outfile: "dist/extension.js",
+    platform: "node",
+    format: "cjs",
+    target: "node18",
+    external: ["vscode"],
+    mainFields: ["module", "main"],
+});
+await esbuild.build({
+    ...common,
+    entryPoints: ["src/pictures/view/view.ts"],
+    outfile: "dist/view.js",
+    platform: "browser",
+    format: "iife",
+    target: "es2022",
+});
+fs.copyFileSync(path.join(here, "src/pictures/view/view.css"), path.join(dist, "view.css"));
+
+// The schemas, with a catalog under whose names the XML extension finds them.
+fs.cpSync(path.join(root, "schemas"), path.join(dist, "schemas"), {
+    recursive: true,
+    filter: (file) => !file.endsWith(".json"),
+});
+const names = fs.readdirSync(path.join(dist, "schemas")).sort();
+const entries = names.map((name) => `  <systemSuffix systemIdSuffix="${name}" uri="${name}"/>`);
+fs.writeFileSync(
+    path.join(dist, "schemas", "catalog.xml"),
+    [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<catalog xmlns="urn:oasis:names:tc:entity:xmlns:xml:catalog">',
+        ...entries,
+        "</catalog>",
+        "",
+    ].join("\n"),
+);
+
+fs.cpSync(path.join(here, "templates"), path.join(dist, "templates"), { recursive: true });
+fs.cpSync(path.join(root, "docs/ci"), path.join(dist, "ci"), { recursive: true });
+
+// The sample of the walkthrough is the system that `init` writes, with one mistake in it.
+const sample = path.join(dist, "sample");
+fs.cpSync(path.join(root, "server/as2fm_lsp/templates/delivery_robot"), sample, { recursive: true });
+const mistaken = path.join(sample, "nodes/battery.ascxml");
+const text = fs.readFileSync(mistaken, "utf8");
+const changed = text.replace('location="level" expr="100"', 'location="levle" expr="100"');
+if (changed === text) throw new Error("the mistake of the sample finds no place");
+fs.writeFileSync(mistaken, changed);

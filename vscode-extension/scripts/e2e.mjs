@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
+// `--measure` measures instead; `--pictures` renews those of the README afterwards.
+import { execFileSync, spawnSync } from "node:child_process";
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { fileURLToPath } from "node:url";
+import * as esbuild from "esbuild";
+
+const here = fileURLToPath(new URL("..", import.meta.url));
+execFileSync("sh", [path.join(here, "e2e/workbench/setup.sh")], { stdio: "inherit" });
+if (!fs.existsSync(path.join(here, "as2fm.vsix"))) throw new Error("as2fm.vsix is missing: npm run package");
+const out = path.join(here, "out", "e2e");
+fs.rmSync(out, { recursive: true, force: true });
+const [first, ...others] = process.argv.slice(2);
+const measures = first === "--measure";
+await esbuild.build({
+    absWorkingDir: here,
+    entryPoints: [measures ? "e2e/measure.ts" : "e2e/all.test.ts"],
+    outdir: out,
+    bundle: true,
+    platform: "node",
+    format: "esm",
+    target: "node20",
+    outExtension: { ".js": ".mjs" },
+    external: ["playwright-core"],
+    logLevel: "warning",
+});
+const file = path.join(out, measures ? "measure.mjs" : "all.test.mjs");
+const options = measures ? [] : ["--test", "--test-reporter=spec"];
+const names = [first, ...others].filter((name) => name !== undefined && !name.startsWith("--"));
+const patterns = names.map((name) => `--test-name-pattern=${name}`);
+const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit" });
+if (done.status === 0 && first === "--pictures") {
+    for (const name of fs.readdirSync(path.join(here, "screenshots"))) {
+        fs.copyFileSync(path.join(here, "out", "e2e-output", name), path.join(here, "screenshots", name));
+    }
+}
+process.exit(done.status ?? 1);

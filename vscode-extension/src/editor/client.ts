@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Starts a server and connects the editor to it. */
+
+import { spawn, type ChildProcess } from "node:child_process";
+import * as vscode from "vscode";
+import {
+    CloseAction,
+    ErrorAction,
+    LanguageClient,
+    RevealOutputChannelOn,
+    type DocumentSelector,
+    type LanguageClientOptions,
+} from "vscode-languageclient/node";
+import { TRANSLATE, type Translated } from "../protocol";
+import type { Server } from "../server/server";
+import type { Exit, Session } from "../server/supervisor";
+import { ownsWellFormedness } from "./xmlExtension";
+
+/**
+ * Interface definitions keep the language that another extension gives them. JSON is left out: its documents would have
+ * two formatters, and struct declarations in it are read from the disk.
+ */
+const SELECTOR: DocumentSelector = [
+    ...["ascxml", "scxml", "jani", "xml"].flatMap((language) => [
+        { scheme: "file", language },
+        { scheme: "untitled", language },
+    ]),
+    { scheme: "file", pattern: "**/*.{msg,srv,action}" },
+];
+
+/** The command with which the server's lenses show places; its arguments are in terms of the protocol. */
+export const SHOW_REFERENCES = "as2fm.showReferences";
+
+const WELL_FORMEDNESS = "xml-syntax";
+const LAST_WORDS = 4000;
+
+export interface Connection extends Session {
+    readonly client: LanguageClient;
+}
+
+export async function connect(
+    server: Server,
+    log: vscode.LogOutputChannel,
+    onTranslated: (translated: Translated) => unknown,
+): Promise<Connection> {
+    const process = spawn(server.command, [...server.args], { stdio: "pipe", windowsHide: true });
+    const ended = endOf(process, log);
+    const client = new LanguageClient(
+        "as2fm",
+        "AS2FM",
+        async () => {
+            await spawned(process);
+            return process;
+        },
+        options(log, onTranslated),
+    );
+    try {
+        await Promise.race([
+            client.start(),
+            ended.then((exit) => {
+                throw new Error(
+                    exit.detail.trim() || `it ended with status ${exit.status ?? exit.signal ?? "unknown"}`,
+                );
+            }),
+        ]);
+    } catch (error) {
+        process.kill();
+        throw error;
+    }
+    return {
+        client,
+        ended,
+        async stop() {
+            try {
+                await client.dispose(2000);
+            } catch (error) {
+                log.debug(`The server did not stop as asked: ${String(error)}`);
+            }
+            process.kill();
+        },
+    };
+}
+
+function options(
+    log: vscode.LogOutputChannel,
+    onTranslated: (translated: Translated) => unknown,
+): LanguageClientOptions {
+    return {
+        documentSelector: SELECTOR,
+        diagnosticCollectionName: "as2fm",
+        outputChannel: log,
+        traceOutputChannel: log,
+        revealOutputChannelOn: RevealOutputChannelOn.Never,
+        // Files that are not open are checked as well, and told of when they change.
+        initializationOptions: {
+            diagnostics: "push",
+            settings: vscode.workspace.getConfiguration("as2fm"),
+            showReferences: SHOW_REFERENCES,
+        },
+        progressOnInitialization: false,
+        initializationFailedHandler: () => false,
+        // What happens when the process ends is the supervisor's business.
+        errorHandler: {
+            error: () => ({ action: ErrorAction.Continue, handled: true }),
+            closed: () => ({ action: CloseAction.DoNotRestart, handled: true }),
+        },
+        middleware: {
+            handleDiagnostics(uri, diagnostics, next) {
+                next(uri, isXml(uri) && ownsWellFormedness() ? diagnostics.filter(isOurs) : diagnostics);
+            },
+            async executeCommand(command, args, next) {
+                const answer: unknown = await next(command, args);
+                if (command === TRANSLATE && isTranslated(answer)) await onTranslated(answer);
+                return answer;
+            },
+        },
+    };
+}
+
+function isXml(uri: vscode.Uri): boolean {
+    const document = vscode.workspace.textDocuments.find((each) => each.uri.toString() === uri.toString());
+    return document ? document.languageId === "xml" : uri.path.endsWith(".xml");
+}
+
+/** Whether only we say this: what is not well-formed the XML extension says as well. */
+function isOurs(diagnostic: vscode.Diagnostic): boolean {
+    const code = typeof diagnostic.code === "object" ? diagnostic.code.value : diagnostic.code;
+    return code !== WELL_FORMEDNESS;
+}
+
+function isTranslated(answer: unknown): answer is Translated {
+    return typeof answer === "object" && answer !== null && "uri" in answer && typeof answer.uri === "string";
+}
+
+function spawned(process: ChildProcess): Promise<void> {
+    return new Promise((resolve, reject) => {
+        if (process.pid !== undefined) resolve();
+        process.once("error", reject);
+    });
+}
+
+function endOf(process: ChildProcess, log: vscode.LogOutputChannel): Promise<Exit> {
+    let detail = "";
+    process.stderr?.setEncoding("utf8").on("data", (text: string) => {
+        detail = (detail + text).slice(-LAST_WORDS);
+        log.append(text);
+    });
+    return new Promise((resolve) => {
+        process.once("error", (error) => {
+            resolve({ status: null, signal: null, detail: error.message });
+        });
+        process.once("close", (status, signal) => {
+            resolve({ status, signal, detail });
+        });
+    });
+}

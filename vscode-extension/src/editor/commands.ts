@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as vscode from "vscode";
+import type { Location, Position } from "vscode-languageserver-protocol";
+import { migrate, TRANSLATE, type Translated } from "../protocol";
+import { thisMachine } from "../server/machine";
+import { pythons } from "../server/python";
+import { SHOW_REFERENCES } from "./client";
+import type { Documents } from "./documents";
+import type { PicturePanels } from "./picturePanels";
+import type { PlainScxmlPreview } from "./plainScxml";
+import type { LanguageServer } from "./server";
+import type { StatusItem } from "./statusItem";
+import { Tasks } from "./tasks";
+import { newMachine, newSystem, openSample, addToCi } from "./templates";
+import { tellOrigin } from "./wording";
+
+export interface Parts {
+    readonly context: vscode.ExtensionContext;
+    readonly log: vscode.LogOutputChannel;
+    readonly server: LanguageServer;
+    readonly status: StatusItem;
+    readonly documents: Documents;
+    readonly tasks: Tasks;
+    readonly plain: PlainScxmlPreview;
+    readonly pictures: PicturePanels;
+}
+
+export function registerCommands(parts: Parts): void {
+    const { context, log, server, status, pictures } = parts;
+    const commands: Record<string, () => unknown> = {
+        translate: () => translate(parts),
+        showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
+        showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
+        showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
+        showRosGraph: () => withEditor((editor) => showOfSystem(parts, "ros", editor.document)),
+        checkWorkspace: () => checkWorkspace(parts),
+        newSystem: () => newSystem(server),
+        newNode: () => newMachine(context, "node"),
+        newPlugin: () => newMachine(context, "plugin"),
+        migrate: () => migrateSystem(parts),
+        addToCi: () => addToCi(context),
+        openSample: () => openSample(context),
+        restart: () => server.start(),
+        install: () => server.install(),
+        selectInterpreter: () => selectInterpreter(),
+        showLog: () => {
+            log.show();
+        },
+        showVersions: () => showVersions(parts),
+        showStatus: () => status.choose(),
+        openServerSetting: () => vscode.commands.executeCommand("workbench.action.openSettings", "as2fm.server.path"),
+        getPython: () => vscode.env.openExternal(vscode.Uri.parse("https://www.python.org/downloads/")),
+    };
+    context.subscriptions.push(
+        vscode.commands.registerCommand(SHOW_REFERENCES, (uri: string, position: Position, places: Location[]) => {
+            const convert = server.client?.protocol2CodeConverter;
+            if (!convert) return undefined;
+            const [at, found] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
+            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, found);
+        }),
+    );
+    for (const [name, run] of Object.entries(commands)) {
+        context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
+    }
+}
+
+/** Open a translation, wherever it was asked for. */
+export async function openTranslated(translated: Translated): Promise<void> {
+    const document = await vscode.workspace.openTextDocument(vscode.Uri.parse(translated.uri));
+    await vscode.window.showTextDocument(document, { preview: true, viewColumn: vscode.ViewColumn.Beside });
+}
+
+async function translate({ server, documents }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    if (system) await vscode.commands.executeCommand(TRANSLATE, server.client?.code2ProtocolConverter.asUri(system));
+}
+
+async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {
+    const found = await parts.documents.about(document);
+    // A tree in no system is shown by itself.
+    const uri = kind === "tree" && found.systems.length === 0 ? document.uri : await parts.documents.system(document);
+    if (uri) await parts.pictures.open(kind, uri);
+}
+
+async function checkWorkspace({ tasks }: Parts): Promise<void> {
+    for (const folder of vscode.workspace.workspaceFolders ?? []) {
+        const task = tasks.task({ type: Tasks.type, command: "check" }, folder);
+        if (task) await vscode.tasks.executeTask(task);
+    }
+}
+
+async function migrateSystem({ server, documents }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    if (!system || !server.client) return;
+    await vscode.workspace.saveAll();
+    const found = await server.ask(migrate, { textDocument: { uri: system.toString() } });
+    if (!found) return;
+    if (found.problem !== "") {
+        void vscode.window.showErrorMessage(found.problem);
+        return;
+    }
+    const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(found.edit ?? undefined);
+    if (!edit || found.files.length === 0) {
+        void vscode.window.showInformationMessage(vscode.l10n.t("There is nothing to migrate."));
+        return;
+    }
+    const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
+    const question = vscode.l10n.t("Move {0} to the current dialect?", vscode.workspace.asRelativePath(system));
+    const detail = [...found.files, "", vscode.l10n.t("Comments and layout stay; Undo takes it back.")].join("\n");
+    const answer = await vscode.window.showInformationMessage(question, { modal: true, detail }, apply, show);
+    if (answer === show) await showChanges(server, system);
+    if (answer === apply && (await vscode.workspace.applyEdit(edit, { isRefactoring: true }))) {
+        await vscode.workspace.saveAll();
+    }
+}
+
+async function showChanges({ state }: LanguageServer, system: vscode.Uri): Promise<void> {
+    if (state.kind !== "running") return;
+    const { command, args } = state.server;
+    const ended = await thisMachine.run(command, [...args, "migrate", system.fsPath, "--diff"]);
+    const content = ended.out === "" ? ended.err : ended.out;
+    await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "diff", content }));
+}
+
+async function selectInterpreter(): Promise<void> {
+    const browse = { label: vscode.l10n.t("$(folder) Browse…"), path: "" };
+    const automatic = { label: vscode.l10n.t("$(search) Find one automatically"), path: "" };
+    const items = [browse, automatic];
+    for await (const python of pythons(thisMachine, [])) {
+        items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });
+    }
+    const title = vscode.l10n.t("The Python that the language server is started with, or installed for");
+    const picked = await vscode.window.showQuickPick(items, { title, matchOnDescription: true });
+    if (!picked) return;
+    let value = picked.path;
+    if (picked === browse) {
+        const chosen = await vscode.window.showOpenDialog({ title, canSelectMany: false });
+        if (!chosen?.[0]) return;
+        value = chosen[0].fsPath;
+    }
+    const settings = vscode.workspace.getConfiguration("as2fm");
+    await settings.update("interpreter", value === "" ? undefined : value, vscode.ConfigurationTarget.Global);
+    await vscode.commands.executeCommand("as2fm.restart");
+}
+
+function described(python: { executable: string; server: string | undefined }): { description: string } {
+    const server = python.server === undefined ? "" : ` · as2fm-lsp ${python.server}`;
+    return { description: `${python.executable}${server}` };
+}
+
+async function showVersions({ context, server }: Parts): Promise<void> {
+    const { version } = context.extension.packageJSON as { version: string };
+    const { state } = server;
+    const running =
+        state.kind === "running"
+            ? `as2fm-lsp ${state.server.version} (${tellOrigin(state.server.origin)}: ${state.server.command})`
+            : vscode.l10n.t("as2fm-lsp is not running");
+    const text = [`AS2FM ${version}`, running, `VS Code ${vscode.version}`].join("\n");
+    const copy = vscode.l10n.t("Copy");
+    const answer = await vscode.window.showInformationMessage(text.replaceAll("\n", " · "), copy);
+    if (answer === copy) await vscode.env.clipboard.writeText(text);
+}
+
+async function withEditor(run: (editor: vscode.TextEditor) => unknown): Promise<void> {
+    const editor = vscode.window.activeTextEditor;
+    if (editor) await run(editor);
+}

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The panels in which pictures are drawn: one for each kind, following the document and the caret. */
+
+import { randomBytes } from "node:crypto";
+import * as vscode from "vscode";
+import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
+import { partAt } from "../pictures/here";
+import { picture as pictureRequest } from "../protocol";
+import type { LanguageServer } from "./server";
+
+const PAUSE = 200;
+
+export class PicturePanels implements vscode.Disposable {
+    private readonly panels = new Map<PictureKind, PicturePanel>();
+    private readonly subscriptions: vscode.Disposable[];
+    private timer: NodeJS.Timeout | undefined;
+
+    constructor(
+        private readonly context: vscode.ExtensionContext,
+        private readonly server: LanguageServer,
+        private readonly log: vscode.LogOutputChannel,
+    ) {
+        this.subscriptions = [
+            vscode.workspace.onDidChangeTextDocument(({ document }) => {
+                if (document.uri.scheme === "file" || document.isUntitled) this.refreshSoon();
+            }),
+            vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
+                this.follow(textEditor);
+            }),
+            vscode.window.onDidChangeActiveTextEditor((editor) => {
+                if (editor) this.follow(editor);
+            }),
+            server.onState((state) => {
+                if (state.kind === "running") this.refreshSoon();
+            }),
+        ];
+    }
+
+    async open(kind: PictureKind, uri: vscode.Uri): Promise<void> {
+        let panel = this.panels.get(kind);
+        if (!panel) {
+            panel = new PicturePanel(kind, this.context, this.server, this.log);
+            this.panels.set(kind, panel);
+            panel.onDispose(() => this.panels.delete(kind));
+        }
+        await panel.show(uri);
+    }
+
+    dispose(): void {
+        clearTimeout(this.timer);
+        for (const each of [...this.subscriptions, ...this.panels.values()]) each.dispose();
+    }
+
+    private refreshSoon(): void {
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => {
+            for (const panel of this.panels.values()) void panel.refresh();
+        }, PAUSE);
+    }
+
+    private follow(editor: vscode.TextEditor): void {
+        if (!vscode.workspace.getConfiguration("as2fm").get<boolean>("pictures.followCursor", true)) return;
+        for (const panel of this.panels.values()) panel.follow(editor);
+    }
+}
+
+class PicturePanel implements vscode.Disposable {
+    private readonly panel: vscode.WebviewPanel;
+    private uri: vscode.Uri | undefined;
+    private picture: Picture | undefined;
+    private here: Part | null = null;
+    private ready = false;
+    private asked = 0;
+
+    constructor(
+        private readonly kind: PictureKind,
+        context: vscode.ExtensionContext,
+        private readonly server: LanguageServer,
+        private readonly log: vscode.LogOutputChannel,
+    ) {
+        const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
+        const column = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
+        this.panel = vscode.window.createWebviewPanel(`as2fm.${kind}`, titleOf(kind), column, {
+            enableScripts: true,
+            enableForms: false,
+            enableCommandUris: false,
+            retainContextWhenHidden: true,
+            localResourceRoots: [dist],
+        });
+        this.panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
+        this.panel.webview.html = page(this.panel.webview, dist);
+        this.panel.webview.onDidReceiveMessage((message: FromView) => void this.receive(message));
+    }
+
+    onDispose(listener: () => void): void {
+        this.panel.onDidDispose(listener);
+    }
+
+    async show(uri: vscode.Uri): Promise<void> {
+        this.uri = uri;
+        this.panel.reveal(undefined, true);
+        await this.refresh();
+    }
+
+    async refresh(): Promise<void> {
+        if (!this.uri) return;
+        const asked = ++this.asked;
+        const uri = this.uri.toString();
+        const found = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
+        if (asked !== this.asked || found === undefined) return;
+        this.picture = found ?? undefined;
+        this.panel.title = found ? `${titleOf(this.kind)}: ${found.title}` : titleOf(this.kind);
+        this.here = this.partAtCaret(vscode.window.activeTextEditor);
+        this.draw();
+    }
+
+    follow(editor: vscode.TextEditor): void {
+        const { uri, languageId } = editor.document;
+        const isMachine = languageId === "ascxml" || languageId === "scxml";
+        if (this.kind === "machine" && isMachine && uri.scheme === "file" && uri.toString() !== this.uri?.toString()) {
+            this.uri = uri;
+            void this.refresh();
+            return;
+        }
+        const here = this.partAtCaret(editor);
+        if (JSON.stringify(here) === JSON.stringify(this.here)) return;
+        this.here = here;
+        this.post({ type: "here", here });
+    }
+
+    dispose(): void {
+        this.panel.dispose();
+    }
+
+    private partAtCaret(editor: vscode.TextEditor | undefined): Part | null {
+        if (!this.picture || !editor) return null;
+        return partAt(this.picture, this.asServerSays(editor.document.uri), editor.selection.active);
+    }
+
+    /** The server names a document by the very URI that the client uses towards it. */
+    private asServerSays(uri: vscode.Uri): string {
+        return this.server.client?.code2ProtocolConverter.asUri(uri) ?? uri.toString();
+    }
+
+    private draw(): void {
+        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here });
+        else this.post({ type: "none", reason: nothingOf(this.kind) });
+    }
+
+    private post(message: ToView): void {
+        if (this.ready) void this.panel.webview.postMessage(message);
+    }
+
+    private async receive(message: FromView): Promise<void> {
+        switch (message.type) {
+            case "ready":
+                this.ready = true;
+                this.post({ type: "words", words: words() });
+                if (this.picture) this.draw();
+                break;
+            case "jump":
+                await jump(message.place, message.beside);
+                break;
+            case "save":
+                await this.save(message.format, message.data);
+                break;
+            case "drawn":
+                this.log.debug(`Drawn: ${message.nodes} nodes, ${message.edges} edges`);
+                break;
+        }
+    }
+
+    private async save(format: "svg" | "png", data: string): Promise<void> {
+        const name = (this.picture?.title ?? this.kind).replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "_");
+        const folder = this.uri?.scheme === "file" ? vscode.Uri.joinPath(this.uri, "..") : undefined;
+        const file = `${name}.${this.kind}.${format}`;
+        const target = await vscode.window.showSaveDialog({
+            ...(folder && { defaultUri: vscode.Uri.joinPath(folder, file) }),
+            filters: format === "svg" ? { SVG: ["svg"] } : { PNG: ["png"] },
+        });
+        if (target)
+            await vscode.workspace.fs.writeFile(target, Buffer.from(data, format === "svg" ? "utf8" : "base64"));
+    }
+}
+
+async function jump(place: Place, beside: boolean): Promise<void> {
+    const { start, end } = place.range;
+    const uri = vscode.Uri.parse(place.uri);
+    const open = vscode.window.visibleTextEditors.find((editor) => editor.document.uri.toString() === uri.toString());
+    const others = vscode.window.visibleTextEditors[0]?.viewColumn ?? vscode.ViewColumn.One;
+    const editor = await vscode.window.showTextDocument(uri, {
+        viewColumn: beside ? vscode.ViewColumn.Beside : (open?.viewColumn ?? others),
+    });
+    const from = new vscode.Position(start.line, start.character);
+    editor.selection = new vscode.Selection(from, from);
+    const range = new vscode.Range(from, new vscode.Position(end.line, end.character));
+    editor.revealRange(range, vscode.TextEditorRevealType.InCenterIfOutsideViewport);
+}
+
+function titleOf(kind: PictureKind): string {
+    switch (kind) {
+        case "machine":
+            return vscode.l10n.t("State Machine");
+        case "tree":
+            return vscode.l10n.t("Behavior Tree");
+        case "ros":
+            return vscode.l10n.t("ROS Graph");
+    }
+}
+
+function nothingOf(kind: PictureKind): string {
+    switch (kind) {
+        case "machine":
+            return vscode.l10n.t("There is no state machine here.");
+        case "tree":
+            return vscode.l10n.t("There is no behavior tree here.");
+        case "ros":
+            return vscode.l10n.t("There is no system here.");
+    }
+}
+
+function words(): Words {
+    return {
+        search: vscode.l10n.t("Search"),
+        zoomIn: vscode.l10n.t("Zoom in"),
+        zoomOut: vscode.l10n.t("Zoom out"),
+        fit: vscode.l10n.t("Fit"),
+        saveSvg: vscode.l10n.t("Save as SVG"),
+        savePng: vscode.l10n.t("Save as PNG"),
+        nothing: vscode.l10n.t("Nothing found"),
+        help: vscode.l10n.t("Arrows move from node to node, Enter opens the source, + and - zoom, 0 fits, / searches."),
+        byChance: vscode.l10n.t("by chance"),
+        kinds: {
+            state: vscode.l10n.t("state"),
+            thread: vscode.l10n.t("action thread"),
+            control: vscode.l10n.t("control"),
+            decorator: vscode.l10n.t("decorator"),
+            action: vscode.l10n.t("action"),
+            condition: vscode.l10n.t("condition"),
+            variable: vscode.l10n.t("blackboard"),
+            node: vscode.l10n.t("node"),
+            plugin: vscode.l10n.t("plugin"),
+            topic: vscode.l10n.t("topic"),
+            service: vscode.l10n.t("service"),
+            "action-interface": vscode.l10n.t("ROS action"),
+            eventless: vscode.l10n.t("without event"),
+            event: vscode.l10n.t("event"),
+            ros: vscode.l10n.t("ROS"),
+            bt: vscode.l10n.t("behavior tree"),
+            child: vscode.l10n.t("child"),
+            reads: vscode.l10n.t("reads"),
+            writes: vscode.l10n.t("writes"),
+            publishes: vscode.l10n.t("publishes"),
+            subscribes: vscode.l10n.t("subscribes"),
+            serves: vscode.l10n.t("serves"),
+            calls: vscode.l10n.t("calls"),
+            sends: vscode.l10n.t("sends"),
+        },
+    };
+}
+
+function page(webview: vscode.Webview, dist: vscode.Uri): string {
+    const nonce = randomBytes(16).toString("base64");
+    const uri = (name: string) => webview.asWebviewUri(vscode.Uri.joinPath(dist, name)).toString();
+    const policy = [
+        "default-src 'none'",
+        `script-src 'nonce-${nonce}'`,
+        `style-src ${webview.cspSource}`,
+        "img-src blob: data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    ].join("; ");
+    return `<!DOCTYPE html>
+<html lang="${vscode.env.language}">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="${policy}">
+<link rel="stylesheet" href="${uri("view.css")}">
+</head>
+<body>
+<script nonce="${nonce}" src="${uri("view.js")}"></script>
+</body>
+</html>`;
+}

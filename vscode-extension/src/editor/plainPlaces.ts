@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/** From the plain form of a machine to its source and back. */
+
+import type { PlainLine } from "../protocol";
+import type { Position } from "../pictures/contract";
+
+/** The line of the plain form that stands for what is at a position of the source: that of the narrowest place. */
+export function lineOf(lines: readonly PlainLine[], uri: string, position: Position): number | undefined {
+    const around = lines.filter((line) => line.uri === uri && contains(line, position));
+    if (around.length === 0) {
+        const above = lines.filter((line) => line.uri === uri && line.range.start.line <= position.line);
+        return latest(above)?.line;
+    }
+    return around.reduce((best, line) => (height(line) < height(best) ? line : best)).line;
+}
+
+/** The place that a line of the plain form stands for: its own, else that of the nearest line above. */
+export function placeOf(lines: readonly PlainLine[], line: number): PlainLine | undefined {
+    return lines.filter((each) => each.line <= line).at(-1);
+}
+
+function latest(lines: readonly PlainLine[]): PlainLine | undefined {
+    return lines.reduce<PlainLine | undefined>(
+        (best, line) => (best && best.range.start.line >= line.range.start.line ? best : line),
+        undefined,
+    );
+}
+
+function contains({ range: { start, end } }: PlainLine, { line, character }: Position): boolean {
+    const after = line > start.line || (line === start.line && character >= start.character);
+    return after && (line < end.line || (line === end.line && character <= end.character));
+}
+
+function height({ range: { start, end } }: PlainLine): number {
+    return (end.line - start.line) * 10_000 + end.character - start.character;
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The one server of a window: how the supervisor's wishes are met in VS Code. */
+
+import { createHash } from "node:crypto";
+import * as fs from "node:fs";
+import * as os from "node:os";
+import { join } from "node:path";
+import * as vscode from "vscode";
+import type { LanguageClient } from "vscode-languageclient/node";
+import { DidChangeConfigurationNotification, type RequestType } from "vscode-languageserver-protocol";
+import type { Translated } from "../protocol";
+import { PrivateEnvironment, type Step } from "../server/environment";
+import { expanded, findServer } from "../server/find";
+import { thisMachine } from "../server/machine";
+import { isFailure, type Failure, type Server } from "../server/server";
+import { Supervisor, type State } from "../server/supervisor";
+import { connect, type Connection } from "./client";
+import { activeInterpreters } from "./pythonExtensions";
+import { tellStep } from "./wording";
+
+export class LanguageServer implements vscode.Disposable {
+    private readonly supervisor: Supervisor;
+    private readonly environment: PrivateEnvironment;
+    private readonly states = new vscode.EventEmitter<State>();
+    private connection: Connection | undefined;
+
+    /** Fires with each change of the state. */
+    readonly onState = this.states.event;
+
+    constructor(
+        context: vscode.ExtensionContext,
+        private readonly log: vscode.LogOutputChannel,
+        private readonly onTranslated: (translated: Translated) => unknown,
+    ) {
+        const wheel = findWheel(context.extensionPath);
+        const folder = join(context.globalStorageUri.fsPath, "environments");
+        this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.id);
+        this.supervisor = new Supervisor({
+            find: () => this.find(),
+            install: (onStep) => this.installWithProgress(onStep),
+            launch: async (server) => {
+                this.connection = await connect(server, log, this.onTranslated);
+                return this.connection;
+            },
+            now: Date.now,
+            changed: (state) => {
+                if (state.kind !== "running") this.connection = undefined;
+                void vscode.commands.executeCommand("setContext", "as2fm.running", state.kind === "running");
+                this.states.fire(state);
+            },
+            restarted: (exit) => {
+                log.warn(
+                    `The server ended with ${exit.signal ?? `status ${exit.status ?? "unknown"}`} and was restarted.`,
+                );
+                void tellRestarted();
+            },
+        });
+    }
+
+    get state(): State {
+        return this.supervisor.state;
+    }
+
+    /** The client of the running server. */
+    get client(): LanguageClient | undefined {
+        return this.connection?.client;
+    }
+
+    start(): Promise<void> {
+        return this.supervisor.start();
+    }
+
+    install(): Promise<void> {
+        return this.supervisor.install();
+    }
+
+    stop(): Promise<void> {
+        return this.supervisor.stop();
+    }
+
+    /** The server then asks for them. */
+    settingsChanged(): void {
+        void this.client?.sendNotification(DidChangeConfigurationNotification.type, { settings: null });
+    }
+
+    /** Ask the server; undefined if none runs or it has no answer. */
+    async ask<P, R>(type: RequestType<P, R, void>, params: P): Promise<R | undefined> {
+        try {
+            return await this.client?.sendRequest(type, params);
+        } catch (error) {
+            this.log.debug(`${type.method} has no answer: ${String(error)}`);
+            return undefined;
+        }
+    }
+
+    dispose(): void {
+        this.states.dispose();
+        void this.supervisor.stop();
+    }
+
+    private async find(): Promise<Server | Failure> {
+        const trusted = vscode.workspace.isTrusted;
+        const [server, interpreter] = [path("server.path"), path("interpreter")];
+        const active = trusted && server === "" && interpreter === "" ? await activeInterpreters(this.log) : [];
+        const found = await findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
+        return isFailure(found) && found.kind === "no-server" ? this.renewed(found) : found;
+    }
+
+    /** Who has had the server installed before gets the new one without being asked; the old one, if that fails. */
+    private async renewed(failure: Failure): Promise<Server | Failure> {
+        const older = await this.environment.older();
+        if (older === undefined) return failure;
+        const renewed = await this.installWithProgress(() => undefined);
+        if (!isFailure(renewed)) return renewed;
+        this.log.warn("The server of an earlier version is used: the new one could not be installed.");
+        if ("detail" in renewed) this.log.warn(renewed.detail);
+        return older;
+    }
+
+    private async installWithProgress(onStep: (step: Step) => void): Promise<Server | Failure> {
+        const interpreter = path("interpreter");
+        const active = vscode.workspace.isTrusted ? await activeInterpreters(this.log) : [];
+        const preferred = interpreter === "" ? active : [interpreter];
+        const options = { location: vscode.ProgressLocation.Notification, cancellable: true, title: "AS2FM" };
+        return vscode.window.withProgress(options, (progress, token) => {
+            const abort = new AbortController();
+            token.onCancellationRequested(() => {
+                abort.abort();
+            });
+            return this.environment.install(preferred, {
+                signal: abort.signal,
+                onOutput: (text) => {
+                    this.log.append(text);
+                },
+                onStep: (step) => {
+                    progress.report({ message: tellStep(step) });
+                    onStep(step);
+                },
+            });
+        });
+    }
+}
+
+/** A setting that names a program; empty if it is not set. */
+function path(setting: string): string {
+    const written = vscode.workspace.getConfiguration("as2fm").get<string>(setting, "");
+    return expanded(written, os.homedir(), vscode.workspace.workspaceFolders?.[0]?.uri.fsPath);
+}
+
+async function tellRestarted(): Promise<void> {
+    const log = vscode.l10n.t("Show Log");
+    const text = vscode.l10n.t("The language server ended unexpectedly and was restarted.");
+    if ((await vscode.window.showWarningMessage(text, log)) === log) {
+        await vscode.commands.executeCommand("as2fm.showLog");
+    }
+}
+
+/** The wheel in the extension, with an id that changes with its content. */
+function findWheel(extension: string): { file: string; id: string } {
+    const folder = join(extension, "dist", "wheel");
+    const name = fs.readdirSync(folder).find((each) => each.endsWith(".whl"));
+    if (name === undefined) throw new Error(`${folder} holds no wheel`);
+    const file = join(folder, name);
+    const digest = createHash("sha256").update(fs.readFileSync(file)).digest("hex").slice(0, 12);
+    return { file, id: `${name.split("-")[1] ?? "server"}-${digest}` };
+}

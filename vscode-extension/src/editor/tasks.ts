@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/** `as2fm-lsp --check` and `translate` as tasks, run by the server that the editor uses. */
+
+import * as vscode from "vscode";
+import type { LanguageServer } from "./server";
+
+export interface Definition extends vscode.TaskDefinition {
+    readonly command: "check" | "translate";
+    readonly path?: string;
+    readonly arguments?: readonly string[];
+}
+
+export class Tasks implements vscode.TaskProvider {
+    static readonly type = "as2fm";
+
+    constructor(private readonly server: LanguageServer) {}
+
+    provideTasks(): vscode.Task[] {
+        const folders = vscode.workspace.workspaceFolders ?? [];
+        return folders.flatMap((folder) => this.task({ type: Tasks.type, command: "check" }, folder) ?? []);
+    }
+
+    resolveTask(task: vscode.Task): vscode.Task | undefined {
+        const definition = task.definition as Definition;
+        const folder = typeof task.scope === "object" ? task.scope : vscode.workspace.workspaceFolders?.[0];
+        return folder && this.task(definition, folder);
+    }
+
+    /** Undefined while no server runs. */
+    task(definition: Definition, folder: vscode.WorkspaceFolder): vscode.Task | undefined {
+        const { state } = this.server;
+        if (state.kind !== "running" || !["check", "translate"].includes(definition.command)) return undefined;
+        const what = definition.command === "check" ? ["--check"] : ["translate"];
+        const path = definition.path ?? (definition.command === "check" ? "." : undefined);
+        if (path === undefined) return undefined;
+        const args = [...state.server.args, ...what, path, ...(definition.arguments ?? [])];
+        const execution = new vscode.ProcessExecution(state.server.command, args, { cwd: folder.uri.fsPath });
+        const name = `${definition.command} ${path}`;
+        const task = new vscode.Task(definition, folder, name, "AS2FM", execution, "$as2fm");
+        if (definition.command === "check") task.group = vscode.TaskGroup.Test;
+        task.presentationOptions = { clear: true, reveal: vscode.TaskRevealKind.Always };
+        return task;
+    }
+}

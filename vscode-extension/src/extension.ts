@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Puts the parts together. */
+
+import * as vscode from "vscode";
+import { openTranslated, registerCommands } from "./editor/commands";
+import { Documents } from "./editor/documents";
+import { PicturePanels } from "./editor/picturePanels";
+import { PlainScxmlPreview } from "./editor/plainScxml";
+import { onInterpreterChange } from "./editor/pythonExtensions";
+import { LanguageServer } from "./editor/server";
+import { StatusItem } from "./editor/statusItem";
+import { Tasks } from "./editor/tasks";
+import { offerSchemas } from "./editor/xmlExtension";
+
+let server: LanguageServer | undefined;
+
+export function activate(context: vscode.ExtensionContext): void {
+    const log = vscode.window.createOutputChannel("AS2FM", { log: true });
+    server = new LanguageServer(context, log, openTranslated);
+    const status = new StatusItem(log);
+    const documents = new Documents(server);
+    const plain = new PlainScxmlPreview(server);
+    const pictures = new PicturePanels(context, server, log);
+    const tasks = new Tasks(server);
+    context.subscriptions.push(log, server, status, documents, plain, pictures);
+    server.onState((state) => {
+        status.show(state);
+    });
+    registerCommands({ context, log, server, status, documents, tasks, plain, pictures });
+    context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
+    watchWishes(context, server, log);
+    void server.start();
+    void offerSchemas(context, log);
+}
+
+export async function deactivate(): Promise<void> {
+    await server?.stop();
+}
+
+/** What decides which server runs has changed: look again. */
+function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, log: vscode.LogOutputChannel): void {
+    const again = () => void server.start();
+    context.subscriptions.push(
+        vscode.workspace.onDidGrantWorkspaceTrust(again),
+        vscode.workspace.onDidChangeConfiguration((event) => {
+            if (event.affectsConfiguration("as2fm.server.path") || event.affectsConfiguration("as2fm.interpreter")) {
+                again();
+            } else if (event.affectsConfiguration("as2fm")) {
+                server.settingsChanged();
+            }
+        }),
+    );
+    // A server that runs from elsewhere does not depend on the interpreter.
+    const onChange = () => {
+        if (server.state.kind === "failed" || (server.state.kind === "running" && usesPython(server))) again();
+    };
+    onInterpreterChange(onChange).then(
+        (subscriptions) => {
+            context.subscriptions.push(...subscriptions);
+        },
+        (error: unknown) => {
+            log.warn(String(error));
+        },
+    );
+}
+
+function usesPython({ state }: LanguageServer): boolean {
+    return state.kind === "running" && state.server.origin === "python";
+}

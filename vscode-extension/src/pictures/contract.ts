@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * What the server tells of a picture, and what the extension and the view that draws it say to each other.
+ *
+ * Places are in the coordinates of the protocol: lines and UTF-16 columns from 0.
+ */
+
+export type PictureKind = "machine" | "tree" | "ros";
+
+export interface Position {
+    readonly line: number;
+    readonly character: number;
+}
+
+export interface Place {
+    readonly uri: string;
+    readonly range: { readonly start: Position; readonly end: Position };
+}
+
+export const NODE_KINDS = [
+    "state",
+    "thread",
+    "control",
+    "decorator",
+    "action",
+    "condition",
+    "variable",
+    "node",
+    "plugin",
+    "topic",
+    "service",
+    "action-interface",
+] as const;
+
+export type NodeKind = (typeof NODE_KINDS)[number];
+
+export const EDGE_KINDS = [
+    "eventless",
+    "event",
+    "ros",
+    "bt",
+    "child",
+    "reads",
+    "writes",
+    "publishes",
+    "subscribes",
+    "serves",
+    "calls",
+    "sends",
+] as const;
+
+export type EdgeKind = (typeof EDGE_KINDS)[number];
+
+/** `parent` is the id of the node that it is drawn inside of, "" if none. */
+export interface PictureNode {
+    readonly id: string;
+    readonly kind: NodeKind;
+    readonly label: string;
+    readonly details: readonly string[];
+    readonly parent: string;
+    readonly initial: boolean;
+    readonly place: Place | null;
+}
+
+export interface PictureEdge {
+    readonly source: string;
+    readonly target: string;
+    readonly kind: EdgeKind;
+    readonly labels: readonly string[];
+    readonly probabilistic: boolean;
+    readonly place: Place | null;
+}
+
+export interface Picture {
+    readonly kind: PictureKind;
+    readonly title: string;
+    readonly nodes: readonly PictureNode[];
+    readonly edges: readonly PictureEdge[];
+}
+
+/** A node or an edge by its index in the picture. */
+export type Part = { readonly node: number } | { readonly edge: number };
+
+/** Words of the view, in the user's language. */
+export interface Words {
+    readonly search: string;
+    readonly zoomIn: string;
+    readonly zoomOut: string;
+    readonly fit: string;
+    readonly saveSvg: string;
+    readonly savePng: string;
+    readonly nothing: string;
+    readonly help: string;
+    readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
+    readonly byChance: string;
+}
+
+export type ToView =
+    | { readonly type: "words"; readonly words: Words }
+    | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null }
+    | { readonly type: "here"; readonly here: Part | null }
+    | { readonly type: "none"; readonly reason: string };
+
+export type FromView =
+    | { readonly type: "ready" }
+    | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
+    | { readonly type: "save"; readonly format: "svg" | "png"; readonly data: string }
+    /** The picture is drawn: for those who wait for it. */
+    | { readonly type: "drawn"; readonly nodes: number; readonly edges: number };

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * The Python environment that belongs to the extension, made of the wheel that it carries.
+ *
+ * - An environment is named by its wheel, so a new version of the extension makes a new one and the old one goes.
+ * - It counts only when its mark has been written, as the last step: one that was interrupted is made anew.
+ * - The packages that the server needs come from the index that the user's pip is configured for.
+ */
+
+import * as path from "node:path";
+import type { Machine } from "./machine";
+import { pythons, type Python } from "./python";
+import type { Failure, Server } from "./server";
+
+const MARK = "ready.json";
+
+/** What is being done, for the user to see. */
+export type Step = "python" | "venv" | "packages";
+
+export interface InstallOptions {
+    readonly signal?: AbortSignal;
+    readonly onStep?: (step: Step) => void;
+    readonly onOutput?: (text: string) => void;
+}
+
+export class PrivateEnvironment {
+    /**
+     * @param folder where environments are kept.
+     * @param wheel of the server.
+     * @param id tells this wheel from others.
+     */
+    constructor(
+        private readonly machine: Machine,
+        private readonly folder: string,
+        private readonly wheel: string,
+        private readonly id: string,
+    ) {}
+
+    /** The server in the environment, undefined if that has not been made. */
+    server(): Promise<Server | undefined> {
+        return this.serverIn(this.id);
+    }
+
+    /** The server of an earlier version of the extension: a sign that the user wants one. */
+    async older(): Promise<Server | undefined> {
+        for (const name of await this.machine.list(this.folder)) {
+            const found = name === this.id ? undefined : await this.serverIn(name);
+            if (found !== undefined) return found;
+        }
+        return undefined;
+    }
+
+    /**
+     * Make the environment.
+     *
+     * @param preferred interpreters to try before those on PATH.
+     */
+    async install(preferred: readonly string[], options: InstallOptions = {}): Promise<Server | Failure> {
+        const { signal, onOutput, onStep } = options;
+        const limits = { ...(signal && { signal }), ...(onOutput && { onOutput }) };
+        onStep?.("python");
+        let failure: Failure = { kind: "no-python" };
+        for await (const python of pythons(this.machine, preferred)) {
+            onStep?.("venv");
+            await this.machine.remove(this.home);
+            const made = await this.machine.run(python.executable, ["-m", "venv", this.home], limits);
+            if (made.status !== 0) {
+                failure = { kind: "no-venv", python: python.version, detail: words(made.err, made.out) };
+                continue; // another Python may have what this one lacks
+            }
+            onStep?.("packages");
+            const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", this.wheel];
+            const installed = await this.machine.run(this.python, pip, limits);
+            if (installed.status !== 0) {
+                await this.machine.remove(this.home);
+                return { kind: "no-packages", python: python.version, detail: words(installed.err, installed.out) };
+            }
+            return this.finish(python);
+        }
+        return failure;
+    }
+
+    private async finish(python: Python): Promise<Server | Failure> {
+        const asked = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp", "--version"]);
+        const version = /^as2fm-lsp (\S+)/.exec(asked.out)?.[1];
+        if (asked.status !== 0 || version === undefined) {
+            await this.machine.remove(this.home);
+            return { kind: "no-packages", python: python.version, detail: words(asked.err, asked.out) };
+        }
+        await this.machine.write(path.join(this.home, MARK), JSON.stringify({ version, python: python.version }));
+        for (const name of await this.machine.list(this.folder)) {
+            if (name !== this.id) await this.machine.remove(path.join(this.folder, name));
+        }
+        return this.asServer(this.id, version);
+    }
+
+    private async serverIn(name: string): Promise<Server | undefined> {
+        const mark = await this.machine.read(path.join(this.folder, name, MARK));
+        const version = mark === undefined ? undefined : versionIn(mark);
+        return version === undefined ? undefined : this.asServer(name, version);
+    }
+
+    private asServer(name: string, version: string): Server {
+        return { origin: "private", command: this.pythonIn(name), args: ["-I", "-m", "as2fm_lsp"], version };
+    }
+
+    private get home(): string {
+        return path.join(this.folder, this.id);
+    }
+
+    private get python(): string {
+        return this.pythonIn(this.id);
+    }
+
+    private pythonIn(name: string): string {
+        return path.join(this.folder, name, ...(this.machine.windows ? ["Scripts", "python.exe"] : ["bin", "python"]));
+    }
+}
+
+function versionIn(mark: string): string | undefined {
+    try {
+        const found: unknown = JSON.parse(mark);
+        if (typeof found !== "object" || found === null || !("version" in found)) return undefined;
+        return typeof found.version === "string" ? found.version : undefined;
+    } catch {
+        return undefined;
+    }
+}
+
+/** The end of what a program said; what it said first is seldom the reason. */
+function words(...texts: readonly string[]): string {
+    const said = texts.map((text) => text.trim()).filter((text) => text !== "");
+    return (said[0] ?? "").split("\n").slice(-8).join("\n");
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Machine } from "./machine";
+
+/** The oldest Python that the server runs on. */
+export const OLDEST: readonly [number, number] = [3, 10];
+
+const NAMES = ["python3", "python3.13", "python3.12", "python3.11", "python3.10", "python"];
+
+const ASK =
+    "import sys\n" +
+    "print(sys.executable, *sys.version_info[:2], sep='\\n')\n" +
+    "try:\n" +
+    "    from importlib.metadata import version\n" +
+    "    print(version('as2fm-lsp'))\n" +
+    "except Exception:\n" +
+    "    pass\n";
+
+const PATIENCE = 20_000;
+
+export interface Python {
+    readonly executable: string;
+    readonly version: string;
+    readonly recent: boolean;
+    /** The version of the server that is installed in its environment. */
+    readonly server: string | undefined;
+}
+
+/** What a Python interpreter says of itself; undefined if it is none. */
+export async function askPython(machine: Machine, executable: string): Promise<Python | undefined> {
+    // -I: neither the working folder nor variables of the environment decide what is imported.
+    const ended = await machine.run(executable, ["-I", "-c", ASK], { timeout: PATIENCE });
+    const [path, major, minor, server] = ended.out.split(/\r?\n/);
+    if (ended.status !== 0 || !path || !major || !minor) return undefined;
+    const recent = Number(major) > OLDEST[0] || (Number(major) === OLDEST[0] && Number(minor) >= OLDEST[1]);
+    return { executable: path, version: `${major}.${minor}`, recent, server: server === "" ? undefined : server };
+}
+
+/** Interpreters on this machine that are recent enough, each once. */
+export async function* pythons(machine: Machine, first: readonly string[]): AsyncGenerator<Python> {
+    const seen = new Set<string>();
+    const named = machine.windows ? [...NAMES, "py"] : NAMES;
+    for (const candidate of [...first, ...named]) {
+        const file = first.includes(candidate) ? candidate : await machine.which(candidate);
+        if (file === undefined) continue;
+        const python = await askPython(machine, file);
+        if (python?.recent && !seen.has(python.executable)) {
+            seen.add(python.executable);
+            yield python;
+        }
+    }
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+import { spawn } from "node:child_process";
+
+/** How a program ended. `status` is null if it could not be started, was killed or took too long. */
+export interface Ended {
+    readonly status: number | null;
+    readonly out: string;
+    readonly err: string;
+}
+
+export interface RunOptions {
+    /** In milliseconds. */
+    readonly timeout?: number;
+    readonly signal?: AbortSignal;
+    readonly onOutput?: (text: string) => void;
+}
+
+/** Run a program to its end. Never throws. */
+export function run(command: string, args: readonly string[], options: RunOptions = {}): Promise<Ended> {
+    return new Promise((resolve) => {
+        const out: string[] = [];
+        const err: string[] = [];
+        const child = spawn(command, args, {
+            stdio: ["ignore", "pipe", "pipe"],
+            windowsHide: true,
+            ...(options.timeout === undefined ? {} : { timeout: options.timeout }),
+            ...(options.signal === undefined ? {} : { signal: options.signal }),
+        });
+        const collect = (into: string[]) => (text: string) => {
+            into.push(text);
+            options.onOutput?.(text);
+        };
+        child.stdout.setEncoding("utf8").on("data", collect(out));
+        child.stderr.setEncoding("utf8").on("data", collect(err));
+        child.on("error", (error) => {
+            resolve({ status: null, out: out.join(""), err: [...err, error.message].join("") });
+        });
+        child.on("close", (status) => {
+            resolve({ status, out: out.join(""), err: err.join("") });
+        });
+    });
+}

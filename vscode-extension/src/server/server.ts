@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The language server as a program, and why there may be none. Plain data: the wording is the editor's business. */
+
+/** Where a server was found. */
+export type Origin = "setting" | "python" | "path" | "private";
+
+/** A program that speaks the language server protocol on its standard input and output. */
+export interface Server {
+    readonly origin: Origin;
+    readonly command: string;
+    /** What comes before the arguments of `as2fm-lsp`. */
+    readonly args: readonly string[];
+    readonly version: string;
+}
+
+/** Why there is no server. `detail` is what a program said, in its own words. */
+export type Failure =
+    | { readonly kind: "no-server" }
+    | { readonly kind: "configured-server"; readonly path: string; readonly detail: string }
+    | { readonly kind: "no-python" }
+    | { readonly kind: "no-venv"; readonly python: string; readonly detail: string }
+    | { readonly kind: "no-packages"; readonly python: string; readonly detail: string }
+    | { readonly kind: "start"; readonly server: Server; readonly detail: string }
+    | { readonly kind: "crashes"; readonly server: Server; readonly count: number; readonly detail: string }
+    | { readonly kind: "internal"; readonly detail: string };
+
+export type FailureKind = Failure["kind"];
+
+export function isFailure(value: Server | Failure | undefined): value is Failure {
+    return value !== undefined && "kind" in value;
+}

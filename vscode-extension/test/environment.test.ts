@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { PrivateEnvironment, type Step } from "../src/server/environment";
+import type { Ended } from "../src/server/run";
+import { FakeMachine, python } from "./support/machine";
+
+const HOME = "/storage/2";
+const INSIDE = `${HOME}/bin/python`;
+
+interface Answers {
+    readonly venv?: Partial<Ended>;
+    readonly pip?: Partial<Ended>;
+    readonly version?: Partial<Ended>;
+}
+
+function machine({ venv = {}, pip = {}, version = { out: "as2fm-lsp 0.1.0" } }: Answers = {}): FakeMachine {
+    return new FakeMachine({
+        "/bin/python3": (args) => (args.includes("venv") ? venv : python("/bin/python3")(args)),
+        [INSIDE]: (args) => (args.includes("pip") ? pip : version),
+    });
+}
+
+function install(on: FakeMachine, preferred: string[] = [], onStep: (step: Step) => void = () => undefined) {
+    return new PrivateEnvironment(on, "/storage", "/server.whl", "2").install(preferred, { onStep });
+}
+
+test("an environment is made, the wheel installed and the mark written last", async () => {
+    const on = machine();
+    on.files.set("/storage/1/ready.json", "{}");
+    const steps: Step[] = [];
+    const found = await install(on, [], (step) => steps.push(step));
+    assert.ok("origin" in found && found.origin === "private" && found.version === "0.1.0");
+    assert.deepEqual(steps, ["python", "venv", "packages"]);
+    assert.ok(on.ran.includes(`/bin/python3 -m venv ${HOME}`));
+    assert.ok(on.ran.some((line) => line.startsWith(`${INSIDE} -I -m pip install`) && line.endsWith("/server.whl")));
+    // The environment of an earlier version is gone.
+    assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
+});
+
+test("the preferred interpreter comes first", async () => {
+    const on = new FakeMachine({
+        "/bin/python3": python("/bin/python3"),
+        "/conda/python": (args) => (args.includes("venv") ? {} : python("/conda/python", "3.13")(args)),
+        [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
+    });
+    await install(on, ["/conda/python"]);
+    assert.ok(on.ran.includes(`/conda/python -m venv ${HOME}`));
+});
+
+test("no Python, or an old one only", async () => {
+    assert.deepEqual(await install(new FakeMachine({})), { kind: "no-python" });
+    const old = new FakeMachine({ "/bin/python3": python("/bin/python3", "3.9") });
+    assert.deepEqual(await install(old), { kind: "no-python" });
+});
+
+test("a Python without venv", async () => {
+    const on = machine({ venv: { status: 1, out: "ensurepip is not available" } });
+    const found = await install(on);
+    assert.deepEqual(found, { kind: "no-venv", python: "3.11", detail: "ensurepip is not available" });
+    assert.equal(on.files.size, 0);
+});
+
+test("another Python is tried where one lacks venv", async () => {
+    const on = new FakeMachine({
+        "/bin/python3": (args) => (args.includes("venv") ? { status: 1 } : python("/bin/python3")(args)),
+        "/bin/python3.12": (args) => (args.includes("venv") ? {} : python("/bin/python3.12", "3.12")(args)),
+        [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
+    });
+    assert.ok("origin" in (await install(on)));
+});
+
+test("no package index: the end of what pip said is told, nothing is left", async () => {
+    const said = [...Array.from({ length: 20 }, (_, i) => `line ${i}`), "ERROR: No matching distribution"].join("\n");
+    const found = await install(machine({ pip: { status: 1, err: said } }));
+    assert.ok("kind" in found && found.kind === "no-packages");
+    assert.equal(found.detail.split("\n").length, 8);
+    assert.match(found.detail, /No matching distribution$/);
+});
+
+test("an environment that does not work is not kept", async () => {
+    const on = machine({ version: { status: 1, err: "No module named as2fm_lsp" } });
+    const found = await install(on);
+    assert.ok("kind" in found && found.kind === "no-packages");
+    assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "2").server(), undefined);
+});
+
+test("the environment of an earlier version is known, and stays until the new one is there", async () => {
+    const on = machine({ pip: { status: 1 } });
+    on.files.set("/storage/1/ready.json", JSON.stringify({ version: "0.0.9" }));
+    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "2");
+    assert.equal(await environment.server(), undefined);
+    await environment.install([]);
+    const older = await environment.older();
+    assert.deepEqual([older?.command, older?.version], ["/storage/1/bin/python", "0.0.9"]);
+    assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "1").older(), undefined);
+});
