@@ -87,7 +87,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "place": {"uri": uri, "range": {"start": {"line": 19, "character": 8}, "end": {"line": 21, "character": 29}}},
     }
     (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
-    assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "Fallback", "BatteryAbove"]
+    assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "ReactiveFallback", "BatteryAbove"]
     ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
     assert "/hand_over" in [node["label"] for node in ros["nodes"]]
     assert none is None

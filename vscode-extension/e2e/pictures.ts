@@ -44,7 +44,7 @@ export function pictures(stage: Stage): void {
             await window.running();
             await window.run("AS2FM: Show Behavior Tree");
             const picture = await window.picture();
-            const names = ["ReactiveSequence", "Fallback", "BatteryAbove", "Charge", "Deliver"];
+            const names = ["ReactiveSequence", "ReactiveFallback", "BatteryAbove", "Charge", "Deliver"];
             assert.deepEqual(await labels(picture), names);
             assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
             assert.equal(await picture.locator(".edge.is-child").count(), 4);

@@ -20,7 +20,7 @@ export function walkthrough(stage: Stage): void {
             const step = page.locator(".gettingStartedContainer");
             await step.getByText("See a mistake and fix it").waitFor();
             await step.getByText("Open a sample system").click();
-            await step.locator("code", { hasText: "properties.jani" }).first().waitFor();
+            await step.getByRole("button", { name: "Open Sample" }).waitFor();
             await window.screenshot("walkthrough");
             await step.getByRole("button", { name: "Open Sample" }).click();
             await page.locator(".quick-input-widget", { hasText: "Where to put the sample" }).waitFor();
