@@ -76,7 +76,7 @@ def _block(result: Result) -> str:
     for verdict in result.verdicts:
         text = f"  expected {verdict.expectation.text}: {'met' if verdict.is_met else 'NOT MET'}"
         if not verdict.is_certain and result.answer is not None:
-            text += f", though the interval reaches over {verdict.expectation.threshold.number:g}"
+            text += f"; the interval reaches to the other side of {verdict.expectation.threshold.number:g}"
         lines.append(text)
     return "\n".join(lines)
 
