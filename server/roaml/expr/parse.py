@@ -131,17 +131,18 @@ def tokens(text: str) -> list[Token]:
 def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
     """The expression in `source` and all that is wrong with its form."""
     text = source.text
-    if _SIMPLE_PATH.match(text) and (path := text.split("."))[0] not in _WORDS:
-        return _path(source, path), ()
-    if number := _SIMPLE_NUMBER.match(text):
-        is_real = number[1] is not None
-        return Number(source.span(0, len(text)), float(text) if is_real else int(text), is_real), ()
     if len(text) <= _LONGEST_REMEMBERED and (sound := _sound(text)) is not None:
         return placed(sound, source), ()
     return _parse(source)
 
 
 def _parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
+    text = source.text
+    if _SIMPLE_PATH.match(text) and (path := text.split("."))[0] not in _WORDS:
+        return _path(source, path), ()
+    if number := _SIMPLE_NUMBER.match(text):
+        is_real = number[1] is not None
+        return Number(source.span(0, len(text)), float(text) if is_real else int(text), is_real), ()
     parser = _Parser(source)
     expr = parser.whole()
     return expr, tuple(parser.findings)
