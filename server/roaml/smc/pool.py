@@ -34,10 +34,12 @@ class WorkersLostError(Exception):
 class Pool:
     """Runs batches: alone at first, then on `jobs` processes; or on an executor that is given.
 
+    Without `patience`, nothing is ever run in this process, which then has time for other things.
+
     To be used in a `with` statement; leaving it ends the workers.
     """
 
-    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float = PATIENCE) -> None:
+    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = PATIENCE) -> None:
         self.jobs = jobs
         self.executor = executor
         self.is_own = executor is None
@@ -57,7 +59,7 @@ class Pool:
             WorkersLostError: the tasks cannot be run.
         """
         waiting = iter(tasks)
-        if self.executor is None:
+        if self.executor is None and self.patience is not None:
             started = time.monotonic()
             for task in waiting:
                 yield task, run(task, pulse)

@@ -22,7 +22,7 @@ PlaceOf = Callable[[Origin], str]
 
 
 class Line(NamedTuple):
-    """What one automaton did in a step."""
+    """What one automaton did in a step: `place` in words and `origin` in the text, and the `location` it is then in."""
 
     step: int
     time: str
@@ -30,6 +30,8 @@ class Line(NamedTuple):
     what: str
     place: str
     changes: tuple[str, ...]
+    origin: Origin | None = None
+    location: str = ""
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[Line]:
@@ -47,7 +49,8 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
             place = "" if origin is None else place_of(origin)
             shown = changes if part is actors[-1] else ()
             moment = "" if time is None else f"{time:.3f} s"
-            found.append(Line(step.number, moment, part.automaton, _what(step, part), place, shown))
+            what, location = _what(step, part), part.destination.location
+            found.append(Line(step.number, moment, part.automaton, what, place, shown, origin, location))
         if not actors:
             found.append(Line(step.number, "" if time is None else f"{time:.3f} s", "", _name(step), "", changes))
     return found
