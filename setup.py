@@ -24,16 +24,18 @@ DIRECTIVES = {
 
 
 def extensions() -> list[Extension]:
-    """The kernel, unless it is not wanted or Cython is missing. `optional`: if it does not compile, go on without."""
+    """The kernel, unless it is not wanted or Cython is missing. If it does not compile, the build goes on without."""
     if os.environ.get("AS2FM_PURE_PYTHON") == "1":
         return []
     try:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    flags = [] if os.name == "nt" else ["-O3", "-fwrapv"]
-    kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags, optional=True)
-    return cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython")
+    flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv"]
+    kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags)
+    (made,) = cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython", quiet=True)
+    made.optional = True  # Cython does not keep that of `kernel`.
+    return [made]
 
 
 class BuildWithSchemas(build_py):

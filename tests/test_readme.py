@@ -13,6 +13,7 @@ from as2fm_lsp.cli.main import run
 README = Path(__file__).resolve().parents[1] / "README.md"
 _FILE = re.compile(r"^\*\*`(\S+)`\*\*\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _TRANSLATE = re.compile(r"^\$ as2fm-lsp (translate main\.xml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_VERIFY = re.compile(r"^\$ as2fm-lsp (verify main\.xml [^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -30,12 +31,19 @@ def test_the_battery_monitor(
     ((command, printed),) = _TRANSLATE.findall(text)
     assert run(command.split()) == 0
     assert capsys.readouterr().out == printed
+    ((command, printed),) = _VERIFY.findall(text)
+    assert run(command.split()) == 0
+    assert without_time(capsys.readouterr().out) == without_time(printed)
     checking, translating = _PROGRAM.findall(text)
     exec(checking, {})
     assert float(capsys.readouterr().out) == pytest.approx(0.75)
     names: dict[str, str] = {}
     exec(translating, names)
     assert f"{names['text']}\n" == (tmp_path / "main.jani").read_text(encoding="utf-8")
+
+
+def without_time(text: str) -> str:
+    return re.sub(r", [\d.]+ s$", "", text, flags=re.MULTILINE)
 
 
 def test_links_lead_somewhere() -> None:

@@ -43,10 +43,14 @@ class Progress:
         Raises:
             Interrupted: the work is not wanted any more.
         """
-        if self.token:
-            self._server.work_done_progress.report(self.token, types.WorkDoneProgressReport(message=what))
+        self.say(what)
         await asyncio.sleep(0)
         self._server.requests.checkpoint()
+
+    def say(self, what: str) -> None:
+        """Tell what is being done."""
+        if self.token:
+            self._server.work_done_progress.report(self.token, types.WorkDoneProgressReport(message=what))
 
     def report(self, done: int, total: int) -> None:
         percentage = done * 100 // max(total, 1)

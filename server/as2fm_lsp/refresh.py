@@ -3,6 +3,7 @@
 
 A client asks by itself about the document that is edited. What hints and lenses of *other* documents say changes only
 with what files see of each other, and that is the linked systems: as long as they stay the same objects, it is quiet.
+What is known of properties changes as well, and becomes stale.
 The first time it speaks: the client may have asked before anything was known.
 """
 
@@ -48,4 +49,6 @@ class Refresh:
             for analysis in (moment.snapshot(path).analysis,)
             for system in analysis.memberships.get(path, ())
         }
-        return shown(session.client_settings), systems
+        verified = self._server.verified
+        stale = [verified.is_stale(known, moment.snapshot(system).analysis, system) for system, known in verified.all()]
+        return shown(session.client_settings), systems, verified.changes, stale

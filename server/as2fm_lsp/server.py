@@ -28,6 +28,7 @@ from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
 from as2fm_lsp.tcp import accepted
+from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
 from roaml.model.kinds import EXTENSIONS
 from roaml.project.settings import CONFIG_FILE
@@ -42,18 +43,22 @@ class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
     `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
-    client that shows places, "" if it has none.
+    client that shows places, `show_counterexample` the one that shows why a property fails; "" if it has none.
+    `verified` is what is known of properties.
     """
 
     def __init__(self) -> None:
         super().__init__("as2fm-lsp", __version__)
         self.is_shut_down = False
         self.show_references = ""
+        self.show_counterexample = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
-        self.diagnostics.finished = Refresh(self).look
+        self.verified = Verified()
+        self.refresh = Refresh(self)
+        self.diagnostics.finished = self.refresh.look
 
     def feature(self, feature_name: str, options: Any = None) -> Callable[[Any], Any]:
         register = super().feature(feature_name, options)
@@ -198,6 +203,7 @@ def _workspace(server: Server) -> None:
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
         session.configure(options.get("settings") or {})
         server.show_references = str(options.get("showReferences") or "")
+        server.show_counterexample = str(options.get("showCounterexample") or "")
         general = params.capabilities.general
         if general is not None and general.stale_request_support is not None:
             server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)

@@ -24,10 +24,11 @@ _ON = {
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """`references`: whether lenses count uses."""
+    """`references`: whether lenses count uses; `results`: whether hints tell what is known of properties."""
 
     hints: frozenset[HintKind]
     references: bool
+    results: bool
 
 
 def shown(settings: object) -> Shown:
@@ -36,7 +37,8 @@ def shown(settings: object) -> Shown:
         settings: the client's settings, as they came.
     """
     hints = frozenset(kind for kind, on in _ON.items() if _is_on(settings, "inlayHints", kind.value, on))
-    return Shown(hints, _is_on(settings, "codeLens", "references", True))
+    references = _is_on(settings, "codeLens", "references", True)
+    return Shown(hints, references, _is_on(settings, "inlayHints", "results", True))
 
 
 def _is_on(settings: object, section: str, key: str, otherwise: bool) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from roaml.text import Location, Span, TextEdit
 
@@ -34,8 +35,7 @@ class Tag(enum.Enum):
     DEPRECATED = "deprecated"
 
 
-@dataclass(frozen=True, slots=True)
-class Symbol:
+class Symbol(NamedTuple):
     """A named thing in a file, independent of where it stands: `kind` is what the schemas say that a value defines.
 
     `scope` tells equal names apart (for example the thread that a state belongs to); it is empty for most kinds.

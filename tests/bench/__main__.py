@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, requests, storm, translate
+from bench import check, requests, storm, translate, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -15,6 +15,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **requests.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,
+    **verify.BENCHMARKS,
 }
 
 
@@ -22,6 +23,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="run.py", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(BENCHMARKS)}; all if none is given")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw how translations grow, as SVG")
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="draw how verification grows, as SVG files")
     options = parser.parse_args()
     names = options.names or list(BENCHMARKS)
     unknown = [name for name in names if name not in BENCHMARKS]
@@ -33,6 +35,8 @@ def main() -> int:
         rows += BENCHMARKS[name]()
     if options.plot:
         options.plot.write_text(translate.diagram(), encoding="utf-8")
+    for name, text in verify.diagrams().items() if options.plots else ():
+        (options.plots / name).write_text(text, encoding="utf-8")
     print(f"{table(rows)}\n\nMeasured with {machine()}.")
     return 0
 

@@ -10,18 +10,23 @@ WIDTH, HEIGHT, MARGIN = 560, 380, 56
 COLORS = ("#1f6feb", "#c2410c", "#15803d")
 
 Point = tuple[float, float]
-"""Size in MB and time in s."""
+"""Where it stands across and up."""
 
 
-def svg(series: Mapping[str, Sequence[Point]]) -> str:
+def svg(
+    series: Mapping[str, Sequence[Point]],
+    across: str = "size of the JANI file in MB",
+    up: str = "translating and writing in s",
+) -> str:
     """
     Args:
         series: name -> points. All numbers are positive.
+        across, up: what the axes show.
     """
-    return "".join(f"{line}\n" for line in _lines(series))
+    return "".join(f"{line}\n" for line in _lines(series, across, up))
 
 
-def _lines(series: Mapping[str, Sequence[Point]]) -> Iterator[str]:
+def _lines(series: Mapping[str, Sequence[Point]], across: str, up: str) -> Iterator[str]:
     points = [point for each in series.values() for point in each]
     (left, right), (low, high) = (_decades([point[axis] for point in points]) for axis in (0, 1))
 
@@ -46,8 +51,8 @@ def _lines(series: Mapping[str, Sequence[Point]]) -> Iterator[str]:
         yield f'<text x="{MARGIN - 8}" y="{at}" text-anchor="end" dominant-baseline="middle">{10.0**y:g}</text>'
     frame = [(10.0**left, 10.0**high), (10.0**left, 10.0**low), (10.0**right, 10.0**low)]
     yield f'<polyline points="{" ".join(place(*corner) for corner in frame)}" stroke="black" fill="none"/>'
-    yield f'<text x="{WIDTH / 2}" y="{HEIGHT - 14}" text-anchor="middle">size of the JANI file in MB</text>'
-    yield f'<text x="14" y="{MARGIN - 24}">translating and writing in s</text>'
+    yield f'<text x="{WIDTH / 2}" y="{HEIGHT - 14}" text-anchor="middle">{across}</text>'
+    yield f'<text x="14" y="{MARGIN - 24}">{up}</text>'
     for number, (name, found) in enumerate(series.items()):
         color = COLORS[number % len(COLORS)]
         yield f'<polyline points="{" ".join(place(*p) for p in found)}" stroke="{color}" fill="none" stroke-width="2"/>'

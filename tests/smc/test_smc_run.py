@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import multiprocessing
 import os
 import signal
 import tracemalloc
@@ -209,6 +210,16 @@ def tasks() -> Iterator[Task]:
     while True:
         yield Task(payload, 1, first, 10, 1000)
         first += 10
+
+
+def test_leaving_in_the_middle_of_large_results() -> None:
+    """Workers that were killed while they send would leave the rest of a result to be waited for."""
+    for _ in range(5):
+        with Pool(2, patience=0) as pool:
+            found = pool.outcomes(Task(each.payload, 0, each.first * 1000, 10_000, 100) for each in tasks())
+            next(found)
+            next(found)
+    assert not multiprocessing.active_children()
 
 
 def test_no_more_tasks_are_taken_than_workers_need() -> None:

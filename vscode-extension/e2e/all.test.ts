@@ -9,6 +9,7 @@ import { life } from "./life";
 import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
+import { verification } from "./verification";
 import { withoutPython } from "./withoutPython";
 import { walkthrough } from "./walkthrough";
 import { Stage } from "./support/stage";
@@ -27,6 +28,9 @@ describe("systems", () => {
 });
 describe("pictures", () => {
     pictures(stage);
+});
+describe("verification", () => {
+    verification(stage);
 });
 describe("walkthrough and templates", () => {
     walkthrough(stage);

@@ -3,6 +3,7 @@
 
 import * as vscode from "vscode";
 import { openTranslated, registerCommands } from "./editor/commands";
+import { Counterexamples } from "./editor/counterexamples";
 import { Documents } from "./editor/documents";
 import { PicturePanels } from "./editor/picturePanels";
 import { PlainScxmlPreview } from "./editor/plainScxml";
@@ -10,23 +11,29 @@ import { onInterpreterChange } from "./editor/pythonExtensions";
 import { LanguageServer } from "./editor/server";
 import { StatusItem } from "./editor/statusItem";
 import { Tasks } from "./editor/tasks";
+import { PropertyTests } from "./editor/tests";
 import { offerSchemas } from "./editor/xmlExtension";
 
 let server: LanguageServer | undefined;
 
 export function activate(context: vscode.ExtensionContext): void {
     const log = vscode.window.createOutputChannel("AS2FM", { log: true });
-    server = new LanguageServer(context, log, openTranslated);
+    server = new LanguageServer(context, log, {
+        onTranslated: openTranslated,
+        onVerify: (system, names) => tests.verify(system, names),
+    });
     const status = new StatusItem(log);
     const documents = new Documents(server);
     const plain = new PlainScxmlPreview(server);
     const pictures = new PicturePanels(context, server, log);
     const tasks = new Tasks(server);
-    context.subscriptions.push(log, server, status, documents, plain, pictures);
+    const tests = new PropertyTests(server, log);
+    const counterexamples = new Counterexamples(server, pictures);
+    context.subscriptions.push(log, server, status, documents, plain, pictures, tests, counterexamples);
     server.onState((state) => {
         status.show(state);
     });
-    registerCommands({ context, log, server, status, documents, tasks, plain, pictures });
+    registerCommands({ context, log, server, status, documents, tasks, plain, pictures, tests, counterexamples });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchWishes(context, server, log);
     void server.start();

@@ -3,7 +3,7 @@
 
 import type { Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
-import type { Picture, PictureKind } from "./pictures/contract";
+import type { Picture, PictureKind, Place } from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "";
 
@@ -56,3 +56,87 @@ export interface Translated {
     readonly uri: string;
     readonly summary: string;
 }
+
+/** The server's own command: the URI of a system, names of properties (all if none), and options. */
+export const VERIFY = "as2fm.verify";
+
+/** Something that is wrong, with its place if it has one. */
+export interface Wrong extends Partial<Place> {
+    readonly message: string;
+}
+
+/** What came of a property: numbers, or an error. JSON has no infinite numbers; those are words. */
+export interface Verified {
+    readonly property: string;
+    readonly seconds?: number;
+    /** Estimate and interval in a few characters. */
+    readonly short?: string;
+    readonly traces?: number;
+    readonly passed?: number;
+    readonly failed?: number;
+    readonly undecided?: number;
+    readonly complete?: boolean;
+    readonly expectations?: readonly {
+        readonly expected: string;
+        readonly met: boolean;
+        readonly certain: boolean;
+    }[];
+    /** Whether there is a trace that speaks against what is expected. */
+    readonly counterexample?: boolean;
+    readonly error?: Wrong;
+}
+
+/** `errors` are those of the model; then there are no results. */
+export interface Verification {
+    readonly results: readonly Verified[];
+    readonly errors: readonly Wrong[];
+}
+
+/** A property; `stale` is missing while nothing is known of it. */
+export interface Property extends Place {
+    readonly name: string;
+    readonly comment: string;
+    readonly stale?: boolean;
+}
+
+export interface VerifiableSystem {
+    readonly uri: string;
+    readonly properties: readonly Property[];
+}
+
+/** A node of a picture. */
+export interface Lit {
+    readonly kind: PictureKind;
+    readonly uri: string;
+    readonly node: string;
+}
+
+export interface Step extends Partial<Place> {
+    readonly step: number;
+    readonly time: string;
+    readonly automaton: string;
+    readonly what: string;
+    /** File and line, for people. */
+    readonly place: string;
+    readonly changes: readonly string[];
+    readonly lit: readonly Lit[];
+}
+
+export interface Counterexample {
+    readonly property: string;
+    readonly heading: string;
+    readonly verdict: string;
+    readonly trace: number;
+    readonly expected: string;
+    readonly stale: boolean;
+    readonly steps: readonly Step[];
+}
+
+export interface CounterexampleParams extends DocumentParams {
+    readonly property: string;
+}
+
+export const properties = new RequestType<null, readonly VerifiableSystem[], void>("as2fm/properties");
+export const counterexample = new RequestType<CounterexampleParams, Counterexample | null, void>(
+    "as2fm/counterexample",
+);

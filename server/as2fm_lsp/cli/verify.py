@@ -32,7 +32,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked, with_threshold
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool, WorkersLostError
-from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.program import FALSE
 from roaml.smc.run import ADAPTIVE, METHODS, SPRT, Options, Tally, summary
 from roaml.text import Location, SourceFile, Span
 
@@ -224,6 +224,7 @@ class _Verification:
 
     def _tell(self, asked: Sequence[Asked]) -> None:
         """Write traces and stories."""
+        from as2fm_lsp.verification.counterexample import speaking_against, wanted_verdict  # noqa: PLC0415
         from as2fm_lsp.verification.traces import write_traces  # noqa: PLC0415
         from roaml.smc.record import Recorder  # noqa: PLC0415
         from roaml.smc.story import Story, tell  # noqa: PLC0415
@@ -236,12 +237,9 @@ class _Verification:
             if self.options.traces is not None:
                 write_traces(self.options.traces, self.subject, recorder, result.answer, self.options.traces_limit)
             if self.options.explain:
-                expected = [verdict.expectation.threshold for verdict in result.verdicts]
-                wanted = TRUE if expected and not any(threshold.is_lower for threshold in expected) else FALSE
-                shortest = result.answer.tally.shortest
-                seen = shortest.get(wanted) or shortest.get(UNKNOWN)
+                seen = speaking_against(result)
                 if seen is None:
-                    what = "fails" if wanted == FALSE else "holds"
+                    what = "fails" if wanted_verdict(result) == FALSE else "holds"
                     print(f"{result.name}: there is no trace in which it {what}", file=sys.stderr)
                 else:
                     stories.append(tell(recorder, seen.trace, self.subject.clock))

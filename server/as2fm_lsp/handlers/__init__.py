@@ -25,6 +25,7 @@ from as2fm_lsp.handlers import (
     tags,
     translate,
     type_hierarchy,
+    verify,
     workspace_symbol,
 )
 
@@ -52,6 +53,7 @@ _FEATURES = (
     tags,
     translate,
     type_hierarchy,
+    verify,
     workspace_symbol,
 )
 

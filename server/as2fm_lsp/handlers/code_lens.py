@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/codeLens` and `codeLens/resolve`: translate a system; how much a thing is used.
+"""`textDocument/codeLens` and `codeLens/resolve`: translate or verify a system; how much a thing is used.
 
 The protocol has no command that shows places. A client that has one names it in its initialization options, as
 `showReferences`: it is called with a URI, a position and the locations, all in terms of the protocol. Without it the
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers import translate
+from as2fm_lsp.handlers import translate, verify
 from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.shown import shown
@@ -33,6 +33,7 @@ def register(server: Server) -> None:
         if on is None:
             return []
         found = list(translate.lenses(on.snapshot, on.path, on.source, on.convert))
+        found += verify.lenses(server, on)
         if shown(session.client_settings).references:
             for each in lenses(on.analysis, on.path):
                 data = [params.text_document.uri, pack(each.symbol)]

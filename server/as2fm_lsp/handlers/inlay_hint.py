@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers import verify
 from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import content
@@ -27,9 +28,11 @@ def register(server: Server) -> None:
         on = asked(server, params.text_document)
         if on is None:
             return []
-        found = inlay_hints(on.analysis, on.path, on.span(params.range), shown(session.client_settings).hints)
+        wanted = shown(session.client_settings)
+        found = inlay_hints(on.analysis, on.path, on.span(params.range), wanted.hints)
         explains = _explains(server)
-        return [_hint(each, on.convert.position(on.source, each.offset), on.path, explains) for each in found]
+        written = [_hint(each, on.convert.position(on.source, each.offset), on.path, explains) for each in found]
+        return [*written, *(verify.hints(server, on, params.range) if wanted.results else ())]
 
     @server.feature(types.INLAY_HINT_RESOLVE)
     def resolve(hint: types.InlayHint) -> types.InlayHint:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -97,24 +98,22 @@ def register(server: Server) -> None:
         return types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path, file.span(params.range))))
 
 
-def encoded(file: Asked, tokens: Iterable[Token]) -> list[int]:
+def encoded(file: Asked, tokens: Sequence[Token]) -> list[int]:
     """Five numbers for each token, its place relative to the one before."""
     data: list[int] = []
     line = character = 0
-    for token in tokens:
-        place = file.range(token.span)
-        start = place.start
-        if start.line != line:
+    columns = file.convert.columns(file.source, (token.span for token in tokens))
+    for token, (row, start, end) in zip(tokens, columns, strict=True):
+        if row != line:
             character = 0
-        data += (
-            start.line - line,
-            start.character - character,
-            place.end.character - start.character,
-            _TYPE_NUMBERS[token.kind],
-            sum(_BITS[modifier] for modifier in token.modifiers),
-        )
-        line, character = start.line, start.character
+        data += (row - line, start - character, end - start, _TYPE_NUMBERS[token.kind], _bits(token.modifiers))
+        line, character = row, start
     return data
+
+
+@cache
+def _bits(modifiers: frozenset[Modifier]) -> int:
+    return sum(_BITS[modifier] for modifier in modifiers)
 
 
 def changes(before: Sequence[int], after: Sequence[int]) -> list[types.SemanticTokensEdit]:

@@ -76,7 +76,7 @@ def _block(result: Result) -> str:
     for verdict in result.verdicts:
         text = f"  expected {verdict.expectation.text}: {'met' if verdict.is_met else 'NOT MET'}"
         if not verdict.is_certain and result.answer is not None:
-            text += f", though the interval reaches over {verdict.expectation.threshold.number:g}"
+            text += f"; the interval reaches to the other side of {verdict.expectation.threshold.number:g}"
         lines.append(text)
     return "\n".join(lines)
 
@@ -117,29 +117,30 @@ def _number(value: float) -> str:
 
 def as_json(results: Sequence[Result], errors: Sequence[dict[str, Any]] = ()) -> str:
     """For programs."""
-    value: dict[str, Any] = {"results": [_row(result) for result in results]}
+    value: dict[str, Any] = {"results": [row(result) for result in results]}
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
 
 
-def _row(result: Result) -> dict[str, Any]:
-    row: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+def row(result: Result) -> dict[str, Any]:
+    """A result as a value for JSON."""
+    found: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
     if result.answer is not None:
-        row.update(_answer(result.answer))
+        found.update(_answer(result.answer))
     if result.extremes is not None:
-        found = result.extremes
-        row["least"] = {**_answer(found.least), "scheduler": found.least_by}
-        row["greatest"] = {**_answer(found.greatest), "scheduler": found.greatest_by}
+        both = result.extremes
+        found["least"] = {**_answer(both.least), "scheduler": both.least_by}
+        found["greatest"] = {**_answer(both.greatest), "scheduler": both.greatest_by}
     if result.exact is not None:
         exact = result.exact
-        row["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
-    row["interrupted"] = result.is_interrupted
-    row["expectations"] = [
+        found["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
+    found["interrupted"] = result.is_interrupted
+    found["expectations"] = [
         {"expected": verdict.expectation.text, "met": verdict.is_met, "certain": verdict.is_certain}
         for verdict in result.verdicts
     ]
-    return row
+    return found
 
 
 def _answer(answer: Answer) -> dict[str, Any]:

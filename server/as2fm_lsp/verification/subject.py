@@ -52,7 +52,11 @@ def load(
     if path.endswith(".jani"):
         model, source = api.read_jani(path)
         return Subject(path, model, lambda _: source, _clock(model))
-    system = api.load(path, ros_paths, settings, overrides=overrides)
+    return of_system(api.load(path, ros_paths, settings, overrides=overrides))
+
+
+def of_system(system: api.LoadedSystem) -> Subject:
+    """A system, translated."""
 
     def source_of(file: str) -> SourceFile:
         found = system.analysis.source(file)
@@ -60,7 +64,7 @@ def load(
         return found
 
     model = api.to_jani(system)
-    return Subject(path, model, source_of, _clock(model))
+    return Subject(system.path, model, source_of, _clock(model))
 
 
 def _clock(model: Model) -> tuple[str, str] | None:

@@ -185,6 +185,8 @@ def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, t
     `reprinted` gives the type that the expression has after the translation printed its numbers: `2.0` has become `2`,
     an int (spec/03 §5.2).
     """
+    if isinstance(expr, Name) and (known := scope(expr.name)) is not None:
+        return known, ()  # as most are
     inference = _Inference(scope, reprinted)
     type_ = inference.type_of(expr)
     problems = inference.problems

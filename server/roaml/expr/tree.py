@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.operators import Operator, UnaryOperator
-from roaml.text import Span
+from roaml.text import Decoded, Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,8 +178,50 @@ def walk(expr: Expr) -> list[Expr]:
         node = stack.pop()
         found.append(node)
         if not isinstance(node, _LEAVES):
-            stack.extend(reversed(children(node)))
+            stack += children(node)[::-1]
     return found
+
+
+def placed(expr: Expr, source: Decoded) -> Expr:
+    """`expr`, whose spans are places in the text of `source`, with spans in the file."""
+    span = source.span(*expr.span)
+    match expr:
+        case Name():
+            return Name(span, expr.name)
+        case Number():
+            return Number(span, expr.value, expr.is_real)
+        case Binary():
+            operator_span = source.span(*expr.operator_span)
+            return Binary(span, expr.operator, operator_span, placed(expr.left, source), placed(expr.right, source))
+        case Member():
+            return Member(span, placed(expr.object, source), expr.name, source.span(*expr.name_span))
+        case Index():
+            return Index(span, placed(expr.object, source), placed(expr.index, source))
+        case Call():
+            return Call(span, placed(expr.function, source), _all_placed(expr.arguments, source))
+        case Unary():
+            return Unary(span, expr.operator, placed(expr.operand, source))
+        case Boolean():
+            return Boolean(span, expr.value)
+        case String():
+            return String(span, expr.value)
+        case Conditional():
+            then, otherwise = placed(expr.then, source), placed(expr.otherwise, source)
+            return Conditional(span, placed(expr.test, source), then, otherwise)
+        case ArrayLiteral():
+            return ArrayLiteral(span, _all_placed(expr.elements, source))
+        case ObjectLiteral():
+            members = (
+                ObjectMember(member.key, source.span(*member.key_span), placed(member.value, source))
+                for member in expr.members
+            )
+            return ObjectLiteral(span, tuple(members))
+        case ErrorExpr():
+            return ErrorExpr(span, _all_placed(expr.parts, source))
+
+
+def _all_placed(exprs: tuple[Expr, ...], source: Decoded) -> tuple[Expr, ...]:
+    return tuple(placed(expr, source) for expr in exprs)
 
 
 def is_draw(expr: Expr) -> bool:

@@ -16,7 +16,7 @@ a member and a struct). Whoever asks for all that must change together follows b
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
 from roaml.language import HL_SCXML
@@ -53,8 +53,7 @@ class Form(enum.Enum):
     FLAT = "a parameter in a variable name: `.` becomes `__`"
 
 
-@dataclass(frozen=True, slots=True)
-class Occurrence:
+class Occurrence(NamedTuple):
     """`span` is exactly the name; `form` tells how it is spelled there."""
 
     span: Span

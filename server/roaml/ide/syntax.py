@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
 from roaml.model.kinds import FileKind
-from roaml.model.syntax import Expression, expression_in, expression_of, text_span
+from roaml.model.syntax import Expression, expression_in, text_span
 from roaml.project.analysis import Analysis
+from roaml.text import Span
 from roaml.xml import Document, Element
 
 GRAMMARS = {
@@ -58,17 +59,22 @@ def path_at(file: XmlFile, offset: int) -> list[Typed]:
     return found
 
 
-def expressions(document: Document, each: Typed) -> Iterator[Expression]:
-    """The expressions in the attributes and in the text of an element, in the order of the text."""
+def expression_spans(each: Typed) -> Iterator[Span]:
+    """Where expressions stand in the attributes and in the text of an element, in the order of the text."""
     element, type_ = each
     if type_ is None:
         return
     for attribute in element.attributes:
         known = type_.attributes.get(attribute.name)
-        if known is not None and known.value in _EXPRESSIONS and (found := expression_of(document, attribute)):
-            yield found
+        if known is not None and known.value in _EXPRESSIONS and attribute.has_value:
+            yield attribute.value_span
     if type_.value in _EXPRESSIONS and (span := text_span(element)):
-        yield expression_in(document, span)
+        yield span
+
+
+def expressions(document: Document, each: Typed) -> Iterator[Expression]:
+    """The expressions of an element, in the order of the text."""
+    return (expression_in(document, span) for span in expression_spans(each))
 
 
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
@@ -76,8 +82,8 @@ def expression_at(file: XmlFile, offset: int) -> Expression | None:
     around = path_at(file, offset)
     if not around:
         return None
-    found = (each for each in expressions(file.document, around[-1]) if each.span.contains(offset))
-    return next(found, None)
+    span = next((span for span in expression_spans(around[-1]) if span.contains(offset)), None)
+    return None if span is None else expression_in(file.document, span)
 
 
 def _roots(document: Document) -> list[Element]:

@@ -10,19 +10,20 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, lru_cache
+from operator import attrgetter
 from typing import NamedTuple
 
 from roaml.expr import parse as expr
 from roaml.ide.json_tree import values
-from roaml.ide.syntax import Typed, XmlFile, expressions, walk, xml_file
+from roaml.ide.syntax import Typed, XmlFile, expression_spans, walk, xml_file
 from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, Member
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, AttributeType
 from roaml.model.kinds import FileKind
-from roaml.model.syntax import Expression, name_of
+from roaml.model.syntax import name_of
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis import Analysis
-from roaml.text import Span
+from roaml.text import Decoded, Span
 from roaml.xml import Attribute
 
 
@@ -80,7 +81,7 @@ def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -
         return ()
     if within is not None:
         found = (token for token in found if token.span.start <= within.end and within.start <= token.span.end)
-    return tuple(_on_lines(source.text, sorted(found, key=lambda token: token.span)))
+    return tuple(_on_lines(source.text, sorted(found, key=attrgetter("span"))))
 
 
 _LINE = re.compile(r"[^\r\n]+")
@@ -90,10 +91,14 @@ def _on_lines(text: str, tokens: Iterable[Token]) -> Iterator[Token]:
     """Tokens cut at line ends, without those that begin inside others."""
     done = 0
     for token in tokens:
-        if token.span.start >= done:
-            for line in _LINE.finditer(text, *token.span):
-                yield token._replace(span=Span(*line.span()))
-            done = max(done, token.span.end)
+        start, end = token.span
+        if start >= done:
+            if (line := _LINE.match(text, start, end)) and line.end() == end:
+                yield token  # as nearly all are
+            else:
+                for part in _LINE.finditer(text, start, end):
+                    yield token._replace(span=Span(*part.span()))
+            done = end
 
 
 # ------------------------------------------------------------------------- XML
@@ -112,8 +117,8 @@ def _xml(file: XmlFile) -> Iterator[Token]:
             known = type_.attributes.get(attribute.name) if type_ else None
             yield Token(attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use)))
             yield from _value(file, attribute, known)
-        for expression in expressions(file.document, each):
-            yield from expression_tokens(expression)
+        for span in expression_spans(each):
+            yield from expression_tokens(file.document.decoded(span))
 
 
 def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:
@@ -176,6 +181,7 @@ def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> 
             yield Token(name.span, kind, _modifiers(declaration=bool(known.defines)))
 
 
+@cache
 def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozenset[Modifier]:
     found = ((Modifier.DECLARATION, declaration), (Modifier.DEPRECATED, deprecated))
     return frozenset(modifier for modifier, holds in found if holds)
@@ -184,15 +190,24 @@ def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozen
 # ----------------------------------------------------------------- expressions
 
 
-def expression_tokens(expression: Expression) -> Iterator[Token]:
+def expression_tokens(source: Decoded) -> Iterator[Token]:
     """The tokens of an expression; brackets, points and commas are none."""
-    tokens = expr.tokens(expression.source)
+    for start, end, kind in _words(source.text):
+        yield Token(source.span(start, end), kind)
+
+
+@lru_cache(maxsize=5000)  # a file says the same again and again, and most of it once more after the next key
+def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
+    """Where the tokens of an expression begin and end in its text, and their kinds."""
+    found: list[tuple[int, int, TokenKind]] = []
+    tokens = expr.tokens(text)
     for i, token in enumerate(tokens):
         before = tokens[i - 1].text if i else ""
         after = tokens[i + 1].text if i + 1 < len(tokens) else ""
         kind = _word(token.text, before, after) if token.kind == "name" else _OTHERS.get(token.kind)
         if kind is not None and not (kind is TokenKind.OPERATOR and token.text in _PUNCTUATION):
-            yield Token(expression.source.span(token.start, token.end), kind)
+            found.append((token.start, token.end, kind))
+    return tuple(found)
 
 
 _OTHERS = {

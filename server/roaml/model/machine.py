@@ -11,6 +11,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 from roaml.language import ElementType
@@ -220,7 +221,7 @@ class State:
     handlers: tuple[Handler, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Chart:
     """States and data that belong together: a machine's own, or those of one action thread.
 
@@ -232,6 +233,33 @@ class Chart:
     initial: Name | None
     data: tuple[Data, ...]
     states: tuple[State, ...]
+
+    @cached_property
+    def statements(self) -> tuple[Statement, ...]:
+        """All statements, in the order of the bodies."""
+        return tuple(statement for _, _, body in bodies(self) for statement in statements(body))
+
+    @cached_property
+    def executed(self) -> tuple[Statement, ...]:
+        """The statements that some transition executes. Those of `<onentry>` are left out where nothing leads to, those
+        of `<onexit>` where nothing leads away (spec/05: they become parts of the transitions)."""
+        return tuple(statement for body in self._executed() for statement in statements(body))
+
+    def _executed(self) -> Iterator[tuple[Statement, ...]]:
+        handlers = [handler for state in self.states for handler in state.handlers if handler.effective]
+        targets = {target.state.value for handler in handlers for target in handler.targets if target.state}
+        entered = {*targets, self.initial.value if self.initial else ""}
+        known = {state.id.value for state in self.states if state.id}
+        misspelled = not entered <= known
+        for state, handler, body in bodies(self):
+            if handler is not None:
+                runs = handler.effective
+            elif state.entry is not None and body is state.entry.statements:
+                runs = misspelled or (state.id is not None and state.id.value in entered)
+            else:
+                runs = any(handler.effective for handler in state.handlers)
+            if runs:
+                yield body
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -281,25 +309,6 @@ def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statemen
                 yield state, handler, target.body
 
 
-def executed_statements(chart: Chart) -> Iterator[Statement]:
-    """The statements that some transition executes. Those of `<onentry>` are left out where nothing leads to, those of
-    `<onexit>` where nothing leads away (spec/05: they become parts of the transitions)."""
-    handlers = [handler for state in chart.states for handler in state.handlers if handler.effective]
-    targets = {target.state.value for handler in handlers for target in handler.targets if target.state}
-    entered = {*targets, chart.initial.value if chart.initial else ""}
-    known = {state.id.value for state in chart.states if state.id}
-    misspelled = not entered <= known
-    for state, handler, body in bodies(chart):
-        if handler is not None:
-            runs = handler.effective
-        elif state.entry is not None and body is state.entry.statements:
-            runs = misspelled or (state.id is not None and state.id.value in entered)
-        else:
-            runs = any(handler.effective for handler in state.handlers)
-        if runs:
-            yield from statements(body)
-
-
 def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
     """All statements of a body, those inside `<if>` included, in document order."""
     for statement in body:
@@ -307,8 +316,3 @@ def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
         if isinstance(statement, If):
             for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
                 yield from statements(branch.body)
-
-
-def all_statements(chart: Chart) -> Iterator[Statement]:
-    for _, _, body in bodies(chart):
-        yield from statements(body)

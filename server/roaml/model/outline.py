@@ -24,8 +24,6 @@ from roaml.model.machine import (
     Send,
     SetOutput,
     Statement,
-    all_statements,
-    executed_statements,
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.typing import TypedMachine, Use, find_handle
@@ -159,7 +157,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
                     tuple(SentField(p.name.value, types.get(p.element, UNKNOWN)) for p in statement.params if p.name),
                 )
                 for chart in machine.charts
-                for statement in executed_statements(chart)
+                for statement in chart.executed
                 if isinstance(statement, Send) and statement.event
             )
         ),
@@ -186,11 +184,11 @@ def _handlers(machine: Machine) -> Iterator[Handler]:
 
 def _executed(machine: Machine) -> Iterator[Statement]:
     for chart in machine.charts:
-        yield from executed_statements(chart)
+        yield from chart.executed
 
 
 def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
-    users = [s for chart in machine.charts for s in all_statements(chart) if isinstance(s, Communicate)]
+    users = [s for chart in machine.charts for s in chart.statements if isinstance(s, Communicate)]
     declarations = [find_handle(machine, user) for user in users]
     if any(
         d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)

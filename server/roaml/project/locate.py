@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.diagnostics import Symbol
-from roaml.model.machine import Send, all_statements
+from roaml.model.machine import Send
 from roaml.model.syntax import Name
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -29,7 +29,7 @@ def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
         case "port":
             return next((p.key for p in machine.ports if p.key and p.key.value == symbol.name), None)
         case "event":
-            sends = [s for c in machine.charts for s in all_statements(c) if isinstance(s, Send)]
+            sends = [s for c in machine.charts for s in c.statements if isinstance(s, Send)]
             return next((s.event for s in sends if s.event and s.event.value == symbol.name), None)
     for declaration in machine.declarations:
         if declaration.kind == symbol.kind and declaration.handle and declaration.handle.value == symbol.name:

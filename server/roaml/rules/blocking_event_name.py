@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, all_statements
+from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.typing import find_handle
@@ -22,7 +22,7 @@ WAITING = re.compile(
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and WAITING.match(statement.event.value):
                 message = "an event of such a name is never discarded: it waits until every receiver handles it"
                 yield RULE.at(statement.event.span, message)
@@ -37,7 +37,7 @@ def _with_feedback(machine: Machine) -> Iterator[Declaration]:
     """The actions whose feedback the machine sends or handles."""
     users: list[Communicate | Handler] = []
     for chart in machine.charts:
-        users += [s for s in all_statements(chart) if isinstance(s, Communicate) and s.type.sends == "feedback"]
+        users += [s for s in chart.statements if isinstance(s, Communicate) and s.type.sends == "feedback"]
         users += [h for state in chart.states for h in state.handlers if h.trigger == "feedback"]
     used = [find_handle(machine, user) for user in users]
     return (declaration for declaration in machine.declarations if declaration in used)

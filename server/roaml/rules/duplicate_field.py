@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Communicate, Param, Send, all_statements
+from roaml.model.machine import Communicate, Param, Send
 from roaml.model.syntax import Name
 from roaml.rules.elements import removal
 from roaml.rules.rule import MachineContext, Rule
@@ -14,7 +14,7 @@ from roaml.rules.rule import MachineContext, Rule
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             match statement:
                 case Communicate():
                     yield from _twice(context, statement.fields, "field")

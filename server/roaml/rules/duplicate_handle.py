@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Communicate, Declaration, Handler, all_statements
+from roaml.model.machine import Communicate, Declaration, Handler
 from roaml.model.syntax import Name, PortRead
 from roaml.model.typing import find_handle
 from roaml.rules.elements import removal
@@ -56,7 +56,7 @@ def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> 
     users: list[Handler | Communicate] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers]
-        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
     named = [user.handle.span for user in users if user.handle and find_handle(machine, user) is declaration]
     if declaration.element.get("name") is not None:
         edit = TextEdit(handle.span, new)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import is_foreign
-from roaml.model.machine import If, all_statements
+from roaml.model.machine import If
 from roaml.rules.elements import removal, stands_alone
 from roaml.rules.rule import MachineContext, Rule
 from roaml.xml import Element
@@ -17,7 +17,7 @@ MARKERS = ("elseif", "else")
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, If):
                 yield from _check(context, statement)
 

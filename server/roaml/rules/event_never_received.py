@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Send, all_statements
+from roaml.model.machine import Send
 from roaml.rules.invalid_name import EVENT
 from roaml.rules.removed_bt_event import REMOVED
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -19,7 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
     known = () if context.listed_as == {"node_models"} else REMOVED  # of these, removed-bt-event tells
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value not in known:
                 event = system.events.get(statement.event.value)
                 if event is not None and not event.receivers and not system.is_observed(event.name):

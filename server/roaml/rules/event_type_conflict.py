@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.types import Array, EmptyArray, Scalar, Type, Unknown, is_kind, leaves
-from roaml.model.machine import Communicate, Declaration, Param, Send, all_statements
+from roaml.model.machine import Communicate, Declaration, Param, Send
 from roaml.model.system import Event
 from roaml.model.typing import TypedValue, Use, find_handle
 from roaml.rules.interfaces import declared
@@ -21,7 +21,7 @@ ROUND = "; a number like `2.0` becomes an integer when it is sent: store it in a
 def check(context: MachineContext) -> Iterator[Finding]:
     values = {value.element: value for value in context.typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and context.system:
                 event = context.system.events.get(statement.event.value)
                 for param in statement.params if event else ():
@@ -76,7 +76,7 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, str], list[
     """The fields that the machine sends, by declaration and part of its interface."""
     found: defaultdict[tuple[Declaration, str], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Communicate) and (declaration := find_handle(context.machine, statement)):
                 found[declaration, statement.type.sends] += statement.fields
     return found

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
-from roaml.model.machine import NoEffect, all_statements
+from roaml.model.machine import NoEffect
 from roaml.rules.elements import removal, stands_alone
 from roaml.rules.rule import MachineContext, Rule
 from roaml.xml import Element
@@ -14,7 +14,7 @@ from roaml.xml import Element
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        found: list[Element] = [s.element for s in all_statements(chart) if isinstance(s, NoEffect)]
+        found: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
         found += [h.element for state in chart.states for h in state.handlers if not h.effective]
         for element in found:
             # Whatever it stands alone in needs content, so that goes as well: empty-branch tells.

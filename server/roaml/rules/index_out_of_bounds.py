@@ -53,8 +53,10 @@ def _unbounded(context: MachineContext, place: Place, tree: Expr) -> Iterator[Fi
         return
     size = context.system.parameters.max_array_size
     for node in walk(tree):
-        number = constant(node.index) if isinstance(node, Index) else None
-        if isinstance(node, Index) and isinstance(number, int) and number >= size:
+        if not isinstance(node, Index):
+            continue
+        number = constant(node.index)
+        if isinstance(number, int) and number >= size:
             array = _type_of(context, place, node.object)
             if isinstance(array, Array) and array.bound is None:
                 message = f"`{array}` has no element {number}: without a bound it holds {size} (`max_array_size`)"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import Unknown, is_kind
-from roaml.model.machine import CallChild, Chart, all_statements
+from roaml.model.machine import CallChild, Chart
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
@@ -28,7 +28,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _children(chart: Chart) -> Iterator[Name]:
-    for statement in all_statements(chart):
+    for statement in chart.statements:
         if isinstance(statement, CallChild) and statement.child is not None:
             yield statement.child
     for state in chart.states:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Declaration, Send, all_statements
+from roaml.model.machine import Declaration, Send
 from roaml.model.syntax import Name
 from roaml.model.typing import STATUSES
 from roaml.rules.event_data_unavailable import EVENT_VARIABLES
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for data in chart.data:
             if data.id is not None:
                 yield from _variable(data.id)
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Send):
                 if statement.event and not EVENT.match(statement.event.value):
                     yield RULE.at(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import Unknown, is_kind
-from roaml.model.machine import Chart, ReturnStatus, all_statements
+from roaml.model.machine import Chart, ReturnStatus
 from roaml.model.syntax import Name
 from roaml.model.typing import STATUSES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -17,7 +17,7 @@ NUMBERS = {str(number): status for status, number in STATUSES.items()}
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, ReturnStatus) and statement.status and statement.status.value not in STATUSES:
                 yield from _check(context, chart, statement.status)
 

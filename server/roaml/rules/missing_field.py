@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Struct, Type, leaves
-from roaml.model.machine import Communicate, all_statements
+from roaml.model.machine import Communicate
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.layout import last_in
@@ -20,7 +20,7 @@ SHOWN = 6
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Communicate):
                 missing = missing_fields(context, statement)
                 if missing:

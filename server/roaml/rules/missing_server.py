@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Communicate, Declaration, Handler, Machine, all_statements
+from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.syntax import Name
 from roaml.model.system import Channel, System
 from roaml.model.typing import find_handle
@@ -57,7 +57,7 @@ def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
     """Where the rest of the machine names a declaration."""
     for chart in machine.charts:
         users: list[Handler | Communicate] = [h for state in chart.states for h in state.handlers]
-        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
         for user in users:
             if user.handle is not None and find_handle(machine, user) is declaration:
                 yield user.handle.span

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Array, Scalar, Type
 from roaml.language import HL_SCXML
-from roaml.model.machine import Assign, Communicate, Param, Send, all_statements
+from roaml.model.machine import Assign, Communicate, Param, Send
 from roaml.model.syntax import Value
 from roaml.rules import misspelled
 from roaml.rules.rule import MachineContext, Rule
@@ -25,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if data.id is not None and is_missing(data.element, data.value):
                 message = f"the variable `{data.id.value}` has no initial value"
                 yield RULE.at(data.element.name_span, message, *_fix(data.element, types.get(data.id.value)))
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             match statement:
                 case Assign(value=value) if is_missing(statement.element, value):
                     target = f" for `{statement.location.text}`" if statement.location else ""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.machine import Handler, Machine, Send, all_statements
+from roaml.model.machine import Handler, Machine, Send
 from roaml.rules.elements import removal
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
@@ -41,7 +41,7 @@ def _handlers(machine: Machine) -> Iterator[Handler]:
 
 def _sends(machine: Machine) -> Iterator[Send]:
     for chart in machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value in REMOVED:
                 yield statement
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
-from roaml.model.machine import Communicate, Declaration, all_statements
+from roaml.model.machine import Communicate, Declaration
 from roaml.model.typing import find_handle
 from roaml.rules import misspelled
 from roaml.rules.elements import removal
@@ -60,7 +60,7 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
     """The elements that send something, with their declaration; None if it may be any, because one is misspelled."""
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Communicate):
                 yield find_handle(context.machine, statement), statement.element.name
     unknown = [element for element in context.machine.element.walk() if element.name not in HL_SCXML.elements]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Communicate, all_statements
+from roaml.model.machine import Communicate
 from roaml.rules.rule import MachineContext, Rule
 
 INSIDE = ("ros_action_handle_thread_start", "ros_action_thread_free")
@@ -17,7 +17,7 @@ UNUSUAL = ("ros_action_handle_goal",)
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         elements = [h.element for state in chart.states for h in state.handlers]
-        elements += [s.element for s in all_statements(chart) if isinstance(s, Communicate)]
+        elements += [s.element for s in chart.statements if isinstance(s, Communicate)]
         for element in elements:
             if not chart.scope and element.name in INSIDE:
                 yield RULE.at(element.name_span, f"`<{element.name}>` belongs into a `<ros_action_thread>`")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.language import HL_SCXML
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
-from roaml.model.machine import Communicate, Declaration, Handler, Machine, all_statements
+from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.syntax import Name
 from roaml.rules import misspelled
 from roaml.rules.interfaces import other_kind
@@ -122,7 +122,7 @@ def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[str, .
     users: list[Handler | Communicate] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers if h.effective]
-        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
     for user in users:
         attribute = user.type.attributes.get("name")
         if attribute is not None and attribute.refers:

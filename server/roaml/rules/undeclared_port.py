@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Scalar
 from roaml.language import HL_SCXML
-from roaml.model.machine import Machine, SetOutput, all_statements
+from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
 from roaml.model.typing import TypedMachine
 from roaml.rules import misspelled
@@ -54,7 +54,7 @@ def _type_of(context: MachineContext, key: Name) -> str | None:
         if isinstance(value.value, PortRead) and value.value.key is key:
             return value.wanted.name if isinstance(value.wanted, Scalar) and value.wanted.name else None
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, SetOutput) and statement.key is key:
                 types = [v.type for v in context.typed.values if v.value is statement.value]
                 return next((t.name or DEFAULTS[t.kind] for t in types if isinstance(t, Scalar)), None)
@@ -76,7 +76,7 @@ def reads(machine: Machine, typed: TypedMachine) -> Iterator[Name]:
 def writes(machine: Machine) -> Iterator[Name]:
     """The ports that a machine writes."""
     for chart in machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, SetOutput) and statement.key is not None:
                 yield statement.key
 

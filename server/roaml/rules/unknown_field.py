@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct, Unknown, leaves, unwrap
-from roaml.model.machine import Communicate, Param, all_statements
+from roaml.model.machine import Communicate, Param
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.layout import remove
@@ -26,7 +26,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     message = f"`{inner}` has no field `{problem.name}`{did_you_mean(close)}"
                     yield RULE.at(problem.span, message, *replacements(problem.span, close))
     for chart in context.machine.charts:
-        for statement in all_statements(chart):
+        for statement in chart.statements:
             if isinstance(statement, Communicate):
                 yield from _fields(context, statement)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
-from roaml.model.machine import Communicate, Handler, all_statements
+from roaml.model.machine import Communicate, Handler
 from roaml.model.typing import find_handle
 from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule
@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     users: list[Handler | Communicate] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers]
-        users += [s for s in all_statements(chart) if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
     used = [find_handle(machine, user) for user in users if "name" in user.type.attributes]
     with_threads = [thread.server.value for thread in machine.threads if thread.server]
     for declaration in machine.declarations:

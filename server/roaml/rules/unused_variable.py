@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.expr.tree import Name, walk
-from roaml.model.machine import CallChild, Chart, Data, ReturnStatus, all_statements
+from roaml.model.machine import CallChild, Chart, Data, ReturnStatus
 from roaml.model.syntax import Expression, Value
 from roaml.rules.elements import removal
 from roaml.rules.layout import remove
@@ -44,7 +44,7 @@ def _used(values: list[Value], chart: Chart) -> set[str]:
         for node in walk(value.tree)
         if isinstance(node, Name)
     }
-    for statement in all_statements(chart):
+    for statement in chart.statements:
         match statement:
             case ReturnStatus(status=name) | CallChild(child=name) if name is not None:
                 used.add(name.value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions and assignments -> bytecode.
+"""Expressions -> bytecode.
 
 - Types are known beforehand, so each instruction is for ints or for reals.
 - Conditions become jumps; `∧`, `∨`, `⇒` and `ite` compute only what they need, as `roaml.jani.semantics` defines.
@@ -9,9 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from collections.abc import Sequence
 
 from roaml.jani.expressions import (
     ArrayAccess,
@@ -27,57 +25,19 @@ from roaml.jani.expressions import (
     NamedNumber,
     Real,
     Unary,
-    walk,
 )
 from roaml.jani.model import Function
 from roaml.jani.node import Node, Origin
 from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
-from roaml.jani.semantics import EvaluationError, Value, evaluate
-from roaml.jani.types import ArrayType, BasicType, BoundedType, Type
+from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.jani.types import ArrayType
 from roaml.smc.fault import FaultError
+from roaml.smc.names import Meaning, Names, Storage, kind_of, larger, unsupported
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.registers import BOOL, INT, REAL, Label, Number, Operand, Region, Tape, product
 
 MOST_ELEMENTS = 1_000_000
 MOST = (1 << 63) - 1
-
-
-@dataclass(slots=True)
-class Storage:
-    """Where a variable or constant lives. `watch` is its number if something must be told of changes, else -1."""
-
-    name: str
-    type: Type
-    kind: str
-    shape: tuple[int, ...]
-    base: int = -1
-    watch: int = -1
-    is_constant: bool = False
-    bounds: tuple[Number | None, Number | None] = (None, None)
-
-
-Meaning: TypeAlias = Storage | Operand | Region
-"""What a name stands for: a variable, a bound scalar, a bound array."""
-
-
-class Later(NamedTuple):
-    """An assignment whose value is computed: where it goes, the register where the value is kept, whom to tell."""
-
-    place: Region
-    register: int
-    watch: int
-
-
-@dataclass(frozen=True)
-class Names:
-    """What names mean somewhere."""
-
-    values: Mapping[str, Meaning]
-    functions: Mapping[str, Function]
-
-    def bound(self, more: Mapping[str, Meaning]) -> Names:
-        return Names({**self.values, **more}, self.functions)
-
 
 _JUMPS = {
     # operator: for ints: (jump if it holds, jump if not, whether operands change places for either)
@@ -738,147 +698,3 @@ class Assembler:
                 bound[parameter.name] = Operand(kind, value.register, value.value)
         self._calls.append(node.function)
         return function.body, names.bound(bound)
-
-    # ------------------------------------------------------------ assignments
-
-    def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
-        """`target := value`, at once."""
-        self.tape.place(target.origin or origin)
-        storage, accesses = self.assigned(target, names)
-        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
-        self.tape.place(value.origin or target.origin or origin)
-        if place.shape:
-            self.assign_array(value, place, names, storage.watch)
-        elif storage.bounds != (None, None):
-            operand = self.stored(value, storage.kind, names)
-            self.check_bounds(operand, storage)
-            self.write(operand, place, storage.watch)
-        else:
-            self.put(value, place, names, storage.watch)
-
-    def assigned(self, target: Expression, names: Names) -> tuple[Storage, list[ArrayAccess]]:
-        accesses: list[ArrayAccess] = []
-        inner = target
-        while isinstance(inner, ArrayAccess):
-            accesses.append(inner)
-            inner = inner.array
-        if not isinstance(inner, Name):
-            raise FaultError(unsupported(inner), target.origin)
-        storage = self.meaning(inner, names)
-        if not isinstance(storage, Storage) or storage.is_constant:
-            raise FaultError(f"`{inner.identifier}` cannot be assigned to", target.origin)
-        if len(accesses) > len(storage.shape):
-            raise FaultError("this is not an array", target.origin)
-        accesses.reverse()
-        return storage, accesses
-
-    def assign_array(self, value: Expression, place: Region, names: Names, watch: int) -> None:
-        if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
-            self.fill(value, place, names, watch)
-            return
-        # What is stored may be made of what is there.
-        copy = self.materialized(value, place.kind, place.shape, names)
-        self.write_early(place, copy.base, watch)
-
-    def write_early(self, place: Region, register: int, watch: int) -> None:
-        is_real = place.kind == REAL
-        if not place.shape:
-            self.write(Operand(place.kind, register), place, watch)
-        elif place.offset < 0:
-            self.tape.emit(Op.COPY_REAL if is_real else Op.COPY, place.base, register, watch, place.size)
-        else:
-            code = Op.STORE_MANY_REAL if is_real else Op.STORE_MANY
-            self.tape.emit(code, place.base, place.offset, register, place.size)
-            if watch >= 0:
-                self.tape.emit(Op.NOTE, watch)
-
-    def early(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> Later:
-        """Compute what will be assigned, and where; `finish` assigns it."""
-        self.tape.place(target.origin or origin)
-        storage, accesses = self.assigned(target, names)
-        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
-        if place.offset >= 0:
-            offset = self.tape.room(INT, 1)
-            self.tape.emit(Op.MOVE, offset, place.offset)
-            place = Region(place.kind, place.shape, place.base, offset)
-        self.tape.place(value.origin or target.origin or origin)
-        if place.shape:
-            return Later(place, self.materialized(value, storage.kind, place.shape, names).base, storage.watch)
-        register = self.tape.room(storage.kind, 1)
-        operand = self.stored(value, storage.kind, names, register)
-        self.check_bounds(operand, storage)
-        return Later(place, register, storage.watch)
-
-    def finish(self, later: Later) -> None:
-        self.write_early(later.place, later.register, later.watch)
-
-    def reset(self, storage: Storage) -> None:
-        """Give a variable its first value again."""
-        for i in range(product(storage.shape)):
-            cells: Sequence[Number] = self.tape.reals if storage.kind == REAL else self.tape.ints
-            value = self.tape.constant(storage.kind, cells[storage.base + i])
-            self.write(value, Region(storage.kind, (), storage.base + i), storage.watch)
-
-    def check_bounds(self, operand: Operand, storage: Storage) -> None:
-        low, high = storage.bounds
-        if low is None and high is None:
-            return
-        is_real = storage.kind == REAL
-        low = (-float("inf") if is_real else -MOST - 1) if low is None else low
-        high = (float("inf") if is_real else MOST) if high is None else high
-        ends = [self.tape.constant(storage.kind, end).register for end in (low, high)]
-        self.tape.emit(Op.RANGE_REAL if is_real else Op.RANGE, 0, operand.register, *ends)
-
-
-def kind_of(type_: Type) -> str:
-    """The kind of values of a type, of the elements of an array type.
-
-    Raises:
-        FaultError: values of this type are not supported.
-    """
-    while isinstance(type_, ArrayType):
-        type_ = type_.element
-    if isinstance(type_, BoundedType):
-        type_ = type_.base
-    kinds = {BasicType.BOOL: BOOL, BasicType.INT: INT, BasicType.REAL: REAL}
-    if isinstance(type_, BasicType) and type_ in kinds:
-        return kinds[type_]
-    raise FaultError("only variables of type bool, int, real and arrays of these are supported")
-
-
-def larger(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
-    """The least shape that holds both."""
-    if len(first) != len(second):
-        return first if len(first) > len(second) else second
-    return tuple(map(max, first, second))
-
-
-def shape_of(value: Value) -> tuple[int, ...]:
-    """The shape of a value."""
-    if not isinstance(value, tuple):
-        return ()
-    inner: tuple[int, ...] = ()
-    for each in value:
-        inner = larger(inner, shape_of(each))
-    return (len(value), *inner)
-
-
-def variables_in(expression: Expression, functions: Mapping[str, Function]) -> set[str]:
-    """The names that the value of an expression depends on."""
-    found: set[str] = set()
-    called: set[str] = set()
-    stack = [expression]
-    while stack:
-        for node in walk(stack.pop()):
-            if isinstance(node, Name):
-                found.add(node.identifier)
-            elif isinstance(node, Call) and node.function not in called:
-                called.add(node.function)
-                if node.function in functions:
-                    stack.append(functions[node.function].body)
-    return found
-
-
-def unsupported(node: Node) -> str:
-    """The message for a kind of expression that the engine does not know."""
-    return f"the model checker does not support this kind of expression ({type(node).__name__})"

@@ -9,6 +9,7 @@ import signal
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from multiprocessing.synchronize import Event
 from typing import NamedTuple
 
 from roaml.smc.kernel import Kernel
@@ -106,6 +107,34 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
     return Outcome(bytes(verdicts), steps, rewards)
 
 
-def start_worker() -> None:
-    """Let the main process alone be interrupted by the keyboard: it ends its workers."""
+class StoppedError(Exception):
+    """Nobody waits for the batch any more."""
+
+
+_stopping: Event | None = None
+
+
+def start_worker(stopping: Event) -> None:
+    """
+    Args:
+        stopping: is set when the batches that are not done are not wanted any more. Workers end by themselves then: one
+            that is killed may leave half a result behind, for which the main process would wait for ever.
+    """
+    global _stopping  # noqa: PLW0603
+    _stopping = stopping
+    # The main process alone is interrupted by the keyboard, and tells its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def run_in_worker(task: Task) -> Outcome:
+    """
+    Raises:
+        StoppedError: the batch is not wanted any more.
+    """
+    _look(0, 0)
+    return run(task, _look)
+
+
+def _look(trace: int, steps: int) -> None:
+    if _stopping is not None and _stopping.is_set():
+        raise StoppedError

@@ -17,9 +17,10 @@ from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import Formula, identifiers
 from roaml.jani.semantics import EvaluationError, Value, evaluate
-from roaml.smc.assemble import Assembler, Names, Storage, variables_in
+from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.layout import Instance, Layout, lay_out
+from roaml.smc.names import Names, Storage, variables_in
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import Operand
 
@@ -85,7 +86,7 @@ class Compilation:
         if model.type not in SUPPORTED:
             raise FaultError(f"models of type {model.type.value} are not supported; dtmc and mdp are", model.origin)
         self.model = model
-        self.assembler = Assembler()
+        self.assembler = AssignmentAssembler()
         self.tape = self.assembler.tape
         self.layout = lay_out(model, self.assembler)
         self.int_count, self.real_count = len(self.tape.ints), len(self.tape.reals)

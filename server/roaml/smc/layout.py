@@ -11,8 +11,9 @@ from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.model import Assignment, Automaton, Function, Model, Variable
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BoundedType, Type
-from roaml.smc.assemble import Assembler, Meaning, Names, Storage, kind_of, larger, shape_of
+from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.fault import FaultError
+from roaml.smc.names import Meaning, Names, Storage, kind_of, larger, shape_of
 from roaml.smc.registers import INT, REAL, Number, Operand
 
 
@@ -47,7 +48,7 @@ class Layout:
         return (*self.shared, *(storage for instance in self.instances for storage in instance.own))
 
 
-def lay_out(model: Model, assembler: Assembler) -> Layout:
+def lay_out(model: Model, assembler: AssignmentAssembler) -> Layout:
     """Give a place to everything that has a value; registers of variables come before all others.
 
     Raises:
@@ -158,7 +159,9 @@ def _storage(name: str, type_: Type, value: Value) -> Storage:
     return Storage(name, type_, kind_of(type_), shape_of(value) if isinstance(type_, ArrayType) else ())
 
 
-def _grow(scopes: list[tuple[Automaton, Names]], assembler: Assembler, constants: Mapping[str, Value]) -> None:
+def _grow(
+    scopes: list[tuple[Automaton, Names]], assembler: AssignmentAssembler, constants: Mapping[str, Value]
+) -> None:
     """Make arrays as large as the largest value that is ever assigned to them."""
     known: dict[str, Meaning] = {
         name: Operand(INT, -1, value) for name, value in constants.items() if isinstance(value, (int, float))
@@ -193,7 +196,7 @@ def _assignments(automaton: Automaton) -> Iterator[Assignment]:
             yield from destination.assignments
 
 
-def _place(storage: Storage, value: Value, assembler: Assembler) -> None:
+def _place(storage: Storage, value: Value, assembler: AssignmentAssembler) -> None:
     size = 1
     for length in storage.shape:
         size *= length

@@ -13,9 +13,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from multiprocessing.synchronize import Event
 from typing import TypeAlias
 
-from roaml.smc.batch import Outcome, Task, run, start_worker
+from roaml.smc.batch import Outcome, Task, run, run_in_worker, start_worker
 
 PATIENCE = 0.4
 """Seconds that are worked alone before workers are started: most questions are answered by then."""
@@ -33,20 +34,23 @@ class WorkersLostError(Exception):
 class Pool:
     """Runs batches: alone at first, then on `jobs` processes; or on an executor that is given.
 
-    To be used in a `with` statement; leaving it by an exception ends the workers at once.
+    Without `patience`, nothing is ever run in this process, which then has time for other things.
+
+    To be used in a `with` statement; leaving it ends the workers.
     """
 
-    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float = PATIENCE) -> None:
+    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = PATIENCE) -> None:
         self.jobs = jobs
         self.executor = executor
         self.is_own = executor is None
         self.patience = patience
+        self._stopping: Event | None = None
 
     def __enter__(self) -> Pool:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self._stop(at_once=True)
+        self._stop()
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
         """The outcome of each task, in their order. The caller may stop to ask at any time.
@@ -55,7 +59,7 @@ class Pool:
             WorkersLostError: the tasks cannot be run.
         """
         waiting = iter(tasks)
-        if self.executor is None:
+        if self.executor is None and self.patience is not None:
             started = time.monotonic()
             for task in waiting:
                 yield task, run(task, pulse)
@@ -87,7 +91,7 @@ class Pool:
                     if lost > ATTEMPTS:
                         raise WorkersLostError(f"workers are lost again and again: {error}") from error
                     if self.is_own:
-                        self._stop(at_once=True)
+                        self._stop()
                     again = [each for each, _ in running]
                     running.clear()
                     running.extend((each, self._submit(each)) for each in again)
@@ -105,9 +109,10 @@ class Pool:
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-            self.executor = ProcessPoolExecutor(self.jobs, mp_context=context, initializer=start_worker)
+            self._stopping = context.Event()
+            self.executor = ProcessPoolExecutor(self.jobs, context, start_worker, (self._stopping,))
         try:
-            return self.executor.submit(run, task)
+            return self.executor.submit(run_in_worker if self.is_own else run, task)
         except BrokenExecutor:
             return None
 
@@ -123,12 +128,10 @@ class Pool:
                 if pulse is not None:
                     pulse(task.first, 0)
 
-    def _stop(self, at_once: bool) -> None:
+    def _stop(self) -> None:
         if self.executor is None or not self.is_own:
             return
-        processes = list((getattr(self.executor, "_processes", None) or {}).values())
-        self.executor.shutdown(wait=not at_once, cancel_futures=True)
-        if at_once:
-            for process in processes:
-                process.terminate()
+        if self._stopping is not None:
+            self._stopping.set()
+        self.executor.shutdown(wait=True, cancel_futures=True)
         self.executor = None

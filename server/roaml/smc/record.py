@@ -9,11 +9,11 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.jani.expressions import ArrayAccess, Expression
 from roaml.jani.model import Destination, Edge
-from roaml.smc.assemble import Storage, variables_in
 from roaml.smc.batch import Problem
 from roaml.smc.goal import Asked
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import Checker
+from roaml.smc.names import Storage, variables_in
 from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
 from roaml.smc.registers import BOOL, REAL
 

@@ -22,7 +22,7 @@ PlaceOf = Callable[[Origin], str]
 
 
 class Line(NamedTuple):
-    """What one automaton did in a step."""
+    """What one automaton did in a step: `place` in words and `origin` in the text, and the `location` it is then in."""
 
     step: int
     time: str
@@ -30,6 +30,8 @@ class Line(NamedTuple):
     what: str
     place: str
     changes: tuple[str, ...]
+    origin: Origin | None = None
+    location: str = ""
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[Line]:
@@ -47,7 +49,8 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
             place = "" if origin is None else place_of(origin)
             shown = changes if part is actors[-1] else ()
             moment = "" if time is None else f"{time:.3f} s"
-            found.append(Line(step.number, moment, part.automaton, _what(step, part), place, shown))
+            what, location = _what(step, part), part.destination.location
+            found.append(Line(step.number, moment, part.automaton, what, place, shown, origin, location))
         if not actors:
             found.append(Line(step.number, "" if time is None else f"{time:.3f} s", "", _name(step), "", changes))
     return found
@@ -208,11 +211,19 @@ def _plain(value: Plain) -> str:
         case bool():
             return "true" if value else "false"
         case list():
-            return f"[{', '.join(map(_plain, value))}]"
+            return _text(value) or f"[{', '.join(map(_plain, value))}]"
         case float():
             return f"{value:g}"
         case _:
             return str(value)
+
+
+def _text(value: list[Plain]) -> str:
+    """A string, which JANI has as an array of bytes filled up with zeros; "" if it is none."""
+    while value and value[-1] == 0:
+        value = value[:-1]
+    printable = all(isinstance(each, int) and 32 <= each < 127 for each in value)
+    return repr("".join(chr(each) for each in value if isinstance(each, int))) if value and printable else ""
 
 
 def _short(text: str) -> str:
@@ -221,4 +232,7 @@ def _short(text: str) -> str:
 
 def _escaped(text: str) -> str:
     """Mermaid ends a line at `;` and takes `#` for the start of a character's number."""
-    return text.replace("#", "#35;").replace(";", "#59;").replace("%%", "%").replace(":", "#58;")
+    return text.translate(_CODES)
+
+
+_CODES = {ord(character): f"#{ord(character)};" for character in "#;:%"}

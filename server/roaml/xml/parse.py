@@ -15,7 +15,7 @@ import re
 from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
-from roaml.text import Span, TextEdit
+from roaml.text import Span, TextEdit, span_of
 from roaml.xml.escapes import PREDEFINED, REFERENCE, is_character, unescape
 from roaml.xml.names import ASCII_NAME, SPACE, is_name, leading_local_name
 from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
@@ -136,11 +136,11 @@ class _Parser:
             for found in _SOUND_ATTRIBUTE.finditer(self.text, start, end):
                 group = found.lastindex or 2
                 name, value = found[1], found[group]
-                value_span = Span._make(found.span(group))
+                value_span = span_of(found.span(group))
                 if "&" in value:
                     self.check_references(value_span)
                     value = unescape(value)
-                attribute = Attribute(name, value, Span._make(found.span(1)), value_span, Span._make(found.span()))
+                attribute = Attribute(name, value, span_of(found.span(1)), value_span, span_of(found.span()))
                 attributes.append(attribute)
                 if seen.setdefault(name, attribute) is not attribute:
                     self.duplicate(attribute, seen[name])
@@ -290,10 +290,11 @@ class _Parser:
     def open_element(
         self, match: re.Match[str], attributes: list[Attribute], end: int, self_closing: bool, *, complete: bool
     ) -> int:
-        prefix, colon, local = match[1].partition(":")
+        name = match[1]
+        prefix, colon, local = name.partition(":")
         if not colon:
             prefix, local = "", prefix
-        element = Element(local, prefix, Span(*match.span(1)), attributes, Span(match.start(), end))
+        element = Element(local, prefix, span_of(match.span(1)), attributes, span_of((match.start(), end)))
         element.self_closing = self_closing
         element.complete = complete
         if colon or ":" in self.text[match.end(1) : end]:
@@ -306,7 +307,6 @@ class _Parser:
             if self.skipped_depth == (0 if self_closing else 1):
                 self.too_deep(element)
         if not self_closing:
-            name = match[1]
             self.stack.append(element)
             self.names.append(name)
             self.open_names[name] = self.open_names.get(name, 0) + 1
@@ -318,14 +318,14 @@ class _Parser:
         name = match[2]
         if name is None:
             return self.nameless_end_tag(Span(at, match.end() if match[3] else at + 2))
-        name_span = Span(*match.span(2))
+        name_span = span_of(match.span(2))
         if match[1]:
             gap = Span(*match.span(1))
             self.report(gap, "the name stands right behind `</`", Fix("Remove the space", (TextEdit(gap, ""),)))
         if match[3]:
             self.check_space(name_span.end, match.end())
         end = match.end() if match[3] else self.end_tag_junk(Span(at, name_span.end))
-        tag = Span(at, end)
+        tag = span_of((at, end))
         if not self.stack:
             drop = Fix("Remove it", (TextEdit(tag, ""),))
             self.stray(tag, f"`</{shown(name)}>` closes nothing", drop)
@@ -376,7 +376,7 @@ class _Parser:
 
     def close(self, tag: Span, name_span: Span) -> None:
         element = self.pop()
-        element.span = Span(element.span.start, tag.end)
+        element.span = span_of((element.span.start, tag.end))
         element.close_span = tag
         element.close_name_span = name_span
 
@@ -469,7 +469,7 @@ class _Parser:
             place = Span(start + close, start + close + 3)
             escape = Fix("Write `]]&gt;`", (TextEdit(place, "]]&gt;"),))
             self.report(place, "`]]>` stands only at the end of a CDATA section; as text write `]]&gt;`", escape)
-        self.add(Text(unescape(raw), Span(start, end)))
+        self.add(Text(unescape(raw), span_of((start, end))))
 
     def add(self, node: Node) -> None:
         if not self.stack:

@@ -11,7 +11,7 @@ import {
     type DocumentSelector,
     type LanguageClientOptions,
 } from "vscode-languageclient/node";
-import { TRANSLATE, type Translated } from "../protocol";
+import { TRANSLATE, VERIFY, type Translated } from "../protocol";
 import type { Server } from "../server/server";
 import type { Exit, Session } from "../server/supervisor";
 import { ownsWellFormedness } from "./xmlExtension";
@@ -31,18 +31,24 @@ const SELECTOR: DocumentSelector = [
 /** The command with which the server's lenses show places; its arguments are in terms of the protocol. */
 export const SHOW_REFERENCES = "as2fm.showReferences";
 
+/** The command with which the lenses show why a property fails: the URI of a system and the name of a property. */
+export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
+
 const WELL_FORMEDNESS = "xml-syntax";
 const LAST_WORDS = 4000;
+
+/** Who is told of what lenses and commands of the server do. */
+export interface Listener {
+    onTranslated(translated: Translated): unknown;
+    /** In place of the server's command: so the Test Explorer shows what comes of it. No names are all. */
+    onVerify(system: string, names: readonly string[]): unknown;
+}
 
 export interface Connection extends Session {
     readonly client: LanguageClient;
 }
 
-export async function connect(
-    server: Server,
-    log: vscode.LogOutputChannel,
-    onTranslated: (translated: Translated) => unknown,
-): Promise<Connection> {
+export async function connect(server: Server, log: vscode.LogOutputChannel, listener: Listener): Promise<Connection> {
     const process = spawn(server.command, [...server.args], { stdio: "pipe", windowsHide: true });
     const ended = endOf(process, log);
     const client = new QuietClient(
@@ -52,7 +58,7 @@ export async function connect(
             await spawned(process);
             return process;
         },
-        options(log, onTranslated),
+        options(log, listener),
     );
     try {
         await Promise.race([
@@ -88,10 +94,7 @@ class QuietClient extends LanguageClient {
     }
 }
 
-function options(
-    log: vscode.LogOutputChannel,
-    onTranslated: (translated: Translated) => unknown,
-): LanguageClientOptions {
+function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClientOptions {
     return {
         documentSelector: SELECTOR,
         diagnosticCollectionName: "as2fm",
@@ -103,6 +106,7 @@ function options(
             diagnostics: "push",
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
+            showCounterexample: SHOW_COUNTEREXAMPLE,
         },
         progressOnInitialization: false,
         initializationFailedHandler: () => false,
@@ -116,8 +120,12 @@ function options(
                 next(uri, isXml(uri) && ownsWellFormedness() ? diagnostics.filter(isOurs) : diagnostics);
             },
             async executeCommand(command, args, next) {
+                if (command === VERIFY && typeof args[0] === "string") {
+                    await listener.onVerify(args[0], Array.isArray(args[1]) ? args[1].map(String) : []);
+                    return undefined;
+                }
                 const answer: unknown = await next(command, args);
-                if (command === TRANSLATE && isTranslated(answer)) await onTranslated(answer);
+                if (command === TRANSLATE && isTranslated(answer)) await listener.onTranslated(answer);
                 return answer;
             },
         },

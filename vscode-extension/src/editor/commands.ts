@@ -4,13 +4,15 @@ import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE, type Translated } from "../protocol";
 import { thisMachine } from "../server/machine";
 import { pythons } from "../server/python";
-import { SHOW_REFERENCES } from "./client";
+import { SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
+import type { Counterexamples } from "./counterexamples";
 import type { Documents } from "./documents";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import type { LanguageServer } from "./server";
 import type { StatusItem } from "./statusItem";
 import { Tasks } from "./tasks";
+import type { PropertyTests } from "./tests";
 import { newMachine, newSystem, openSample, addToCi } from "./templates";
 import { tellOrigin } from "./wording";
 
@@ -23,6 +25,8 @@ export interface Parts {
     readonly tasks: Tasks;
     readonly plain: PlainScxmlPreview;
     readonly pictures: PicturePanels;
+    readonly tests: PropertyTests;
+    readonly counterexamples: Counterexamples;
 }
 
 export function registerCommands(parts: Parts): void {
@@ -57,6 +61,13 @@ export function registerCommands(parts: Parts): void {
             if (!convert) return undefined;
             const [at, found] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
             return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, found);
+        }),
+    );
+    context.subscriptions.push(
+        // From a lens or a message, or from the menu of a test.
+        vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, (of: string | vscode.TestItem, property: string) => {
+            const asked = typeof of === "string" ? { system: of, property } : parts.tests.of(of);
+            return asked && parts.counterexamples.show(asked.system, asked.property);
         }),
     );
     for (const [name, run] of Object.entries(commands)) {

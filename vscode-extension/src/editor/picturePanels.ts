@@ -5,7 +5,7 @@ import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/here";
-import { picture as pictureRequest } from "../protocol";
+import { picture as pictureRequest, type Lit } from "../protocol";
 import type { LanguageServer } from "./server";
 
 const PAUSE = 200;
@@ -46,6 +46,11 @@ export class PicturePanels implements vscode.Disposable {
         await panel.show(uri);
     }
 
+    /** Light nodes in the pictures that are open; those of an earlier time go out. */
+    async light(lit: readonly Lit[]): Promise<void> {
+        for (const [kind, panel] of this.panels) await panel.light(lit.find((each) => each.kind === kind));
+    }
+
     dispose(): void {
         clearTimeout(this.timer);
         for (const each of [...this.subscriptions, ...this.panels.values()]) each.dispose();
@@ -69,6 +74,8 @@ class PicturePanel implements vscode.Disposable {
     private uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
+    private lit = "";
+    private shownUri = "";
     private ready = false;
     private asked = 0;
 
@@ -111,6 +118,7 @@ class PicturePanel implements vscode.Disposable {
         this.picture = found ?? undefined;
         this.panel.title = found ? `${titleOf(this.kind)}: ${found.title}` : titleOf(this.kind);
         this.here = this.partAtCaret(vscode.window.activeTextEditor);
+        this.shownUri = this.asServerSays(this.uri);
         this.draw();
     }
 
@@ -128,6 +136,15 @@ class PicturePanel implements vscode.Disposable {
         this.post({ type: "here", here });
     }
 
+    /** Of a machine, the picture changes to the one that has the node. */
+    async light(lit: Lit | undefined): Promise<void> {
+        this.lit = lit?.node ?? "";
+        if (lit && this.kind === "machine" && this.shownUri !== lit.uri) {
+            this.uri = vscode.Uri.parse(lit.uri);
+            await this.refresh();
+        } else this.post({ type: "light", node: this.lit });
+    }
+
     dispose(): void {
         this.panel.dispose();
     }
@@ -143,7 +160,7 @@ class PicturePanel implements vscode.Disposable {
     }
 
     private draw(): void {
-        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here });
+        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here, lit: this.lit });
         else this.post({ type: "none", reason: nothingOf(this.kind) });
     }
 
@@ -183,13 +200,14 @@ class PicturePanel implements vscode.Disposable {
     }
 }
 
-async function jump(place: Place, beside: boolean): Promise<void> {
+export async function jump(place: Place, beside: boolean, preserveFocus = false): Promise<void> {
     const { start, end } = place.range;
     const uri = vscode.Uri.parse(place.uri);
     const open = vscode.window.visibleTextEditors.find((editor) => editor.document.uri.toString() === uri.toString());
     const others = vscode.window.visibleTextEditors[0]?.viewColumn ?? vscode.ViewColumn.One;
     const editor = await vscode.window.showTextDocument(uri, {
         viewColumn: beside ? vscode.ViewColumn.Beside : (open?.viewColumn ?? others),
+        preserveFocus,
     });
     const from = new vscode.Position(start.line, start.character);
     editor.selection = new vscode.Selection(from, from);

@@ -8,13 +8,12 @@ import { join } from "node:path";
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { DidChangeConfigurationNotification, type RequestType } from "vscode-languageserver-protocol";
-import type { Translated } from "../protocol";
 import { PrivateEnvironment, type Step } from "../server/environment";
 import { expanded, findServer } from "../server/find";
 import { thisMachine } from "../server/machine";
 import { isFailure, type Failure, type Server } from "../server/server";
 import { Supervisor, type State } from "../server/supervisor";
-import { connect, type Connection } from "./client";
+import { connect, type Connection, type Listener } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
 import { tellStep } from "./wording";
 
@@ -30,7 +29,7 @@ export class LanguageServer implements vscode.Disposable {
     constructor(
         context: vscode.ExtensionContext,
         private readonly log: vscode.LogOutputChannel,
-        private readonly onTranslated: (translated: Translated) => unknown,
+        private readonly listener: Listener,
     ) {
         const wheel = findWheel(context.extensionPath);
         const folder = join(context.globalStorageUri.fsPath, "environments");
@@ -39,7 +38,7 @@ export class LanguageServer implements vscode.Disposable {
             find: () => this.find(),
             install: (onStep) => this.installWithProgress(onStep),
             launch: async (server) => {
-                this.connection = await connect(server, log, this.onTranslated);
+                this.connection = await connect(server, log, this.listener);
                 return this.connection;
             },
             now: Date.now,

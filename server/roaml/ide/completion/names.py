@@ -11,7 +11,7 @@ from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.occurrence import HANDLES
 from roaml.ide.occurrences import uses
-from roaml.model.machine import Declaration, Send, all_statements
+from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
@@ -133,7 +133,7 @@ def _events_received(request: Request, subject: Subject) -> Iterator[Item]:
             detail = f"from {_some(senders)}" if senders else "nobody sends it"
             yield _event(system.path, event.name, detail, sound=bool(senders))
     if not request.systems:
-        sent = (s for chart in (request.machine.charts if request.machine else ()) for s in all_statements(chart))
+        sent = (s for chart in (request.machine.charts if request.machine else ()) for s in chart.statements)
         for name in dict.fromkeys(s.event.value for s in sent if isinstance(s, Send) and s.event):
             yield _event(request.path, name, "sent here", sound=True)
 

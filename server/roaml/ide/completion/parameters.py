@@ -8,19 +8,19 @@ from collections.abc import Iterator
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
-from roaml.model.machine import Send, all_statements
+from roaml.model.machine import Send
 
 
 def parameter_names(request: Request, subject: Subject) -> Iterator[Item]:
     """For the name of a `<param>`: what the `<send>` around the caret does not send yet."""
-    for statement in all_statements(request.chart) if request.chart else ():
+    for statement in request.chart.statements if request.chart else ():
         if isinstance(statement, Send) and any(each.element is statement.element for each in subject.parents):
             yield from _missing(request, statement, subject)
 
 
 def parameters_to_add(request: Request, subject: Subject) -> Iterator[Item]:
     """Inside of a `<send>`: each parameter that is missing, and all of them at once."""
-    for statement in all_statements(request.chart) if request.chart else ():
+    for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
             continue
         missing = list(_missing(request, statement, subject))

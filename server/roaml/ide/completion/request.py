@@ -12,7 +12,7 @@ from roaml.ide.frames import Trees
 from roaml.ide.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
-from roaml.model.machine import Chart, Communicate, Handler, Machine, all_statements
+from roaml.model.machine import Chart, Communicate, Handler, Machine
 from roaml.model.system import System
 from roaml.model.typing import Environment
 from roaml.project.analysis import Analysis
@@ -90,7 +90,7 @@ class Request:
 
     def communicate(self, element: Element) -> Communicate | None:
         """The sending statement that an element is."""
-        statements = all_statements(self.chart) if self.chart else ()
+        statements = self.chart.statements if self.chart else ()
         return next((each for each in statements if isinstance(each, Communicate) and each.element is element), None)
 
 

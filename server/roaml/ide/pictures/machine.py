@@ -42,7 +42,8 @@ def _frame(thread: Thread, path: str) -> Node:
     )
 
 
-def _id(chart: Chart, name: str) -> str:
+def state_id(chart: Chart, name: str) -> str:
+    """The id of a state in the picture."""
     return f"{chart.scope}/{name}"
 
 
@@ -55,7 +56,7 @@ def _node(chart: Chart, state: State, frame: str, path: str) -> Node:
     ]
     initial = chart.initial is not None and chart.initial.value == state.id.value
     place = Location(path, state.element.span)
-    return Node(_id(chart, state.id.value), NodeKind.STATE, state.id.value, tuple(staying), frame, initial, place)
+    return Node(state_id(chart, state.id.value), NodeKind.STATE, state.id.value, tuple(staying), frame, initial, place)
 
 
 def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> Iterator[Edge]:
@@ -69,8 +70,8 @@ def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> I
             labels = (*trigger_label(handler), *chance_label(handler, target))
             element = target.element or handler.element
             yield Edge(
-                _id(chart, state.id.value),
-                _id(chart, target.state.value),
+                state_id(chart, state.id.value),
+                state_id(chart, target.state.value),
                 _kind(handler),
                 labels,
                 handler.is_probabilistic,

@@ -46,10 +46,13 @@ class View {
                 this.fillBar(message.words);
                 break;
             case "show":
-                void this.show(message.picture, message.here);
+                void this.show(message.picture, message.here, message.lit);
                 break;
             case "here":
                 this.mark(message.here);
+                break;
+            case "light":
+                this.light(message.node);
                 break;
             case "none":
                 this.asked++;
@@ -59,7 +62,7 @@ class View {
         }
     }
 
-    private async show(picture: Picture, here: Part | null): Promise<void> {
+    private async show(picture: Picture, here: Part | null, lit: string): Promise<void> {
         const { words } = this;
         if (!words) return;
         const asked = ++this.asked;
@@ -78,6 +81,7 @@ class View {
         else this.look(this.sight);
         if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.mark(here);
+        this.light(lit);
         if (this.input.value !== "") this.search();
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
@@ -140,6 +144,13 @@ class View {
             const edge = this.picture.edges[here.edge];
             this.reveal(this.picture.nodes.findIndex((node) => node.id === edge?.source));
         }
+    }
+
+    /** Where a trace is. */
+    private light(id: string): void {
+        const lit = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
+        for (const [index, node] of this.scene?.nodes ?? []) node.classList.toggle("lit", index === lit);
+        if (lit >= 0) this.reveal(lit);
     }
 
     private part(part: Part | null): SVGGElement | undefined {

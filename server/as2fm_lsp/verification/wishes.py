@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How an editor wants properties to be verified: `as2fm.verify` of its settings, and the options of one call.
+
+    {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"}}}
+
+The options of a call have the same form, besides `seed` and `silent`, and count more. What makes no sense is told, and
+counts as not said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from as2fm_lsp.verification.expectations import Expectation, parse
+from roaml.smc.run import Options
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """Attributes:
+    is_silent: whether the results are not told as messages.
+    problems: what makes no sense, in sentences.
+    """
+
+    options: Options
+    expectations: tuple[Expectation, ...]
+    is_silent: bool
+    problems: tuple[str, ...]
+
+
+def wishes(settings: object, options: object = None) -> Wishes:
+    """
+    Args:
+        settings: the client's settings, as they came.
+        options: those of one call.
+    """
+    section = settings.get("verify") if isinstance(settings, Mapping) else None
+    said = {**_mapping(section), **_mapping(options)}
+    problems: list[str] = []
+
+    def number(key: str, otherwise: Any, makes_sense: Callable[[Any], bool], wanted: str) -> Any:
+        value = said.get(key, otherwise)
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and makes_sense(value):
+            return value
+        problems.append(f"verify.{key} must be {wanted}, not {value!r}.")
+        return otherwise
+
+    default = Options()
+    share, whole = "a number between 0 and 1", "a whole number"
+    chosen = Options(
+        confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
+        epsilon=number("epsilon", default.epsilon, lambda value: 0 < value < 1, share),
+        max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{whole} from 1 on"),
+        seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
+    )
+    expectations = []
+    for name, text in _mapping(said.get("expectations")).items():
+        try:
+            expectations.append(parse(f"{name} {text}"))
+        except ValueError:
+            problems.append(f"What is expected of {name} must be like '>= 0.95', not {text!r}.")
+    return Wishes(chosen, tuple(expectations), said.get("silent") is True, tuple(problems))
+
+
+def _mapping(value: object) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}

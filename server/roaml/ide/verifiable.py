@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can be verified: the properties of a system, and the texts on which the answers depend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.ide.symbols import SymbolKind, document_symbols
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+Texts: TypeAlias = tuple[tuple[str, bytes], ...]
+"""Files with the digests of what they hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verifiable:
+    """A property of a system: `span` in the file at `path` is all of it, `name_span` its name without the quotes."""
+
+    name: str
+    comment: str
+    path: str
+    span: Span
+    name_span: Span
+
+
+def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
+    """The properties of the system file at `system`, in their order; those with mistakes in them are left out."""
+    files = (each.path for each in analysis.listed(system) if each.wanted is FileKind.PROPERTIES and each.usable)
+    return tuple(each for path in dict.fromkeys(files) for each in _in_file(analysis, path))
+
+
+def _in_file(analysis: Analysis, path: str) -> Iterator[Verifiable]:
+    understood = {each.name for each in analysis.properties(path)[0]}
+    for symbol in document_symbols(analysis, path):
+        if symbol.kind is SymbolKind.PROPERTY and symbol.name in understood:
+            yield Verifiable(symbol.name, symbol.detail, path, symbol.span, symbol.name_span)
+
+
+def fingerprint(analysis: Analysis, system: str) -> Texts:
+    """The content of the files of a system: as long as it is the same, so are the answers."""
+    sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
+    return tuple((path, source.digest) for path, source in sources if source is not None)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Assignments -> bytecode: at once, or in two parts, first what is computed and then what is stored.
+
+A value that is stored in an array of the same or a larger shape is filled up with zeros.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Conditional, Expression, Name
+from roaml.jani.node import Origin
+from roaml.smc.assemble import MOST, Assembler
+from roaml.smc.fault import FaultError
+from roaml.smc.names import Names, Storage, unsupported
+from roaml.smc.opcodes import Op
+from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
+
+
+class Later(NamedTuple):
+    """An assignment whose value is computed: where it goes, the register where the value is kept, whom to tell."""
+
+    place: Region
+    register: int
+    watch: int
+
+
+class AssignmentAssembler(Assembler):
+    """Writes assignments, too."""
+
+    def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
+        """`target := value`, at once."""
+        self.tape.place(target.origin or origin)
+        storage, accesses = self.assigned(target, names)
+        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
+        self.tape.place(value.origin or target.origin or origin)
+        if place.shape:
+            self.assign_array(value, place, names, storage.watch)
+        elif storage.bounds != (None, None):
+            operand = self.stored(value, storage.kind, names)
+            self.check_bounds(operand, storage)
+            self.write(operand, place, storage.watch)
+        else:
+            self.put(value, place, names, storage.watch)
+
+    def assigned(self, target: Expression, names: Names) -> tuple[Storage, list[ArrayAccess]]:
+        accesses: list[ArrayAccess] = []
+        inner = target
+        while isinstance(inner, ArrayAccess):
+            accesses.append(inner)
+            inner = inner.array
+        if not isinstance(inner, Name):
+            raise FaultError(unsupported(inner), target.origin)
+        storage = self.meaning(inner, names)
+        if not isinstance(storage, Storage) or storage.is_constant:
+            raise FaultError(f"`{inner.identifier}` cannot be assigned to", target.origin)
+        if len(accesses) > len(storage.shape):
+            raise FaultError("this is not an array", target.origin)
+        accesses.reverse()
+        return storage, accesses
+
+    def assign_array(self, value: Expression, place: Region, names: Names, watch: int) -> None:
+        if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
+            self.fill(value, place, names, watch)
+            return
+        # What is stored may be made of what is there.
+        copy = self.materialized(value, place.kind, place.shape, names)
+        self.write_early(place, copy.base, watch)
+
+    def write_early(self, place: Region, register: int, watch: int) -> None:
+        is_real = place.kind == REAL
+        if not place.shape:
+            self.write(Operand(place.kind, register), place, watch)
+        elif place.offset < 0:
+            self.tape.emit(Op.COPY_REAL if is_real else Op.COPY, place.base, register, watch, place.size)
+        else:
+            code = Op.STORE_MANY_REAL if is_real else Op.STORE_MANY
+            self.tape.emit(code, place.base, place.offset, register, place.size)
+            if watch >= 0:
+                self.tape.emit(Op.NOTE, watch)
+
+    def early(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> Later:
+        """Compute what will be assigned, and where; `finish` assigns it."""
+        self.tape.place(target.origin or origin)
+        storage, accesses = self.assigned(target, names)
+        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
+        if place.offset >= 0:
+            offset = self.tape.room(INT, 1)
+            self.tape.emit(Op.MOVE, offset, place.offset)
+            place = Region(place.kind, place.shape, place.base, offset)
+        self.tape.place(value.origin or target.origin or origin)
+        if place.shape:
+            return Later(place, self.materialized(value, storage.kind, place.shape, names).base, storage.watch)
+        register = self.tape.room(storage.kind, 1)
+        operand = self.stored(value, storage.kind, names, register)
+        self.check_bounds(operand, storage)
+        return Later(place, register, storage.watch)
+
+    def finish(self, later: Later) -> None:
+        self.write_early(later.place, later.register, later.watch)
+
+    def reset(self, storage: Storage) -> None:
+        """Give a variable its first value again."""
+        for i in range(product(storage.shape)):
+            cells: Sequence[Number] = self.tape.reals if storage.kind == REAL else self.tape.ints
+            value = self.tape.constant(storage.kind, cells[storage.base + i])
+            self.write(value, Region(storage.kind, (), storage.base + i), storage.watch)
+
+    def check_bounds(self, operand: Operand, storage: Storage) -> None:
+        low, high = storage.bounds
+        if low is None and high is None:
+            return
+        is_real = storage.kind == REAL
+        low = (-float("inf") if is_real else -MOST - 1) if low is None else low
+        high = (float("inf") if is_real else MOST) if high is None else high
+        ends = [self.tape.constant(storage.kind, end).register for end in (low, high)]
+        self.tape.emit(Op.RANGE_REAL if is_real else Op.RANGE, 0, operand.register, *ends)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The examples mean what their stories say, and the page on verification shows what is printed."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+from as2fm_lsp.verification.exactly import exactly
+from roaml import api
+from roaml.smc.run import Options
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = {
+    "delivery_robot/main.xml": {"all_delivered": 1.0, "never_empty": 1.0},
+    "assembly_robot/main.xml": {"block_placed": 1.0, "never_placed_empty": 1.0, "block_dropped": 0.5},
+    "assembly_robot/main_with_bug.xml": {"block_placed": 0.5, "never_placed_empty": 0.5, "block_dropped": 0.5},
+    "grid_world/main.xml": {"arrives": 0.914925},
+}
+
+
+def test_every_example_is_here() -> None:
+    found = {path.relative_to(ROOT / "examples").as_posix() for path in (ROOT / "examples").glob("*/main*.xml")}
+    assert found == set(EXPECTED)
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_examples_have_the_expected_probabilities(name: str) -> None:
+    model = api.to_jani(api.load(str(ROOT / "examples" / name)))
+    answers = {answer.question.name: answer for answer in api.verify(model, options=Options(epsilon=0.015, seed=4))}
+    assert set(answers) == set(EXPECTED[name])
+    for property_, expected in EXPECTED[name].items():
+        if expected == 1:
+            assert answers[property_].value == 1
+        else:
+            assert answers[property_].value == pytest.approx(expected, abs=0.02)
+
+
+def test_the_grid_world_exactly() -> None:
+    checker = api.checker(api.to_jani(api.load(str(ROOT / "examples/grid_world/main.xml"))))
+    exact = exactly(checker, checker.asked[0], 5000)
+    assert (exact.least, exact.greatest) == (pytest.approx(0.914925, abs=1e-6), pytest.approx(0.914925, abs=1e-6))
+
+
+def test_the_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(ROOT)
+    page = (ROOT / "docs/verification.md").read_text(encoding="utf-8")
+    shown = 0
+    for block in re.findall(r"```console\n(.*?)```", page, re.DOTALL):
+        command, _, output = block.partition("\n")
+        assert run(shlex.split(command)[2:]) == 0
+        printed = capsys.readouterr().out
+        if output:
+            shown += 1
+            without_time = [re.sub(r", [\d.]+ s$", "", text, flags=re.MULTILINE) for text in (output, printed)]
+            assert without_time[0] == without_time[1]
+    assert shown == 2

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The view that tells why a property fails, step by step. A step opens its source and lights it in the pictures. */
+
+import * as vscode from "vscode";
+import { counterexample, type Counterexample, type Step } from "../protocol";
+import { jump, type PicturePanels } from "./picturePanels";
+import type { LanguageServer } from "./server";
+
+const VIEW = "as2fm.counterexample";
+const SHOW_STEP = "as2fm.showStep";
+
+/** A step, or what has changed in it. */
+type Entry = Step | string;
+
+export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
+    private readonly changed = new vscode.EventEmitter<undefined>();
+    private readonly view: vscode.TreeView<Entry>;
+    private readonly subscriptions: { dispose(): unknown }[];
+    private shown: Counterexample | undefined;
+
+    readonly onDidChangeTreeData = this.changed.event;
+
+    constructor(
+        private readonly server: LanguageServer,
+        private readonly pictures: PicturePanels,
+    ) {
+        this.view = vscode.window.createTreeView<Entry>(VIEW, { treeDataProvider: this, showCollapseAll: true });
+        this.subscriptions = [
+            this.changed,
+            this.view,
+            vscode.commands.registerCommand(SHOW_STEP, (step: Step) => this.showStep(step)),
+        ];
+    }
+
+    async show(system: string, property: string): Promise<void> {
+        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property });
+        if (!found) {
+            const text = vscode.l10n.t("No trace is known that speaks against {0}. Verify it first.", property);
+            void vscode.window.showInformationMessage(text);
+            return;
+        }
+        this.shown = found;
+        this.view.description = found.property;
+        this.view.message = found.stale
+            ? vscode.l10n.t("{0} The files have changed since.", `${found.heading}.`)
+            : `${found.heading}.`;
+        await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
+        this.changed.fire(undefined);
+        await vscode.commands.executeCommand(`${VIEW}.focus`);
+        const first = found.steps[0];
+        if (first) await this.view.reveal(first, { focus: true, select: true });
+    }
+
+    getTreeItem(entry: Entry): vscode.TreeItem {
+        if (typeof entry === "string") {
+            const item = new vscode.TreeItem(entry);
+            item.iconPath = new vscode.ThemeIcon("symbol-variable");
+            return item;
+        }
+        const { Collapsed, None } = vscode.TreeItemCollapsibleState;
+        const label = entry.automaton === "" ? entry.what : `${entry.automaton}: ${entry.what}`;
+        const item = new vscode.TreeItem(label, entry.changes.length > 0 ? Collapsed : None);
+        item.description = [entry.time, entry.place].filter((each) => each !== "").join(" · ");
+        item.tooltip = [label, item.description, ...entry.changes].join("\n");
+        if (entry.uri !== undefined) {
+            item.iconPath = new vscode.ThemeIcon("debug-stackframe-dot");
+            item.command = { command: SHOW_STEP, title: vscode.l10n.t("Show Step"), arguments: [entry] };
+        }
+        return item;
+    }
+
+    getChildren(entry?: Entry): Entry[] {
+        if (entry === undefined) return [...(this.shown?.steps ?? [])];
+        return typeof entry === "string" ? [] : [...entry.changes];
+    }
+
+    getParent(entry: Entry): Entry | undefined {
+        return typeof entry === "string" ? this.shown?.steps.find(({ changes }) => changes.includes(entry)) : undefined;
+    }
+
+    dispose(): void {
+        for (const each of this.subscriptions) each.dispose();
+    }
+
+    private async showStep({ uri, range, lit }: Step): Promise<void> {
+        if (uri === undefined || !range) return;
+        await jump({ uri, range }, false, true);
+        await this.pictures.light(lit);
+    }
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Properties in the Test Explorer: a system is a suite, a property a test, verifying it is running it. */
+
+import * as vscode from "vscode";
+import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
+import { properties, VERIFY, type Property, type VerifiableSystem, type Verification, type Wrong } from "../protocol";
+import { outcomeOf, type Outcome } from "../verification/outcome";
+import { chosen } from "../verification/selection";
+import { SHOW_COUNTEREXAMPLE } from "./client";
+import type { LanguageServer } from "./server";
+
+const PAUSE = 300;
+
+interface Asked {
+    readonly system: string;
+    readonly property: string;
+}
+
+export class PropertyTests implements vscode.Disposable {
+    private readonly controller: vscode.TestController;
+    private readonly subscriptions: { dispose(): unknown }[];
+    private readonly asked = new WeakMap<vscode.TestItem, Asked>();
+    private readonly stale = new Set<string>();
+    private timer: NodeJS.Timeout | undefined;
+
+    constructor(
+        private readonly server: LanguageServer,
+        private readonly log: vscode.LogOutputChannel,
+    ) {
+        this.controller = vscode.tests.createTestController("as2fm", vscode.l10n.t("AS2FM properties"));
+        this.controller.refreshHandler = () => this.refresh();
+        const profile = this.controller.createRunProfile(
+            vscode.l10n.t("Verify"),
+            vscode.TestRunProfileKind.Run,
+            (request, token) => this.run(request, token),
+            true,
+        );
+        const soon = () => {
+            this.refreshSoon();
+        };
+        this.subscriptions = [
+            this.controller,
+            profile,
+            server.onState(soon),
+            vscode.languages.onDidChangeDiagnostics(soon),
+            vscode.workspace.onDidChangeTextDocument(({ document }) => {
+                if (document.uri.scheme === "file") soon();
+            }),
+        ];
+    }
+
+    /** Run properties of a system, as from the lenses; all if none are named. */
+    async verify(system: string, names: readonly string[]): Promise<void> {
+        await this.refresh();
+        const suite = this.controller.items.get(system);
+        if (!suite) return;
+        const named = names
+            .map((name) => suite.children.get(testId(system, name)))
+            .filter((item) => item !== undefined);
+        const none = new vscode.CancellationTokenSource();
+        await this.run(new vscode.TestRunRequest(named.length > 0 ? named : [suite]), none.token);
+        none.dispose();
+    }
+
+    /** The property that a test stands for. */
+    of(item: vscode.TestItem): Asked | undefined {
+        return this.asked.get(item);
+    }
+
+    dispose(): void {
+        clearTimeout(this.timer);
+        for (const each of this.subscriptions) each.dispose();
+    }
+
+    // ------------------------------------------------------------------- the tree
+
+    private refreshSoon(): void {
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => void this.refresh(), PAUSE);
+    }
+
+    private async refresh(): Promise<void> {
+        const found = await this.server.ask(properties, null);
+        if (found === undefined) return;
+        const known = new Set(found.map(({ uri }) => uri));
+        this.controller.items.forEach((item) => {
+            if (!known.has(item.id)) this.controller.items.delete(item.id);
+        });
+        for (const system of found) this.showSystem(system);
+    }
+
+    private showSystem({ uri, properties: all }: VerifiableSystem): void {
+        const place = this.uri(uri);
+        let suite = this.controller.items.get(uri);
+        if (!suite) {
+            suite = this.controller.createTestItem(uri, vscode.workspace.asRelativePath(place), place);
+            this.controller.items.add(suite);
+        }
+        const ids = new Set(all.map(({ name }) => testId(uri, name)));
+        suite.children.forEach((item) => {
+            if (!ids.has(item.id)) suite.children.delete(item.id);
+        });
+        for (const [index, property] of all.entries()) this.showProperty(suite, uri, property, index);
+    }
+
+    private showProperty(suite: vscode.TestItem, system: string, property: Property, index: number): void {
+        const id = testId(system, property.name);
+        const place = this.uri(property.uri);
+        let item = suite.children.get(id);
+        if (item?.uri?.toString() !== place.toString()) {
+            item = this.controller.createTestItem(id, property.name, place);
+            suite.children.add(item);
+            this.asked.set(item, { system, property: property.name });
+        }
+        item.range = rangeOf(property.range);
+        // As they stand in the files, not by their names.
+        item.sortText = String(index).padStart(6, "0");
+        const wasStale = this.stale.has(id);
+        if (property.stale && !wasStale) {
+            this.stale.add(id);
+            this.controller.invalidateTestResults(item);
+        } else if (!property.stale) this.stale.delete(id);
+    }
+
+    private uri(uri: string): vscode.Uri {
+        return this.server.client?.protocol2CodeConverter.asUri(uri) ?? vscode.Uri.parse(uri);
+    }
+
+    // ------------------------------------------------------------------- running
+
+    private async run(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {
+        const items = chosen(this.controller.items, request.include, request.exclude);
+        const run = this.controller.createTestRun(request);
+        const cancel = new vscode.CancellationTokenSource();
+        const both = [token, run.token].map((each) =>
+            each.onCancellationRequested(() => {
+                cancel.cancel();
+            }),
+        );
+        for (const item of items) run.enqueued(item);
+        try {
+            for (const item of items) {
+                if (cancel.token.isCancellationRequested) run.skipped(item);
+                else await this.runOne(run, item, cancel.token);
+            }
+        } finally {
+            run.end();
+            for (const each of [...both, cancel]) each.dispose();
+        }
+    }
+
+    private async runOne(run: vscode.TestRun, item: vscode.TestItem, token: vscode.CancellationToken): Promise<void> {
+        const asked = this.asked.get(item);
+        if (!asked) return;
+        run.started(item);
+        item.busy = true;
+        try {
+            const answer = await this.ask(asked, token);
+            const result = answer?.results[0];
+            if (result) this.show(run, item, asked, outcomeOf(result));
+            else if (answer && answer.errors.length > 0)
+                run.errored(
+                    item,
+                    answer.errors.map((each) => this.wrong(each)),
+                );
+            else run.skipped(item);
+        } catch (error) {
+            this.log.debug(`${asked.property} has no answer: ${String(error)}`);
+            if (token.isCancellationRequested) run.skipped(item);
+            else run.errored(item, new vscode.TestMessage(String(error)));
+        } finally {
+            item.busy = false;
+        }
+    }
+
+    private async ask({ system, property }: Asked, token: vscode.CancellationToken): Promise<Verification | null> {
+        const { client } = this.server;
+        if (!client) throw new Error(vscode.l10n.t("The language server is not running."));
+        const params = { command: VERIFY, arguments: [system, [property], { silent: true }] };
+        return (await client.sendRequest(ExecuteCommandRequest.type, params, token)) as Verification | null;
+    }
+
+    private show(run: vscode.TestRun, item: vscode.TestItem, asked: Asked, outcome: Outcome): void {
+        if (outcome.kind === "errored") {
+            run.errored(item, new vscode.TestMessage(outcome.message));
+            return;
+        }
+        const { short, milliseconds } = outcome;
+        item.description = short;
+        const line = `${asked.property}: ${short}`;
+        if (outcome.kind === "passed") {
+            run.appendOutput(`${line}\r\n`, undefined, item);
+            run.passed(item, milliseconds);
+            return;
+        }
+        const missed = vscode.l10n.t("expected {0}", outcome.missed.join(", "));
+        run.appendOutput(`${line}, ${missed}\r\n`, undefined, item);
+        const text = new vscode.MarkdownString(`${escaped(line)}  \n${escaped(missed)}`);
+        if (outcome.hasCounterexample) {
+            const link = `${SHOW_COUNTEREXAMPLE}?${encodeURIComponent(JSON.stringify([asked.system, asked.property]))}`;
+            text.appendMarkdown(`\n\n[${vscode.l10n.t("Show Counterexample")}](command:${link})`);
+            text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE] };
+        }
+        const message = new vscode.TestMessage(text);
+        if (item.uri && item.range) message.location = new vscode.Location(item.uri, item.range);
+        run.failed(item, message, milliseconds);
+    }
+
+    private wrong({ message, uri, range }: Wrong): vscode.TestMessage {
+        const made = new vscode.TestMessage(message);
+        if (uri !== undefined && range) made.location = new vscode.Location(this.uri(uri), rangeOf(range));
+        return made;
+    }
+}
+
+function testId(system: string, property: string): string {
+    return `${system}#${property}`;
+}
+
+function rangeOf({ start, end }: Property["range"]): vscode.Range {
+    return new vscode.Range(start.line, start.character, end.line, end.character);
+}
+
+/** Names of properties may hold what Markdown takes for a sign. */
+function escaped(text: string): string {
+    return text.replaceAll(/[\\`*_{}[\]()#+\-.!<>|]/g, "\\$&");
+}

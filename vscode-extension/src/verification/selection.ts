@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Which properties of which systems a user has chosen in a tree of tests. */
+
+/** What is needed of a test: systems have children, properties have none. */
+export interface Test<T> {
+    readonly id: string;
+    readonly parent?: T | undefined;
+    readonly children: Iterable<[string, T]>;
+}
+
+/** The chosen properties in their order, each once; all if nothing is chosen. */
+export function chosen<T extends Test<T>>(
+    all: Iterable<[string, T]>,
+    include: readonly T[] | undefined,
+    exclude: readonly T[] | undefined,
+): T[] {
+    const left = new Set(exclude?.map(({ id }) => id));
+    const found = new Map<string, T>();
+    const visit = (test: T) => {
+        if (left.has(test.id)) return;
+        const children = [...test.children];
+        if (children.length === 0 && test.parent) found.set(test.id, test);
+        for (const [, child] of children) visit(child);
+    };
+    for (const test of include ?? [...all].map(([, each]) => each)) visit(test);
+    return [...found.values()];
+}

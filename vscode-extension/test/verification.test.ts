@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Verified } from "../src/protocol";
+import { outcomeOf } from "../src/verification/outcome";
+import { chosen, type Test } from "../src/verification/selection";
+
+const ROW: Verified = { property: "alarm", seconds: 1.25, short: "0.71 [0.66, 0.76]", counterexample: true };
+const MET = { expected: ">= 0.5", met: true, certain: true };
+const MISSED = { expected: ">= 0.95", met: false, certain: true };
+
+test("a property of which nothing is expected passes, and tells its probability", () => {
+    assert.deepEqual(outcomeOf(ROW), { kind: "passed", short: "0.71 [0.66, 0.76]", milliseconds: 1250 });
+});
+
+test("expectations decide", () => {
+    assert.equal(outcomeOf({ ...ROW, expectations: [MET] }).kind, "passed");
+    assert.deepEqual(outcomeOf({ ...ROW, expectations: [MET, MISSED] }), {
+        kind: "failed",
+        short: "0.71 [0.66, 0.76]",
+        milliseconds: 1250,
+        missed: [">= 0.95"],
+        hasCounterexample: true,
+    });
+    const without = outcomeOf({ property: "alarm", expectations: [MISSED] });
+    assert.ok(without.kind === "failed" && !without.hasCounterexample);
+});
+
+test("what goes wrong is an error, not a failure", () => {
+    const message = "a division by zero";
+    assert.deepEqual(outcomeOf({ property: "alarm", error: { message } }), { kind: "errored", message });
+});
+
+interface Item extends Test<Item> {
+    readonly children: Map<string, Item>;
+}
+
+function suite(id: string, ...names: readonly string[]): [string, Item] {
+    const children = new Map<string, Item>();
+    const made: Item = { id, children };
+    for (const name of names) children.set(name, { id: `${id}#${name}`, parent: made, children: new Map() });
+    return [id, made];
+}
+
+test("what is chosen: all, suites, single properties, but for those left out", () => {
+    const all = new Map([suite("a", "x", "y"), suite("b", "x"), suite("empty")]);
+    const [a, b] = [all.get("a"), all.get("b")];
+    assert.ok(a && b);
+    const ids = (include?: readonly Item[], exclude?: readonly Item[]) =>
+        chosen(all, include, exclude).map(({ id }) => id);
+    assert.deepEqual(ids(), ["a#x", "a#y", "b#x"]);
+    assert.deepEqual(ids([b]), ["b#x"]);
+    const [x, y] = a.children.values();
+    assert.ok(x && y);
+    assert.deepEqual(ids([y, a]), ["a#y", "a#x"]);
+    assert.deepEqual(ids(undefined, [x, b]), ["a#y"]);
+});
