@@ -95,3 +95,16 @@ def test_fixes_mend_the_file(written: str, quote: str, fixed: str) -> None:
     assert document.findings == ()
     assert document.root is not None
     assert parse(document.decoded(document.root.attributes[0].value_span))[1] == ()
+
+
+@pytest.mark.parametrize(("written", "parts"), SPANS)
+def test_the_same_expression_elsewhere(written: str, parts: list[str]) -> None:
+    """What was read once is taken over; its places are those where it stands now."""
+    texts = [f'<a b="{written}"/>', f'<a  c="&gt;" b="{written}"/>', f'<a b="{" " * 1000}{written}"/>']
+    for text in texts:
+        document = parse_xml(text)
+        assert document.root is not None
+        tree, _ = parse(document.decoded(document.root.attributes[-1].value_span))
+        found = [text[e.span.start : e.span.end] for e in walk(tree)]
+        assert found == parts
+        assert tree.span.start >= text.index('b="')

@@ -86,6 +86,8 @@ def fits(type_: Type, target: Type) -> bool:
 
 def join(left: Type, right: Type) -> Type | None:
     """The least type that values of both have; None if there is none."""
+    if left is right:
+        return value_type(left)  # as the elements of long arrays have
     left, right = value_type(left), value_type(right)
     if isinstance(left, UnknownType) or isinstance(right, UnknownType):
         return UNKNOWN
