@@ -102,7 +102,7 @@ async def test_lenses_say_how_much_is_used(tmp_path: Path) -> None:
                 assert arguments[0] == plugin.as_uri()
                 assert len(arguments) == 3
             main = await client.text_document_code_lens_async(types.CodeLensParams(document(tmp_path / "main.xml")))
-            assert [each.command.title for each in main or () if each.command] == ["Translate to JANI"]
+            assert [each.command.title for each in main or () if each.command] == ["Translate to JANI", "Verify all"]
 
 
 async def test_the_client_is_told_when_other_files_change_them(tmp_path: Path) -> None:

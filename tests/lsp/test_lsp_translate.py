@@ -92,9 +92,11 @@ async def test_lens(tmp_path: Path) -> None:
     main = (tmp_path / "main.xml").as_uri()
     async with connect(tmp_path) as client:
         params = types.CodeLensParams(types.TextDocumentIdentifier(main))
-        (lens,) = await client.text_document_code_lens_async(params) or ()
+        lens, verify_all = await client.text_document_code_lens_async(params) or ()
         assert lens.command == types.Command("Translate to JANI", COMMAND, arguments=(main,))
         assert lens.range == types.Range(types.Position(0, 1), types.Position(0, 6))
+        assert verify_all.command
+        assert verify_all.command.title == "Verify all"
         params = types.CodeLensParams(types.TextDocumentIdentifier((tmp_path / "clock.ascxml").as_uri()))
         assert not any(lens.command for lens in await client.text_document_code_lens_async(params) or ())
 
