@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import hashlib
+import multiprocessing
+import os
 import pickle
 import signal
+import threading
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from multiprocessing.connection import wait
 from typing import NamedTuple
 
 from roaml.smc.kernel import Kernel
@@ -107,5 +111,13 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
 
 
 def start_worker() -> None:
-    """Let the main process alone be interrupted by the keyboard: it ends its workers."""
+    """Let the main process alone be interrupted by the keyboard: it ends its workers. If it is killed, they end too."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    main = multiprocessing.parent_process()
+    if main is not None:
+        threading.Thread(target=_end_with, args=(main.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)
