@@ -226,6 +226,10 @@ def _workspace(server: Server) -> None:
     @server.feature(types.SHUTDOWN)
     def shutdown(_: None = None) -> None:
         server.is_shut_down = True
+        # pygls does the same, but stumbles over a command that runs: cancelling it takes it out of what is iterated.
+        for id_, future in tuple(server.protocol._request_futures.items()):
+            if id_ != server.protocol.msg_id and not future.done():
+                future.cancel()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:

@@ -258,7 +258,7 @@ async def test_ending_does_not_wait_for_the_answer(robot: Path) -> None:
         working = asyncio.ensure_future(verify(client, robot / "main_with_bug.xml", [PLACED], ENDLESS))
         await until_estimate(client)
         assert not working.done()
-        working.cancel()
+    await asyncio.gather(working, return_exceptions=True)
     assert client._server is not None
     assert client._server.returncode == 0
 

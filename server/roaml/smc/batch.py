@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import hashlib
+import multiprocessing
+import os
 import pickle
 import signal
+import threading
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from multiprocessing.connection import wait
 from multiprocessing.synchronize import Event
 from typing import NamedTuple
 
@@ -122,8 +126,16 @@ def start_worker(stopping: Event) -> None:
     """
     global _stopping  # noqa: PLW0603
     _stopping = stopping
-    # The main process alone is interrupted by the keyboard, and tells its workers.
+    # The main process alone is interrupted by the keyboard, and tells its workers. If it is killed, they end, too.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    main = multiprocessing.parent_process()
+    if main is not None:
+        threading.Thread(target=_end_with, args=(main.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)
 
 
 def run_in_worker(task: Task) -> Outcome:
