@@ -36,7 +36,8 @@ def model(number: int) -> Model:
 def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: Layout) -> None:
     chance = random.Random(seed)
     each = model(number)
-    damaged = {path: damage(chance, path, text) for path, text in each.texts.items()}
+    # What a comment keeps quiet depends on its line, which formatting may change: such comments are made plain ones.
+    damaged = {path: damage(chance, path, text).replace("as2fm:", "") for path, text in each.texts.items()}
     before = check(each, damaged)
     results = {}
     for path, text in damaged.items():
