@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The VS Code extension: lint, types, unit tests, the package, and what it does in a real workbench.
-# Arguments choose end-to-end tests by name. Says nothing while all is well.
+# `--package` stops before the workbench, `--end-to-end` does only that; other arguments choose end-to-end tests by name.
+# Says nothing while all is well.
 set -eu
 cd "$(dirname "$0")/../vscode-extension"
 . ../tests/environment.sh
@@ -21,6 +22,11 @@ quietly() {
     rm -f "$log"
 }
 
+if [ "${1:-}" = --end-to-end ]; then
+    quietly npm run e2e
+    exit
+fi
+
 wanted="$(cat package.json package-lock.json | cksum) $(node --version)"
 if [ "$(cat node_modules/.prepared 2>/dev/null)" != "$wanted" ]; then
     quietly npm ci
@@ -30,4 +36,5 @@ quietly npm run package
 quietly npm run lint
 quietly npm run unit
 sh e2e/workbench/setup.sh
+[ "${1:-}" != --package ] || exit 0
 quietly npm run e2e -- "$@"

@@ -31,7 +31,6 @@ export function life(stage: Stage): void {
             process.kill(pid, "SIGKILL");
             killed.add(pid);
         }
-        await window.notification("ended by itself 4 times").waitFor();
         await window.statusItem("AS2FM: stopped").waitFor();
         await window.run("AS2FM: Restart Language Server");
         await window.squiggles.first().waitFor();

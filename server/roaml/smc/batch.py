@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import hashlib
 import multiprocessing
-import os
 import pickle
 import signal
 import threading
@@ -135,7 +134,7 @@ def start_worker(stopping: Event) -> None:
 
 def _end_with(sentinel: int) -> None:
     wait([sentinel])
-    os._exit(1)
+    signal.raise_signal(signal.SIGTERM)
 
 
 def run_in_worker(task: Task) -> Outcome:
