@@ -45,9 +45,8 @@ def test_every_attribute_has_a_c_type() -> None:
         assert re.search(rf"\b{name}\b", declared), name
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
 def test_is_compiled_where_there_is_a_compiler() -> None:
-    assert kernel.compiled(), "pip install -e . compiles it"
+    assert kernel.compiled() or shutil.which("cc") is None, "pip install -e . compiles it"
     assert not plain_kernel().compiled()
 
 
