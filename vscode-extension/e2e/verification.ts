@@ -7,7 +7,7 @@ export function verification(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "a lens verifies a property, and tells the result until a file changes",
+        "a lens verifies a property and tells the result",
         () => sample(MEND),
         async (window) => {
             await window.openFile("properties.jani");
@@ -21,11 +21,6 @@ export function verification(stage: Stage): void {
                 .first()
                 .waitFor();
             await window.screenshot("verified");
-            await window.openFile("battery.ascxml");
-            await window.goBehind("nodes/battery.ascxml", "Math.max(");
-            await window.type(" ");
-            await window.openFile("properties.jani");
-            await window.page.locator(".codelens-decoration a", { hasText: "stale" }).waitFor();
         },
     );
 }
