@@ -39,17 +39,28 @@ export class Stage {
         return this.current;
     }
 
-    /** A test with a window; what it looks like at the end is kept. */
+    /**
+     * A test with a window; what it looks like at the end is kept. A workbench on a busy machine may swallow a key: what
+     * fails once is tried once more, in a new window.
+     */
     test(name: string, folder: () => string, run: (window: Window) => Promise<void>): void {
         test(name, async () => {
-            const window = await this.open(folder());
             try {
-                await run(window);
-            } catch (error) {
-                await window.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);
-                throw error;
+                await this.attempt(name, folder, run);
+            } catch {
+                await this.attempt(name, folder, run);
             }
         });
+    }
+
+    private async attempt(name: string, folder: () => string, run: (window: Window) => Promise<void>): Promise<void> {
+        const window = await this.open(folder());
+        try {
+            await run(window);
+        } catch (error) {
+            await window.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);
+            throw error;
+        }
     }
 }
 
