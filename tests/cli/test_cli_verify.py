@@ -15,7 +15,8 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -257,9 +258,23 @@ def test_a_state_that_does_not_fit(command: Command, tmp_path: Path, change: Any
     assert command("verify", write(tmp_path, coin()), "--resume", "other.json", "--seed", 5).status == 2
 
 
-def started(folder: Path, *arguments: str, **more: Any) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "as2fm_lsp", "verify", *arguments]
-    return subprocess.Popen(command, cwd=folder, text=True, stdout=subprocess.PIPE, **more)
+INTERRUPTIBLE = """
+import runpy, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
+runpy.run_module("as2fm_lsp", run_name="__main__", alter_sys=True)
+"""
+"""What is started in the background of a shell, as whole test runs may be, ignores the keyboard unless told otherwise."""
+
+
+@contextmanager
+def started(folder: Path, *arguments: str, **more: Any) -> Iterator[subprocess.Popen[str]]:
+    """A command that runs on; it is gone in the end, whatever the test finds."""
+    command = [sys.executable, "-c", INTERRUPTIBLE, "verify", *arguments]
+    with subprocess.Popen(command, cwd=folder, text=True, stdout=subprocess.PIPE, **more) as running:
+        try:
+            yield running
+        finally:
+            running.kill()
 
 
 def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
@@ -267,12 +282,12 @@ def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
     name = write(tmp_path, coin())
     options = (name, "--property", "heads", "--method", "fixed", "--max-traces", "900000000", "--jobs", "2")
     options += ("--resume", "state.json")
-    running = started(tmp_path, *options, "--format", "json", stderr=subprocess.PIPE, start_new_session=True)
-    while not (tmp_path / "state.json").exists():
-        assert running.poll() is None
-        time.sleep(0.05)
-    os.killpg(running.pid, signal.SIGINT)
-    out, err = running.communicate(timeout=30)
+    with started(tmp_path, *options, "--format", "json", stderr=subprocess.PIPE, start_new_session=True) as running:
+        while not (tmp_path / "state.json").exists():
+            assert running.poll() is None
+            time.sleep(0.05)
+        os.killpg(running.pid, signal.SIGINT)
+        out, err = running.communicate(timeout=30)
     assert (running.returncode, err) == (130, "")
     row = rows(out)["heads"]
     assert row["interrupted"]
@@ -284,13 +299,14 @@ def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
 def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
     name = write(tmp_path, coin())
     ours, theirs = pty.openpty()
-    running = started(tmp_path, name, "--method", "fixed", "--max-traces", "900000000", "--jobs", "1", stderr=theirs)
-    os.close(theirs)
-    seen = b""
-    while b"traces" not in seen:
-        seen += os.read(ours, 1000)
-    running.send_signal(signal.SIGINT)
-    out, _ = running.communicate(timeout=30)
+    options = (name, "--method", "fixed", "--max-traces", "900000000", "--jobs", "1")
+    with started(tmp_path, *options, stderr=theirs) as running:
+        os.close(theirs)
+        seen = b""
+        while b"traces" not in seen:
+            seen += os.read(ours, 1000)
+        running.send_signal(signal.SIGINT)
+        out, _ = running.communicate(timeout=30)
     os.close(ours)
     assert b"heads" in seen
     assert "interrupted; this is what was known by then" in out
