@@ -18,6 +18,7 @@ from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
 from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
+from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 
@@ -183,8 +184,8 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
 def _full_name(variable: GlobalVariable) -> str:
     """The name on the whole blackboard, from that of a global variable."""
     return (
-        variable.event.removeprefix("bt_blackboard_set_")
-        if variable.event != "bt_blackboard_get"
+        variable.event.removeprefix(BLACKBOARD_WRITE_PREFIX)
+        if variable.event != BLACKBOARD_ANSWER
         else variable.parameter
     )
 

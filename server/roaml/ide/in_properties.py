@@ -17,6 +17,7 @@ from roaml.ide.occurrence import Access, Form, Occurrence, parameter, tree_node
 from roaml.jani.properties import Property, identifiers
 from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
 from roaml.model.system import Automaton, Channel, System, safe_name, sanitise
+from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.typing import INTERFACE_KINDS
 from roaml.text import Span
 
@@ -98,7 +99,7 @@ def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[
         head = (_plain("action_"), (sanitise(action.name), symbol, Form.SANITISED))
         yield from _protocol(head, action, _ACTION, _ACTION_CLIENT, trees, interface)
     for pieces in trees.full_names.values():
-        yield (_plain("bt_blackboard_set_"), *pieces), UNKNOWN
+        yield (_plain(BLACKBOARD_WRITE_PREFIX), *pieces), UNKNOWN
 
 
 def _part(channel: Channel, part: str, interface: FindInterface) -> Type:
@@ -146,7 +147,7 @@ def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees
         yield _plain(rest)
     elif variable.event in system.events:
         yield from _parameter(rest, variable, system)
-    elif variable.event == "bt_blackboard_get":
+    elif variable.event == BLACKBOARD_ANSWER:
         yield _plain("__")
         pieces = trees.full_names.get(variable.parameter, (_plain(variable.parameter),))
         yield from pieces

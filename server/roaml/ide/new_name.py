@@ -19,9 +19,9 @@ from roaml.ide.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.machine import Declaration, Machine
 from roaml.model.system import sanitise
+from roaml.model.translated import is_synchronising
 from roaml.model.typing import STATUSES
 from roaml.project.analysis import Analysis
-from roaml.rules.blocking_event_name import WAITING
 from roaml.rules.event_data_unavailable import EVENT_VARIABLES
 from roaml.rules.invalid_name import EVENT, RESERVED, VARIABLE, variable_problem
 
@@ -88,7 +88,7 @@ def _form(kind: str, new: str, found: Thing) -> str:
             return variable_problem(new)
         case "event":
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
-            if right and (WAITING.match(new) or _MADE.match(new)):
+            if right and (is_synchronising(new) or _MADE.match(new)):
                 return f"{cannot}: the translation calls its own events so"
         case "parameter":
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")

@@ -15,6 +15,7 @@ from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
+from roaml.model.translated import ACTION_HANDLER_PREFIX
 from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, Send, State, Statement
 from roaml.text import Location
 
@@ -70,7 +71,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
     int32 = BASE_TYPES["int32"]
     own = tuple(Data(each, int32, default_value(int32), origin) for each in (GOAL_ID, CODE))
     data = (*variables({**goal, **feedback, **result}, origin), *own)
-    return Automaton(f"action_handler_{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
+    return Automaton(f"{ACTION_HANDLER_PREFIX}{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
 
 
 def _store(parameter: str, origin: Location) -> Statement:

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from roaml.expr.types import BASE_TYPES
 from roaml.lower.build import default_value, event_data, name
-from roaml.lower.machine import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.lower.program import Program
+from roaml.model.translated import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.scxml.model import Assign, Automaton, Data, Param, Role, Send, State, Target, Transition
 from roaml.text import Location
 
@@ -22,7 +22,7 @@ def blackboard(program: Program) -> Automaton | None:
     origin = next(iter(places.values()))
     writes = tuple(
         Transition(
-            f"bt_blackboard_set_{v}",
+            f"{BLACKBOARD_WRITE_PREFIX}{v}",
             None,
             (Target("idle", 1.0, (Assign(name(v), event_data("value"), places[v]),), places[v]),),
             places[v],
@@ -32,7 +32,7 @@ def blackboard(program: Program) -> Automaton | None:
     answer = Send(BLACKBOARD_ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
     asked = Transition(BLACKBOARD_REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
     idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
-    return Automaton("bt_blackboard_fsm", Role.BLACKBOARD, "idle", data, (idle,), origin)
+    return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 
 def _place(program: Program, variable: str) -> Location:

@@ -22,12 +22,10 @@ from roaml.model.expand import Constant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
+from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.model.typing import STATUSES
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, Send, State, Target, Transition
-
-BLACKBOARD_REQUEST = "bt_blackboard_req"
-BLACKBOARD_ANSWER = "bt_blackboard_get"
 
 TimerEvents = Mapping[tuple[str, str], str]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""

@@ -7,6 +7,7 @@ from roaml.lower.handlers import copied, declared_at, handler_place, on, stored,
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Channel, safe_name, sanitise
+from roaml.model.translated import SERVICE_HANDLER_PREFIX
 from roaml.scxml.model import Automaton, Role, Send, State
 
 
@@ -28,4 +29,4 @@ def service_handler(service: Channel, program: Program) -> Automaton:
         processing.append(State(busy, (), (), (back,), place))
     states = (State("waiting", (), (), tuple(waiting), origin), *processing)
     data = variables({**request, **response}, origin)
-    return Automaton(f"srv_handler_{sanitise(service.name)}", Role.HANDLER, "waiting", data, states, origin)
+    return Automaton(f"{SERVICE_HANDLER_PREFIX}{sanitise(service.name)}", Role.HANDLER, "waiting", data, states, origin)

@@ -20,6 +20,7 @@ from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
+from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
 from roaml.model.typing import STATUSES
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
 from roaml.text import Location
@@ -254,7 +255,7 @@ class StatementLowering:
         assert isinstance(held, Reference)
         value = Param("value", lower_expr(statement.value.tree, scope), origin)
         type_ = self.types(statement.value, scope).get((), UNKNOWN)
-        yield from self.send(f"bt_blackboard_set_{held.variable}", ((value, type_),), origin)
+        yield from self.send(f"{BLACKBOARD_WRITE_PREFIX}{held.variable}", ((value, type_),), origin)
 
 
 def literal_index(child: Name) -> int | None:

@@ -7,6 +7,7 @@ from roaml.expr.tree import Expr
 from roaml.lower.build import equal, event_data, integer
 from roaml.lower.program import Program
 from roaml.model.expand import ROOT_NUMBER
+from roaml.model.translated import TREE_ROOT_PREFIX
 from roaml.model.typing import STATUSES
 from roaml.scxml.model import Automaton, Role, Send, State, Target, Transition
 
@@ -20,7 +21,7 @@ def _stem(program: Program) -> str:
 
 def tick_timer(program: Program) -> tuple[str, str]:
     """The automaton that ticks the tree, and the timer that makes it do so."""
-    return f"bt_root_fsm_{_stem(program)}", f"{_stem(program)}_tick"
+    return f"{TREE_ROOT_PREFIX}{_stem(program)}", f"{_stem(program)}_tick"
 
 
 def tree_root(program: Program, tick: str) -> Automaton:

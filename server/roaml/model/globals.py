@@ -15,6 +15,7 @@ from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.model.typing import INTERFACE_KINDS
 
 FIELD_PREFIX = "ros_fields__"
@@ -184,7 +185,7 @@ def _blackboard(system: System) -> Iterator[_Event]:
     variables: Mapping[str, Type] = {name: BASE_TYPES[system.variable_type(name)] for name in system.blackboard}
     for name, ports in system.blackboard.items():
         if any(bound.port.written for bound in ports):
-            yield f"bt_blackboard_set_{name}", None, [("value", variables[name])]
+            yield f"{BLACKBOARD_WRITE_PREFIX}{name}", None, [("value", variables[name])]
     if system.reads_blackboard:
-        yield "bt_blackboard_req", None, []
-        yield "bt_blackboard_get", None, variables.items()
+        yield BLACKBOARD_REQUEST, None, []
+        yield BLACKBOARD_ANSWER, None, variables.items()

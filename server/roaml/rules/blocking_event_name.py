@@ -3,32 +3,26 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
+from roaml.model.translated import is_synchronising
 from roaml.model.typing import find_handle
 from roaml.rules.rule import MachineContext, Rule
-
-# The names of events that wait for their receiver instead of being discarded (spec/05 §6).
-WAITING = re.compile(
-    r"bt_[0-9]+_(tick|halt|response|halt_response)$|action_.+_goal_.+$|action_.+_result.*$"
-    r"|action_.+_thread_(start|free)$|srv_.+_(response|request|req_client).*$|global_timer_tick_event"
-)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, Send) and statement.event and WAITING.match(statement.event.value):
+            if isinstance(statement, Send) and statement.event and is_synchronising(statement.event.value):
                 message = "an event of such a name is never discarded: it waits until every receiver handles it"
                 yield RULE.at(statement.event.span, message)
     for declaration in _with_feedback(context.machine):
         name = declaration.interface
-        if isinstance(name, Name) and WAITING.match(f"action_{sanitise(name.value)}_feedback"):
+        if isinstance(name, Name) and is_synchronising(f"action_{sanitise(name.value)}_feedback"):
             message = f"the feedback of an action called `{name.value}` is never discarded: it waits to be handled"
             yield RULE.at(name.span, message)
 

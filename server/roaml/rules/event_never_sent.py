@@ -12,6 +12,7 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import System
+from roaml.model.translated import TIMER_PREFIX
 from roaml.rules.layout import remove
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
@@ -50,7 +51,7 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
 
 def _generated(context: MachineContext, system: System, event: str) -> bool:
     """Whether it is an event that ROS elements, timers or the tree stand for in the translation (spec/04)."""
-    timers = (f"ros_time_rate.{timer.name}" for a in system.automata for timer in a.outline.timers)
+    timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
 
     def interface(kind: str, name: str) -> InterfaceType | None:
         found = context.interface(kind, name)

@@ -10,8 +10,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Destination, Edge, Element, Location, Sync, System
-from roaml.to_jani.edges import CLOCK_ACTION, on_receive, on_send
-from roaml.to_jani.events import BLACKBOARD_REQUEST, BLACKBOARD_WRITE, CLOCK_STEP, Event, is_internal, is_timer
+from roaml.model.translated import (
+    BLACKBOARD_REQUEST,
+    BLACKBOARD_WRITE_PREFIX,
+    CLOCK_ACTION,
+    CLOCK_STEP,
+    is_internal,
+    is_timer,
+    on_receive,
+    on_send,
+)
+from roaml.to_jani.events import Event
 
 CLOCK_ENABLE = "__as2fm__global_timer_enable"
 BLACKBOARD_ENABLE = "__as2fm__blackboard_requests_enable"
@@ -36,7 +45,7 @@ def event_automaton(event: Event, has_clock: bool) -> Automaton:
         edges = [edge(WAITING, on_send(event.name), RECEIVED), edge(RECEIVED, on_receive(event.name), WAITING)]
         if has_clock:
             edges.append(edge(WAITING, CLOCK_ENABLE, WAITING))
-        if event.name.startswith(BLACKBOARD_WRITE):
+        if event.name.startswith(BLACKBOARD_WRITE_PREFIX):
             edges.append(edge(WAITING, BLACKBOARD_ENABLE, WAITING))
     else:
         edges = [edge(WAITING, on_send(event.name), WAITING)]
@@ -77,7 +86,7 @@ def _communication(event: Event, buffers: Mapping[str, int]) -> Iterable[Sync]:
     send, receive, buffer = on_send(event.name), on_receive(event.name), buffers[event.name]
     settled: list[tuple[int, str]] = []
     if event.name == BLACKBOARD_REQUEST:
-        settled = [(i, BLACKBOARD_ENABLE) for name, i in buffers.items() if name.startswith(BLACKBOARD_WRITE)]
+        settled = [(i, BLACKBOARD_ENABLE) for name, i in buffers.items() if name.startswith(BLACKBOARD_WRITE_PREFIX)]
     for sender in event.senders:
         yield _sync(send, [(sender, send), (buffer, send), *settled])
     if event.receivers:

@@ -17,27 +17,18 @@ from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
+from roaml.model.translated import is_internal, is_synchronising, on_receive, on_send
 from roaml.scxml.model import Assign, Body, If, Role, Send, State
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
-from roaml.to_jani.events import CLOCK_STEP, Event, is_internal, is_synchronising
+from roaml.to_jani.events import Event
 from roaml.to_jani.moves import Behavior, Move
 from roaml.to_jani.shapes import Shape, shape_of
 from roaml.to_jani.values import Scope, both, negated
 
-CLOCK_ACTION = "global_timer_tick_action"
 FIRST = "-first-exec"
 DRAWS = 100
 """`Math.random()` is one of 0.00, 0.01, ..., 0.99 (spec/03 §7)."""
-
-
-def on_send(event: str) -> str:
-    """The action of sending an event. The clock's step to itself is no communication (spec/05 §8)."""
-    return event if event == CLOCK_STEP else f"{event}_on_send"
-
-
-def on_receive(event: str) -> str:
-    return CLOCK_ACTION if event == CLOCK_STEP else f"{event}_on_receive"
 
 
 @dataclass(slots=True)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -12,34 +11,6 @@ from roaml.expr.types import UNKNOWN, Struct, Type, join
 from roaml.scxml.model import Body, Send, statements
 from roaml.text import Location
 from roaml.to_jani.moves import Behavior
-
-CLOCK_STEP = "global_timer_tick_event"
-TIMER_PREFIX = "ros_time_rate."
-BLACKBOARD_REQUEST = "bt_blackboard_req"
-BLACKBOARD_WRITE = "bt_blackboard_set_"
-
-_SYNCHRONISING = re.compile(
-    r"bt_[0-9]+_(?:tick|halt|response|halt_response)\Z"
-    r"|action_.+_goal_.+\Z"
-    r"|action_.+_result"
-    r"|action_.+_thread_(?:start|free)\Z"
-    r"|srv_.+_(?:response|request|req_client)"
-    r"|global_timer_tick_event\Z"
-)
-
-
-def is_synchronising(event: str) -> bool:
-    """Whether the event waits for its receivers, where others are discarded (spec/05 §6)."""
-    return _SYNCHRONISING.match(event) is not None
-
-
-def is_timer(event: str) -> bool:
-    return event.startswith(TIMER_PREFIX)
-
-
-def is_internal(event: str) -> bool:
-    """Whether the event has neither buffer nor variables: the ticks of timers and the step of the clock."""
-    return is_timer(event) or event == CLOCK_STEP
 
 
 @dataclass(slots=True)

@@ -8,11 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
+from roaml.model.translated import BLACKBOARD_REQUEST
 from roaml.scxml.model import Data, Network, Role
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
-from roaml.to_jani.events import BLACKBOARD_REQUEST, Event, event_table
+from roaml.to_jani.events import Event, event_table
 from roaml.to_jani.moves import Behavior, behavior_of
 from roaml.to_jani.properties import expanded
 from roaml.to_jani.shapes import Shape, constructed_zero, jani_type, shape_of
