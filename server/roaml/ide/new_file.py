@@ -6,12 +6,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from roaml.expr.types import BASE_TYPES
+from roaml.expr.types import BASE_TYPES, UNKNOWN
+from roaml.expr.zero import zero_text
 from roaml.model.system import safe_name
 from roaml.project.analysis import Analysis
 from roaml.project.paths import inside, seen_from, split_name
 from roaml.rules.invalid_name import variable_problem
-from roaml.rules.zero import zero
 from roaml.text import SourceFile
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -93,7 +93,7 @@ def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool
 
 
 def _zero(type_: str) -> str:
-    return zero(BASE_TYPES[type_]) if type_ in BASE_TYPES else "0"
+    return zero_text(BASE_TYPES.get(type_, UNKNOWN))
 
 
 _LEAF = """\

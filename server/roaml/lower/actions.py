@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from roaml.expr.types import BASE_TYPES
-from roaml.lower.build import default_value, equal, event_data, integer, name
+from roaml.expr.zero import zero
+from roaml.lower.build import equal, event_data, integer, name
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import Program
@@ -69,7 +70,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         State("goal_requested", (), (), decided, origin),
     )
     int32 = BASE_TYPES["int32"]
-    own = tuple(Data(each, int32, default_value(int32), origin) for each in (GOAL_ID, CODE))
+    own = tuple(Data(each, int32, zero(int32), origin) for each in (GOAL_ID, CODE))
     data = (*variables({**goal, **feedback, **result}, origin), *own)
     return Automaton(f"{ACTION_HANDLER_PREFIX}{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
 

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from roaml.expr.types import BASE_TYPES
-from roaml.lower.build import default_value, event_data, name
+from roaml.expr.zero import zero
+from roaml.lower.build import event_data, name
 from roaml.lower.program import Program
 from roaml.model.translated import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.scxml.model import Assign, Automaton, Data, Param, Role, Send, State, Target, Transition
@@ -18,7 +19,7 @@ def blackboard(program: Program) -> Automaton | None:
     if not variables:
         return None
     places = {variable: _place(program, variable) for variable in variables}
-    data = tuple(Data(v, type_, default_value(type_), places[v]) for v, type_ in variables.items())
+    data = tuple(Data(v, type_, zero(type_), places[v]) for v, type_ in variables.items())
     origin = next(iter(places.values()))
     writes = tuple(
         Transition(

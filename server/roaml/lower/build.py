@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from roaml.expr.operators import Operator
-from roaml.expr.tree import ArrayLiteral, Binary, Boolean, Call, Expr, Index, Member, Name, Number, String
-from roaml.expr.types import Array, Type, is_kind
+from roaml.expr.tree import Binary, Call, Expr, Index, Member, Name, Number
 from roaml.lower.program import NOWHERE
 from roaml.text import Span
 
@@ -52,14 +51,3 @@ def equal(left: Expr, right: Expr, span: Span = NOWHERE) -> Expr:
 def both(left: Expr | None, right: Expr, span: Span = NOWHERE) -> Expr:
     """`left && right`; without left just `right`."""
     return right if left is None else binary(left, Operator.AND, right, span)
-
-
-def default_value(type_: Type, span: Span = NOWHERE) -> Expr:
-    """What a variable of a flat type holds if nothing is said: 0, 0.0, false, '' or []."""
-    if isinstance(type_, Array):
-        return ArrayLiteral(span, ())
-    if is_kind(type_, "bool"):
-        return Boolean(span, False)
-    if is_kind(type_, "string"):
-        return String(span, "")
-    return Number(span, 0, is_kind(type_, "real"))

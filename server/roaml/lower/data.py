@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from roaml.expr.tree import ArrayLiteral, Expr, Number, ObjectLiteral, Unary
 from roaml.expr.types import Array, Struct, Type, is_kind, leaves, unwrap
-from roaml.lower.build import default_value
+from roaml.expr.zero import zero
 from roaml.lower.expressions import SEPARATOR, Path
 from roaml.scxml.model import Data
 from roaml.text import Location
@@ -21,7 +21,7 @@ def lower_data(identifier: str, type_: Type, value: Expr | None, origin: Locatio
     """The plain variables of one variable; without `value` they get their defaults."""
     given = {} if value is None else dict(_leaf_values(type_, value))
     for path, leaf in leaves(type_):
-        yield Data(SEPARATOR.join((identifier, *path)), leaf, given.get(path) or default_value(leaf), origin)
+        yield Data(SEPARATOR.join((identifier, *path)), leaf, given.get(path) or zero(leaf), origin)
 
 
 def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
@@ -35,7 +35,7 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
         case Array(), ArrayLiteral() if isinstance(unwrap(type_)[0], Struct):
             elements = [dict(_leaf_values(type_.element, element)) for element in value.elements]
             for path, leaf in leaves(type_.element):
-                yield path, ArrayLiteral(value.span, tuple(e.get(path) or default_value(leaf) for e in elements))
+                yield path, ArrayLiteral(value.span, tuple(e.get(path) or zero(leaf) for e in elements))
         case _:
             yield (), as_type(value, unwrap(type_)[0])
 

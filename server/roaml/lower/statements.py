@@ -11,7 +11,8 @@ from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, leaves, unwrap
-from roaml.lower.build import default_value, equal, event_data, integer, name, random_number
+from roaml.expr.zero import zero
+from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
 from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
@@ -170,7 +171,7 @@ class StatementLowering:
         count = len(self.drawn)
         while (found := f"random_{count}") in taken:
             count += 1
-        self.drawn.append(Data(found, type_, default_value(type_), origin))
+        self.drawn.append(Data(found, type_, zero(type_), origin))
         return self.drawn[-1]
 
     def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:

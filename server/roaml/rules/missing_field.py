@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Struct, Type, leaves
+from roaml.expr.zero import zero_text
 from roaml.model.machine import Communicate
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule, close_names, listing
 from roaml.rules.unknown_field import sent_part
-from roaml.rules.zero import zero
 
 SHOWN = 6
 
@@ -58,7 +58,7 @@ def _finding(context: MachineContext, statement: Communicate, missing: list[tupl
     names = _shortened([name for name, _ in missing])
     one = len(missing) == 1
     fields = "field" if one else "fields"
-    new = [f'<field name="{name}" expr="{zero(type_)}" />' for name, type_ in missing]
+    new = [f'<field name="{name}" expr="{zero_text(type_)}" />' for name, type_ in missing]
     fix = Fix(f"Add the missing {fields}", (last_in(context.document, element, *new),))
     if context.older:
         defaults = "is not set and has its ROS default" if one else "are not set and have their ROS defaults"

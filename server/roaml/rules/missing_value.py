@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Array, Scalar, Type
+from roaml.expr.zero import zero_text
 from roaml.language import HL_SCXML
 from roaml.model.machine import Assign, Communicate, Param, Send
 from roaml.model.syntax import Value
@@ -14,8 +15,6 @@ from roaml.rules import misspelled
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
-
-ZERO = {"int": "0", "real": "0.0", "bool": "false", "string": "''"}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -52,8 +51,8 @@ def _param(param: Param, name: str) -> Finding:
 
 
 def _fix(element: Element, type_: Type | None) -> Iterator[Fix]:
-    value = ZERO.get(type_.kind) if isinstance(type_, Scalar) else "[]" if isinstance(type_, Array) else None
-    if value is not None and element.find("expr") is None:
+    if isinstance(type_, (Scalar, Array)) and element.find("expr") is None:
+        value = zero_text(type_)
         at = element.attributes[-1].span.end if element.attributes else element.name_span.end
         yield Fix(f'Add `expr="{value}"`', (TextEdit(Span(at, at), f' expr="{value}"'),))
 

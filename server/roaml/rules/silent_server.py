@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.types import leaves
+from roaml.expr.zero import zero_text
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint
@@ -14,7 +15,6 @@ from roaml.model.typing import find_handle
 from roaml.rules.interfaces import declared, find_use, name_span
 from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.zero import zero
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -77,7 +77,7 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
         return
     types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
-    fields = [f'    <field name="{name}" expr="{zero(types[name])}" />' for name in interface.required("response")]
+    fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
     tag = f'<ros_service_send_response name="{declaration.handle.value}"'
     lines = (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
     edits = tuple(last_in(context.document, place, *lines) for place in places)

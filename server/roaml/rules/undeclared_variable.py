@@ -10,13 +10,13 @@ from roaml.expr.infer import UnknownName, infer
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Binary, Conditional, Expr, Name, Unary
 from roaml.expr.types import BOOL, Scalar, Type
+from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
 from roaml.model.typing import STATUSES, TypedValue, Use
 from roaml.rules.layout import first_in, last_in
 from roaml.rules.missing_type import DEFAULTS
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.zero import zero
 
 LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
 NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
@@ -62,7 +62,7 @@ def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[
     """Declare the variable, if its type can be told from where it is used."""
     type_ = inferred_type(context, value, name)
     if type_ is not None:
-        yield declaration(context, value.place.chart, name, str(type_), zero(type_))
+        yield declaration(context, value.place.chart, name, str(type_), zero_text(type_))
 
 
 def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scalar | None:

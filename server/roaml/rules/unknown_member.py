@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Array, Struct, unwrap
+from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.typing import TypedValue
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
-from roaml.rules.zero import zero
 from roaml.text import Span, TextEdit
 
 QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
@@ -44,7 +44,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _add(context: MachineContext, problem: MissingMembers, names: list[str]) -> Iterator[Fix]:
     """The missing members, with 0 or what is like it."""
     text = context.source.text[slice(*problem.span)]
-    values = [zero(type_) for name in names if (type_ := problem.struct.member(name)) is not None]
+    values = [zero_text(type_) for name in names if (type_ := problem.struct.member(name)) is not None]
     if text[-1:] != "}" or len(values) < len(names):
         return
     inside = text[1:-1].rstrip()

@@ -15,6 +15,7 @@ from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
 from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, Type, fits, unwrap, wrap
+from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.occurrence import variable
@@ -132,16 +133,7 @@ def initial_values(type_: Type) -> Iterator[Item]:
         return
     snippet = Snippet()
     _literal(type_, snippet)
-    yield Item(_text(type_), ItemKind.VALUE, str(snippet), detail=str(type_), rank=Rank.BEST)
-
-
-def _text(type_: Type) -> str:
-    inner, bounds = unwrap(type_)
-    if bounds:
-        return "[]"
-    if isinstance(inner, Struct):
-        return "{" + ", ".join(f"'{name}': {_text(member)}" for name, member in inner.members) + "}"
-    return ZEROS.get(inner.kind, "0") if isinstance(inner, Scalar) else "0"
+    yield Item(zero_text(type_), ItemKind.VALUE, str(snippet), detail=str(type_), rank=Rank.BEST)
 
 
 def _literal(type_: Type, snippet: Snippet) -> None:
@@ -153,10 +145,7 @@ def _literal(type_: Type, snippet: Snippet) -> None:
     elif isinstance(type_, Array):
         snippet.text("[").stop().text("]")
     else:
-        snippet.stop([_text(type_)])
-
-
-ZEROS = {"bool": "false", "int": "0", "real": "0.0", "string": "''"}
+        snippet.stop([zero_text(type_)])
 
 
 # ------------------------------------------------------------------------ names

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import Scalar, Struct, Type, leaves
-from roaml.ide.completion.expressions import ZEROS
+from roaml.expr.types import Struct, Type, leaves
+from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.language import ElementType
@@ -85,8 +85,7 @@ def _all(made: Snippet, types: Mapping[str, Type], lead: str) -> Snippet:
 
 
 def _field(made: Snippet, path: str, type_: Type) -> Snippet:
-    zero = ZEROS[type_.kind] if isinstance(type_, Scalar) else "[]"
-    return made.text(f'<field name="{path}" expr="').stop([zero]).text('"/>')
+    return made.text(f'<field name="{path}" expr="').stop([zero_text(type_)]).text('"/>')
 
 
 def _fields(request: Request, statement: Communicate) -> Mapping[str, tuple[Type, str]]:

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The neutral value of each type: what a variable holds if nothing is said, what a fix or a completion writes."""
+
+from __future__ import annotations
+
+from roaml.expr.format import format_expr
+from roaml.expr.tree import ArrayLiteral, Boolean, Expr, Number, ObjectLiteral, ObjectMember, String
+from roaml.expr.types import Array, EmptyArray, Struct, Type, is_kind
+from roaml.text import Span
+
+_NOWHERE = Span(0, 0)
+
+
+def zero(type_: Type) -> Expr:
+    """0, 0.0, false, '', [], or a struct of those; 0 if the type is not known. Its places mean nothing."""
+    if isinstance(type_, Struct):
+        members = (ObjectMember(name, _NOWHERE, zero(member)) for name, member in type_.members)
+        return ObjectLiteral(_NOWHERE, tuple(members))
+    if isinstance(type_, (Array, EmptyArray)):
+        return ArrayLiteral(_NOWHERE, ())
+    if is_kind(type_, "bool"):
+        return Boolean(_NOWHERE, False)
+    if is_kind(type_, "string"):
+        return String(_NOWHERE, "")
+    return Number(_NOWHERE, 0, is_kind(type_, "real"))
+
+
+def zero_text(type_: Type) -> str:
+    """The same as it is written."""
+    return format_expr(zero(type_))
