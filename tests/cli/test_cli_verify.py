@@ -141,10 +141,11 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     assert "it reads bt_1000_response__status" in story
     # Each line has its time and place, and what has moved below it.
     lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
-    number = next(n for n, text in enumerate(lines, 1) if "ros_service_send_request" in text)
-    (first, *_) = [text for text in story.splitlines() if "_Deliver  " in text and "sends srv_hand_over" in text]
+    number = next(n for n, text in enumerate(lines, 1) if "<bt_tick" in text)
+    (first, *_) = [text for text in story.splitlines() if "  Deliver (bt_" in text and "is ticked" in text]
     assert f"plugins/deliver.ascxml:{number}" in first
-    assert ".000 s  BT_plugin_1004_Deliver " in first
+    assert ".000 s  Deliver (bt_1004) " in first
+    assert "sends srv_hand_over" in story
     assert re.search(r"\n +\w+: \S+ → \S+", story)
 
 
@@ -154,8 +155,9 @@ def test_explains_as_diagram_and_page(command: Command, robot: Path) -> None:
     assert "there is no trace in which it fails" in done.err
     diagram = (robot / "why.mmd").read_text()
     assert diagram.startswith("sequenceDiagram\n")
-    participants = {row.split()[1]: row.split()[3] for row in diagram.splitlines() if "participant" in row}
-    assert {"Building", "BT_plugin_1004_Deliver"} <= set(participants.values())
+    named = [row.partition(" as ") for row in diagram.splitlines() if "participant" in row]
+    participants = {head.split()[1]: name for head, _, name in named}
+    assert {"Building", "Deliver (bt_1004)"} <= set(participants.values())
     arrows = [row for row in diagram.splitlines() if "->>" in row]
     assert arrows
     for row in arrows:
@@ -263,7 +265,7 @@ import runpy, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
 runpy.run_module("as2fm_lsp", run_name="__main__", alter_sys=True)
 """
-"""What is started in the background of a shell, as whole test runs may be, ignores the keyboard unless told otherwise."""
+"""What a shell starts in the background, as whole test runs may be, ignores the keyboard unless told otherwise."""
 
 
 @contextmanager

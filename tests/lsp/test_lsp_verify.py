@@ -187,14 +187,14 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     numbers = [step["step"] for step in steps]
     assert numbers == sorted(numbers)
     arm = (robot / "arm.ascxml").as_uri()
-    first = next(step for step in steps if step["automaton"] == "Arm")
+    first = next(step for step in steps if step["who"] == "Arm")
     assert first["uri"] == arm
     line = (robot / "arm.ascxml").read_text().splitlines()[first["range"]["start"]["line"]]
     assert line[first["range"]["start"]["character"] :].startswith("<")
     lit = [each["node"] for step in steps for each in step["lit"] if each["uri"] == arm]
     assert "/still" in lit
     assert {each["kind"] for step in steps for each in step["lit"]} == {"machine", "tree"}
-    assert all(step["time"].endswith(" s") for step in steps if step["automaton"])
+    assert all(step["time"].endswith(" s") for step in steps if step["who"])
 
 
 async def test_tree_nodes_are_lit(tmp_path: Path) -> None:

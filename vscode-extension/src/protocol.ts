@@ -114,11 +114,13 @@ export interface Lit {
 export interface Step extends Partial<Place> {
     readonly step: number;
     readonly time: string;
-    readonly automaton: string;
+    /** The automaton, for people. */
+    readonly who: string;
     readonly what: string;
     /** File and line, for people. */
     readonly place: string;
-    readonly changes: readonly string[];
+    /** What has come of it: what has changed, what was sent. */
+    readonly details: readonly string[];
     readonly lit: readonly Lit[];
 }
 

@@ -282,10 +282,10 @@ def _step(server: Server, known: Known, system: str, line: Line) -> Json:
     return {
         "step": line.step,
         "time": line.time,
-        "automaton": line.automaton,
+        "who": line.who,
         "what": line.what,
         "place": line.place,
-        "changes": list(line.changes),
+        "details": list(line.details),
         **(_place(server, known.analysis, origin) if origin is not None else {}),
         "lit": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
     }

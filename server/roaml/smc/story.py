@@ -1,38 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace as a story: what led to its end, and nothing else.
+"""A trace as a story: what led to its end.
 
-Folded to what the property depends on: the steps that change what it reads, and what these steps have needed, back to
-the start: the last change of each variable that they read, and what woke the automaton that takes them.
+What matters is what the property depends on: the steps that change what it reads, and what these steps have needed,
+back to the start: the last change of each variable that they read, and what woke the automaton that takes them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from roaml.smc.record import Part, Recorder, Recording, TraceStep, Variable
+from roaml.jani.model import Automaton
+from roaml.smc.record import Part, Plain, Recorder, Recording, TraceStep, Variable
 
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """The steps of a trace that matter.
+    """A whole trace, and which of its steps matter.
 
     Attributes:
-        length: the number of all steps.
-        folded: so many steps that matter are left out after the first ones.
-        clock: for each step of the story the time in seconds, None where the model has no clock.
+        clock: for each step the time in seconds, None where the model has no clock.
+        relevant: the indices of the steps that matter, in their order.
+        variables: what the property reads.
+        automata: of each instance that the steps name.
+        start: the variables of the model before the first step.
     """
 
     property: str
     recording: Recording
     steps: tuple[TraceStep, ...]
     clock: tuple[float | None, ...]
-    length: int
+    relevant: tuple[int, ...]
     variables: tuple[str, ...]
-    folded: int = 0
-
-
-FIRST, LAST = 20, 40
-"""Steps of a story that are told; what stands between them is folded."""
+    automata: tuple[Automaton, ...]
+    start: Mapping[str, Plain]
 
 
 def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -42,6 +43,8 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         clock: the variables that hold the seconds and nanoseconds of the model's time.
     """
     recording = Recording(trace)
+    shared = recorder.shared
+    start = dict(zip((storage.name for storage in shared), recorder.initial(shared), strict=True))
     steps: list[TraceStep] = []
     times: list[float | None] = []
     seconds = nanoseconds = 0.0
@@ -56,15 +59,16 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         times.append(None if clock is None else seconds + nanoseconds / 1e9)
     variables = recorder.asked.question.variables
     relevant = _relevant(recorder, steps, variables)
-    kept = relevant if len(relevant) <= FIRST + LAST else relevant[:FIRST] + relevant[-LAST:]
+    automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
     return Story(
         recorder.asked.question.name,
         recording,
-        tuple(steps[i] for i in kept),
-        tuple(times[i] for i in kept),
-        len(steps),
+        tuple(steps),
+        tuple(times),
+        tuple(relevant),
         variables,
-        len(relevant) - len(kept),
+        automata,
+        start,
     )
 
 

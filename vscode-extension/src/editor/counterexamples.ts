@@ -9,7 +9,7 @@ import type { LanguageServer } from "./server";
 const VIEW = "as2fm.counterexample";
 const SHOW_STEP = "as2fm.showStep";
 
-/** A step, or what has changed in it. */
+/** A step, or what has come of it. */
 type Entry = Step | string;
 
 export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
@@ -58,10 +58,10 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
             return item;
         }
         const { Collapsed, None } = vscode.TreeItemCollapsibleState;
-        const label = entry.automaton === "" ? entry.what : `${entry.automaton}: ${entry.what}`;
-        const item = new vscode.TreeItem(label, entry.changes.length > 0 ? Collapsed : None);
+        const label = entry.who === "" ? entry.what : `${entry.who}: ${entry.what}`;
+        const item = new vscode.TreeItem(label, entry.details.length > 0 ? Collapsed : None);
         item.description = [entry.time, entry.place].filter((each) => each !== "").join(" · ");
-        item.tooltip = [label, item.description, ...entry.changes].join("\n");
+        item.tooltip = [label, item.description, ...entry.details].join("\n");
         if (entry.uri !== undefined) {
             item.iconPath = new vscode.ThemeIcon("debug-stackframe-dot");
             item.command = { command: SHOW_STEP, title: vscode.l10n.t("Show Step"), arguments: [entry] };
@@ -71,11 +71,11 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
 
     getChildren(entry?: Entry): Entry[] {
         if (entry === undefined) return [...(this.shown?.steps ?? [])];
-        return typeof entry === "string" ? [] : [...entry.changes];
+        return typeof entry === "string" ? [] : [...entry.details];
     }
 
     getParent(entry: Entry): Entry | undefined {
-        return typeof entry === "string" ? this.shown?.steps.find(({ changes }) => changes.includes(entry)) : undefined;
+        return typeof entry === "string" ? this.shown?.steps.find(({ details }) => details.includes(entry)) : undefined;
     }
 
     dispose(): void {

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A story in turns, as people think of it: an automaton hears an event, and does all that follows from it.
+
+A translated system takes many steps for that: each statement is one, each event waits in an automaton of its own
+between sender and receiver, and the inner nodes of a behavior tree pass ticks down and answers up. A turn is told if
+one of its steps matters, or if it hears what such a turn says; what only passes things on is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from roaml.jani.node import Origin
+from roaml.model.translated import CLOCK, received_by, sent_by
+from roaml.model.typing import STATUSES
+from roaml.smc.record import Change, Part, Plain, TraceStep
+from roaml.smc.story import Story
+
+_NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
+_CALL = re.compile(r"bt_\d+_(tick|halt)")
+_ANSWER = re.compile(r"bt_\d+_(halt_)?response")
+
+
+@dataclass(slots=True)
+class Turn:
+    """What one automaton does from one event to the next.
+
+    Attributes:
+        heard: what it begins with; None if with nothing.
+        action: what it begins with together with others, where that is no event.
+        parts: of the automaton in its steps.
+        changes: of its own variables, and of those of the model that carry no event.
+        messages: what it has sent.
+        ends: whether the trace ends with it.
+    """
+
+    instance: int
+    number: int
+    time: float | None
+    heard: Message | None
+    action: str | None
+    parts: list[Part] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
+    messages: list[Message] = field(default_factory=list)
+    matters: bool = False
+    ends: bool = False
+
+    @property
+    def automaton(self) -> str:
+        return self.parts[0].automaton
+
+    @property
+    def origin(self) -> Origin | None:
+        return self.parts[0].edge.origin
+
+    @property
+    def source(self) -> str:
+        return self.parts[0].source
+
+    @property
+    def destination(self) -> str:
+        return self.parts[-1].destination.location
+
+    @property
+    def who(self) -> str:
+        """The automaton as people call it: a node of a tree by its name and number."""
+        node = _NODE.fullmatch(self.automaton)
+        return f"{node[2]} (bt_{node[1]})" if node else self.automaton
+
+    @property
+    def protocol(self) -> str:
+        """What the tree says to and hears from this node begins with this; "" if it is none."""
+        node = _NODE.fullmatch(self.automaton)
+        return f"bt_{node[1]}_" if node else ""
+
+    @property
+    def is_ticked(self) -> bool:
+        return self._hears("tick")
+
+    @property
+    def is_halted(self) -> bool:
+        return self._hears("halt")
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether it begins with what a child answers to an inner node."""
+        return self.heard is not None and bool(_ANSWER.fullmatch(self.heard.event))
+
+    @property
+    def sent(self) -> Iterator[Message]:
+        """What it sends, but for its answers to the tree."""
+        return (message for message in self.messages if not self._answers(message))
+
+    @property
+    def status(self) -> str:
+        """The status that it answers to the tree with; "" if it does not."""
+        given = [message.values["status"] for message in self.messages if message.event == f"{self.protocol}response"]
+        return next((name for name, number in STATUSES.items() if number in given), "")
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether nothing has come of what it has heard."""
+        has_moved = self.source != self.destination or bool(self.changes)
+        return self.heard is not None and not has_moved and not any(self.sent) and not self.status
+
+    def _answers(self, message: Message) -> bool:
+        return bool(self.protocol) and message.event in (f"{self.protocol}response", f"{self.protocol}halt_response")
+
+    def _hears(self, what: str) -> bool:
+        return self.heard is not None and bool(self.protocol) and self.heard.event == self.protocol + what
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """An event with the parameters that it was sent with, by their names. `sender` is None if nobody has sent it."""
+
+    event: str
+    values: Mapping[str, Plain]
+    sender: Turn | None = None
+
+
+def turns(story: Story) -> list[Turn]:
+    """The turns that are told."""
+    return list(_told(story, _all_turns(story)))
+
+
+def _all_turns(story: Story) -> list[Turn]:
+    """All turns, in the order in which they begin; those of automata that only hold an event are none."""
+    reader = _Reader(story)
+    for index in range(len(story.steps)):
+        reader.read(index)
+    return reader.turns
+
+
+class _Reader:
+    """Reads the steps one after the other, and knows what holds after each."""
+
+    def __init__(self, story: Story) -> None:
+        actions = [{edge.action or "" for edge in automaton.edges} for automaton in story.automata]
+        self._story = story
+        self._relevant = frozenset(story.relevant)
+        self._events = {event for found in actions for action in found if (event := sent_by(action))}
+        self._hearing = [any(map(received_by, found)) for found in actions]
+        self._values = dict(story.start)
+        self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
+        self._of_events = {name for name in self._values if self._is_of_event(name)}
+        self._messages: dict[str, Message] = {}
+        self._current: dict[int, Turn] = {}
+        self.turns: list[Turn] = []
+
+    def _is_of_event(self, name: str) -> bool:
+        """Whether a variable of the model carries an event; what is a parameter of it is noted."""
+        if name.endswith(VALID):
+            return name.removesuffix(VALID) in self._events
+        at = name.rfind("__")
+        while at > 0:
+            if name[:at] in self._events:
+                if "." not in name[at:]:  # the length of an array stands beside it
+                    self._parameters[name[:at]].append(name)
+                return True
+            at = name.rfind("__", 0, at)
+        return False
+
+    def read(self, index: int) -> None:
+        step = self._story.steps[index]
+        for change in step.changes:
+            if change.variable.instance < 0:
+                self._values[change.variable.name] = change.after
+        actors = [part for part in step.parts if part.automaton not in self._events and part.automaton != CLOCK]
+        heard = self._heard(step)
+        for part in actors:
+            turn = self._current.get(part.instance)
+            if turn is None or heard is not None or not self._hearing[part.instance]:
+                together = step.action if len(actors) > 1 and heard is None else None
+                turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
+                self._current[part.instance] = turn
+                self.turns.append(turn)
+            turn.parts.append(part)
+            turn.changes += self._changes(step, part, is_last=part is actors[-1])
+            turn.matters |= index in self._relevant
+            turn.ends |= index == len(self._story.steps) - 1
+        event = sent_by(step.action or "")
+        if event:
+            self._send(event, self._current[actors[0].instance] if actors else None)
+
+    def _send(self, event: str, sender: Turn | None) -> None:
+        values = {_parameter(event, name): self._values[name] for name in self._parameters.get(event, ())}
+        self._messages[event] = Message(event, values, sender)
+        if sender is not None:
+            sender.messages.append(self._messages[event])
+
+    def _heard(self, step: TraceStep) -> Message | None:
+        event = received_by(step.action or "")
+        return self._messages.get(event, Message(event, {})) if event else None
+
+    def _changes(self, step: TraceStep, part: Part, *, is_last: bool) -> Iterator[Change]:
+        """Those of its own variables, and of the model's that carry no event; the latter are told once."""
+        for change in step.changes:
+            instance, name = change.variable
+            if instance == part.instance or (instance < 0 and is_last and name not in self._of_events):
+                yield change
+
+
+VALID = ".valid"
+_FIELDS = "ros_fields__"
+
+
+def _parameter(event: str, variable: str) -> str:
+    return variable.removeprefix(f"{event}__").removeprefix(_FIELDS)
+
+
+def _told(story: Story, found: Sequence[Turn]) -> Iterator[Turn]:
+    inner = frozenset(
+        number
+        for number, automaton in enumerate(story.automata)
+        if any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
+    )
+    for turn in found:
+        sender = turn.heard.sender if turn.heard else None
+        is_overheard = sender is not None and sender.matters and sender.instance not in inner
+        if turn.instance in inner:
+            turn.changes.clear()  # those of a node that comes with BehaviorTree.CPP: how it counts its children
+            is_told = turn.matters and turn.status in ("SUCCESS", "FAILURE")
+        else:
+            is_told = (turn.matters or is_overheard) and not turn.is_calm
+        if is_told or turn.ends:
+            yield turn

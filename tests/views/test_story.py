@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stories of traces: as a whole for a robot and its bug, and what is told of models that nobody has translated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+
+from as2fm_lsp.verification.subject import of_system
+from roaml import api
+from roaml.smc.model import Checker
+from roaml.smc.record import Recorder
+from roaml.smc.story import Story, tell
+from roaml.text import Location
+from roaml.views.story import FIRST, LAST, as_html, as_mermaid, as_text, lines
+from roaml.views.turns import turns
+
+HERE = Path(__file__).parent
+ROBOT = HERE.parents[1] / "examples/assembly_robot"
+DROPPED = 446
+"""A trace in which the robot with its bug loses the block."""
+
+PlaceOf = Callable[[Location], str]
+
+
+@pytest.fixture(scope="module")
+def bug() -> tuple[Story, PlaceOf]:
+    subject = of_system(api.load(str(ROBOT / "main_with_bug.xml")))
+    ready = api.checker(subject.model, ["never_placed_empty"])
+    story = tell(Recorder(ready, ready.asked[0], 0, 10_000), DROPPED, subject.clock)
+
+    def place_of(origin: Location) -> str:
+        path, line, _ = subject.place(origin) or ("", 0, 0)
+        return f"{Path(path).name}:{line}"
+
+    return story, place_of
+
+
+@pytest.mark.parametrize(("name", "notation"), [("story.txt", as_text), ("story.mmd", as_mermaid)])
+def test_as_a_whole(bug: tuple[Story, PlaceOf], name: str, notation: Callable[[Story, PlaceOf], str]) -> None:
+    assert notation(*bug) == (HERE / name).read_text(encoding="utf-8")
+
+
+def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
+    story, place_of = bug
+    page = as_html([story], place_of, "why <now>")
+    assert "why &lt;now&gt;" in page
+    for who in {line.who for line in lines(story, place_of)}:
+        assert page.count(f"<th>{who}</th>") == 1
+
+
+def walked(written: Json) -> Story:
+    ready = Checker(model(written))
+    return tell(Recorder(ready, ready.asked[0], 0, 1000), 0)
+
+
+def test_steps_of_hand_written_models_are_told_one_by_one() -> None:
+    both = [edge("s", "t", action="meet"), edge("t", way("u", x=op("+", "x", 1)))]
+    written = document(
+        automaton("a", "s t u", both),
+        automaton("b", "s t", [edge("s", "t", action="meet")]),
+        variables=[variable("x")],
+        system={
+            "elements": [{"automaton": "a"}, {"automaton": "b"}],
+            "syncs": [{"synchronise": ["meet", "meet"], "result": "meet"}],
+        },
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    story = walked(written)
+    told = [(line.who, line.what, line.details) for line in lines(story, lambda _: "here")]
+    assert told == [("a", "meet: s → t", ()), ("b", "meet: s → t", ()), ("a", "t → u", ("x: 0 → 1",))]
+
+
+def test_the_middle_of_a_long_story_is_folded() -> None:
+    count = edge("s", way("s", x=op("+", "x", 1)))
+    goal = {"p": probability(op("F", op("=", "x", FIRST + LAST + 7)))}
+    story = walked(document(automaton("a", "s", [count]), variables=[variable("x")], properties=goal))
+    assert len(turns(story)) == FIRST + LAST + 7
+    told = lines(story, lambda _: "")
+    assert len(told) == FIRST + LAST + 1
+    assert told[FIRST].what == "… 7 more …"
+    assert [line.step for line in told] == sorted(line.step for line in told)
+    assert "… 7 more …" in as_mermaid(story, lambda _: "")
