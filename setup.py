@@ -3,6 +3,7 @@
 the model checker is compiled where there is a C compiler.
 
 Without one, or with AS2FM_PURE_PYTHON=1, the installation has the same kernel as plain Python: slower, same results.
+With it the wheel carries the kernel's C text, too, so that `python -m roaml.smc.build` can compile it where it is.
 """
 
 import os
@@ -13,6 +14,7 @@ from setuptools.command.build_py import build_py
 
 SCHEMAS = Path(__file__).parent / "schemas"
 KERNEL = "server/roaml/smc/kernel.py"
+IS_PURE = os.environ.get("AS2FM_PURE_PYTHON") == "1"
 DIRECTIVES = {
     "annotation_typing": False,
     "boundscheck": False,
@@ -25,12 +27,17 @@ DIRECTIVES = {
 
 def extensions() -> list[Extension]:
     """The kernel, unless it is not wanted or Cython is missing. If it does not compile, the build goes on without."""
-    if os.environ.get("AS2FM_PURE_PYTHON") == "1":
-        return []
+    return [] if IS_PURE else translated_kernel()
+
+
+def translated_kernel() -> list[Extension]:
+    """The kernel as C; nothing if Cython is missing."""
     try:
         from Cython.Build import cythonize
+        from Cython.Compiler import Options
     except ImportError:
         return []
+    Options.emit_code_comments = False  # They would make the C text twice as long.
     flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv"]
     kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags)
     (made,) = cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython", quiet=True)
@@ -38,22 +45,27 @@ def extensions() -> list[Extension]:
     return [made]
 
 
-class BuildWithSchemas(build_py):
-    """Copies the schemas beside the package that reads them; an editable install reads them where they are."""
+class BuildWithMore(build_py):
+    """Copies the schemas beside the package that reads them; an editable install reads them where they are. A wheel
+    without the compiled kernel gets its C text."""
 
     def run(self) -> None:
         super().run()
-        if not self.editable_mode:
-            for schema in sorted(SCHEMAS.iterdir()):
-                self.copy_file(str(schema), str(self._target(schema)), preserve_mode=False)
+        for source, target in self._copies():
+            self.mkpath(str(target.parent))
+            self.copy_file(str(source), str(target), preserve_mode=False)
 
     def get_outputs(self, include_bytecode: bool = True) -> list[str]:
-        return super().get_outputs(include_bytecode) + [str(self._target(schema)) for schema in SCHEMAS.iterdir()]
+        return super().get_outputs(include_bytecode) + [str(target) for _, target in self._copies()]
 
-    def _target(self, schema: Path) -> Path:
-        folder = Path(self.build_lib) / "roaml" / "schemas"
-        self.mkpath(str(folder))
-        return folder / schema.name
+    def _copies(self) -> list[tuple[Path, Path]]:
+        if self.editable_mode:
+            return []
+        package = Path(self.build_lib) / "roaml"
+        found = [(schema, package / "schemas" / schema.name) for schema in sorted(SCHEMAS.iterdir())]
+        if IS_PURE:
+            found += [(Path(kernel.sources[0]), package / "smc" / "kernel.c") for kernel in translated_kernel()]
+        return found
 
 
-setup(cmdclass={"build_py": BuildWithSchemas}, ext_modules=extensions())
+setup(cmdclass={"build_py": BuildWithMore}, ext_modules=extensions())

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from roaml.smc import kernel
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "server", "schemas")
 
@@ -50,15 +52,43 @@ def test_wheel_checks_the_example(tmp_path: Path) -> None:
     assert said.startswith(str(installed))
 
 
-@pytest.mark.parametrize(("name", "value"), [("CC", "false"), ("AS2FM_PURE_PYTHON", "1")])
-def test_wheel_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
-    """The kernel of the model checker is there as Python, and verifies."""
-    monkeypatch.setenv(name, value)
-    installed = build(tmp_path)
-    assert sorted(path.name for path in (installed / "roaml/smc").glob("kernel*")) == ["kernel.pxd", "kernel.py"]
-    assert bool(list(tmp_path.glob("*-py3-none-any.whl"))) is (name != "CC")
+VERIFY = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"
+BUILD = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.build import main; sys.exit(main())"
+IS_COMPILED = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.kernel import compiled; print(compiled())"
+
+
+def verified(installed: Path) -> str:
     example = installed / "as2fm_lsp/templates/delivery_robot/main.xml"
-    isolated = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"
     options = ("--property", "never_empty", "--method", "fixed", "--max-traces", "2")
-    said = run(sys.executable, "-I", "-c", isolated, str(installed), "verify", str(example), *options, cwd=tmp_path)
-    assert said.startswith("never_empty: 1 in ")
+    said = run(sys.executable, "-I", "-c", VERIFY, str(installed), "verify", str(example), *options, cwd=installed)
+    return said.rpartition(",")[0]
+
+
+def kernels(installed: Path) -> list[str]:
+    return sorted(path.name for path in (installed / "roaml/smc").glob("*kernel*"))
+
+
+def test_wheel_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The kernel of the model checker is there as Python, and verifies."""
+    monkeypatch.setenv("CC", "false")
+    installed = build(tmp_path)
+    assert kernels(installed) == ["kernel.pxd", "kernel.py"]
+    assert verified(installed).startswith("never_empty: 1 in ")
+
+
+def test_wheel_for_every_platform(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It carries the kernel as Python and as C, which can be compiled where it is installed."""
+    monkeypatch.setenv("AS2FM_PURE_PYTHON", "1")
+    installed = build(tmp_path)
+    assert list(tmp_path.glob("*-py3-none-any.whl"))
+    carried = ["kernel.c", "kernel.pxd", "kernel.py"]
+    assert kernels(installed) == carried
+    slow = verified(installed)
+    isolated = (sys.executable, "-I", "-c", BUILD, str(installed))
+    done = subprocess.run(isolated, capture_output=True, text=True, check=False)
+    # The environment of the tests was made in the same way: what could be compiled there can be compiled here.
+    assert (done.returncode == 0) is kernel.compiled()
+    compiled = run(sys.executable, "-I", "-c", IS_COMPILED, str(installed), cwd=tmp_path)
+    assert compiled.strip() == str(kernel.compiled())
+    assert verified(installed) == slow
+    assert len(kernels(installed)) == len(carried) + kernel.compiled()

@@ -38,6 +38,14 @@ test("an environment is made, the wheel installed and the mark written last", as
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
 });
 
+test("what is compiled is compiled in the environment, and what is said of it is told", async () => {
+    const on = new FakeMachine({ [INSIDE]: () => ({ status: 1, err: "there is no C compiler" }) });
+    let said = "";
+    await new PrivateEnvironment(on, "/storage", "/server.whl", "2").compile((text) => (said += text));
+    assert.deepEqual(on.ran, [`${INSIDE} -I -m roaml.smc.build`]);
+    assert.equal(said, "there is no C compiler");
+});
+
 test("the preferred interpreter comes first", async () => {
     const on = new FakeMachine({
         "/bin/python3": python("/bin/python3"),

@@ -121,22 +121,26 @@ export class LanguageServer implements vscode.Disposable {
         const active = vscode.workspace.isTrusted ? await activeInterpreters(this.log) : [];
         const preferred = interpreter === "" ? active : [interpreter];
         const options = { location: vscode.ProgressLocation.Notification, cancellable: true, title: "AS2FM" };
-        return vscode.window.withProgress(options, (progress, token) => {
+        const onOutput = (text: string) => {
+            this.log.append(text);
+        };
+        const installed = await vscode.window.withProgress(options, (progress, token) => {
             const abort = new AbortController();
             token.onCancellationRequested(() => {
                 abort.abort();
             });
             return this.environment.install(preferred, {
                 signal: abort.signal,
-                onOutput: (text) => {
-                    this.log.append(text);
-                },
+                onOutput,
                 onStep: (step) => {
                     progress.report({ message: tellStep(step) });
                     onStep(step);
                 },
             });
         });
+        // Nobody waits for it: a server that runs makes use of it with its next verification.
+        if (!isFailure(installed)) void this.environment.compile(onOutput);
+        return installed;
     }
 }
 

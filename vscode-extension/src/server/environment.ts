@@ -80,6 +80,15 @@ export class PrivateEnvironment {
         return failure;
     }
 
+    /**
+     * Compile the kernel of the model checker in the environment that has been made. Without a C compiler nothing
+     * changes: properties are then verified more slowly.
+     */
+    async compile(onOutput: (text: string) => void): Promise<void> {
+        const { out, err } = await this.machine.run(this.python, ["-I", "-m", "roaml.smc.build"]);
+        onOutput(out + err);
+    }
+
     private async finish(python: Python): Promise<Server | Failure> {
         const asked = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp", "--version"]);
         const version = /^as2fm-lsp (\S+)/.exec(asked.out)?.[1];
