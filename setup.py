@@ -3,7 +3,7 @@
 the model checker is compiled where there is a C compiler.
 
 Without one, or with AS2FM_PURE_PYTHON=1, the installation has the same kernel as plain Python: slower, same results.
-With it the wheel carries the kernel's C text, too, so that `python -m roaml.smc.build` can compile it where it is.
+With it the wheel carries the kernel's C text, too, which `python -m as2fm_lsp.cli.build_kernel` compiles where it is.
 """
 
 import os

@@ -53,7 +53,7 @@ def test_wheel_checks_the_example(tmp_path: Path) -> None:
 
 
 VERIFY = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"
-BUILD = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.build import main; sys.exit(main())"
+BUILD = "import sys; sys.path.insert(0, sys.argv[1]); from as2fm_lsp.cli.build_kernel import main; sys.exit(main())"
 IS_COMPILED = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.kernel import compiled; print(compiled())"
 
 

@@ -42,7 +42,7 @@ test("what is compiled is compiled in the environment, and what is said of it is
     const on = new FakeMachine({ [INSIDE]: () => ({ status: 1, err: "there is no C compiler" }) });
     let said = "";
     await new PrivateEnvironment(on, "/storage", "/server.whl", "2").compile((text) => (said += text));
-    assert.deepEqual(on.ran, [`${INSIDE} -I -m roaml.smc.build`]);
+    assert.deepEqual(on.ran, [`${INSIDE} -I -m as2fm_lsp.cli.build_kernel`]);
     assert.equal(said, "there is no C compiler");
 });
 

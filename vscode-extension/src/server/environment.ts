@@ -85,7 +85,7 @@ export class PrivateEnvironment {
      * changes: properties are then verified more slowly.
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
-        const { out, err } = await this.machine.run(this.python, ["-I", "-m", "roaml.smc.build"]);
+        const { out, err } = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"]);
         onOutput(out + err);
     }
 

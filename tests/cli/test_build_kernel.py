@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m roaml.smc.build` with compilers that do not do what they should; one that does is in `tests/packaging`."""
+"""Compiling the kernel with compilers that do not do what they should; one that does is in `tests/packaging`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from roaml.smc import build as module
-from roaml.smc.build import BuildError, build
+from as2fm_lsp.cli.build_kernel import BuildError, build, main
 
 
 @pytest.fixture
@@ -70,5 +69,5 @@ def test_nothing_to_compile(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     with pytest.raises(BuildError, match="does not carry the kernel as C"):
         build(tmp_path / "kernel.c")
     # This checkout has none: a whole call says so, too.
-    assert module.main() == 1
+    assert main() == 1
     assert "verification runs as plain Python" in capsys.readouterr().err

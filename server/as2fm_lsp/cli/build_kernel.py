@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m roaml.smc.build`: compile the kernel where it is installed.
+"""`python -m as2fm_lsp.cli.build_kernel`: compile the kernel of the model checker where it is installed.
 
 A wheel for every platform carries the kernel as Python and as the C text that Cython has made of it. Where there is a C
 compiler, as on most machines with ROS, verification becomes more than a hundred times faster by this. Nothing is lost
@@ -16,7 +16,9 @@ import sysconfig
 import tempfile
 from pathlib import Path
 
-SOURCE = Path(__file__).with_name("kernel.c")
+import roaml.smc
+
+SOURCE = Path(roaml.smc.__file__).with_name("kernel.c")
 FLAGS = ("-O3", "-g0", "-fwrapv")
 
 
