@@ -88,7 +88,7 @@ class Compilation:
         self.model = model
         self.assembler = AssignmentAssembler()
         self.tape = self.assembler.tape
-        self.layout = lay_out(model, self.assembler)
+        self.layout = lay_out(model, self.tape)
         self.int_count, self.real_count = len(self.tape.ints), len(self.tape.reals)
         self.locations: list[tuple[int, str]] = []
         self.first_location: list[int] = []
@@ -98,11 +98,6 @@ class Compilation:
         self.vectors: list[tuple[list[int], str | None]] = []
         self.watched: list[Storage] = []
         self._reads: dict[int, set[str]] = {}
-        self._constants = {
-            name: meaning.value
-            for name, meaning in self.layout.names.values.items()
-            if isinstance(meaning, Operand) and meaning.value is not None
-        }
         self._check_start()
         self._number_locations()
         self._collect_steps()
@@ -113,7 +108,7 @@ class Compilation:
     # ------------------------------------------------------------ what there is
 
     def _check_start(self) -> None:
-        known: dict[str, Value] = dict(self._constants)
+        known: dict[str, Value] = dict(self.layout.names.constants())
         for storage in self.layout.shared:
             known[storage.name] = self.layout.initial[id(storage)]
         scopes = [(self.model.restrict_initial, known)]
@@ -216,9 +211,8 @@ class Compilation:
         read = self._names_in(expression, names)
         if any(not isinstance(names.values.get(name), Operand) for name in read):
             return None
-        known = {name: m.value for name, m in names.values.items() if isinstance(m, Operand) and m.value is not None}
         try:
-            value = evaluate(expression, known if read else {}, names.functions)
+            value = evaluate(expression, names.constants() if read else {}, names.functions)
         except EvaluationError:
             return None
         return value if isinstance(value, (bool, int, float)) else None
