@@ -101,7 +101,28 @@ def lay_out(model: Model, tape: Tape) -> Layout:
         Instance(automaton, Names(scope, inner), own, frozenset(v.name for v in automaton.variables if v.transient))
         for (automaton, inner, own), scope in zip(drafts, scopes, strict=True)
     )
-    return Layout(Names(values, functions), shared, instances, initial)
+    layout = Layout(Names(values, functions), shared, instances, initial)
+    _check_start(model, layout)
+    return layout
+
+
+def _check_start(model: Model, layout: Layout) -> None:
+    known: dict[str, Value] = dict(layout.names.constants())
+    for storage in layout.shared:
+        known[storage.name] = layout.initial[id(storage)]
+    scopes = [(model.restrict_initial, known)]
+    for instance in layout.instances:
+        own = {storage.name: layout.initial[id(storage)] for storage in instance.own}
+        scopes.append((instance.automaton.restrict_initial, {**known, **own}))
+    for clause, values in scopes:
+        if clause is None:
+            continue
+        try:
+            holds = evaluate(clause.exp, values, layout.names.functions)
+        except EvaluationError as error:
+            raise FaultError(error.message, error.origin) from None
+        if not holds:
+            raise FaultError("there is no initial state: the initial values do not fulfil this", clause.exp.origin)
 
 
 def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:

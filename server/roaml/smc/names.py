@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from roaml.jani.expressions import Call, Expression, Name, walk
-from roaml.jani.model import Function
+from roaml.jani.expressions import ArrayAccess, Call, Expression, Name, walk
+from roaml.jani.model import Assignment, Function
 from roaml.jani.node import Node
 from roaml.jani.types import Type
 from roaml.smc.fault import FaultError
@@ -83,6 +83,16 @@ def variables_in(expression: Expression, functions: Mapping[str, Function]) -> s
                 called.add(node.function)
                 if node.function in functions:
                     stack.append(functions[node.function].body)
+    return found
+
+
+def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[str]:
+    """The names that an assignment depends on: its value, and where it stores this."""
+    found = variables_in(assignment.value, functions)
+    target: Expression = assignment.target
+    while isinstance(target, ArrayAccess):
+        found |= variables_in(target.index, functions)
+        target = target.array
     return found
 
 
