@@ -263,7 +263,7 @@ import runpy, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
 runpy.run_module("as2fm_lsp", run_name="__main__", alter_sys=True)
 """
-"""What is started in the background of a shell, as whole test runs may be, ignores the keyboard unless told otherwise."""
+"""What a shell starts in the background, as whole test runs may be, ignores the keyboard unless told otherwise."""
 
 
 @contextmanager
