@@ -15,7 +15,7 @@ import conformance
 from bench.generate import FIRST, machine, write_system
 from bench.keystrokes import keys
 from bench.report import Benchmark, Row, listed, median, megabytes, percentile, seconds
-from bench.server import started
+from bench.server import Server, started
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SYSTEM_FILES = 30
@@ -59,19 +59,29 @@ def editing() -> list[Row]:
 def session(folder: Path) -> tuple[list[float], int | None]:
     """The seconds that a server takes for each key, the next being pressed when it has answered; then its memory."""
     path = folder / FIRST
-    text = path.read_text(encoding="utf-8")
     took = []
+    with opened(folder) as (server, text):
+        for version, key in enumerate(keys(text), 3):
+            sent = server.change(path, version, key.change())
+            arrived, _ = server.diagnostics(path, version)
+            took.append(arrived - sent)
+        return took, server.resident_memory()
+
+
+@contextmanager
+def opened(folder: Path, rest: float = 0.0) -> Iterator[tuple[Server, str]]:
+    """A server with the long machine open in its second version and looked at, after a rest of so many seconds; and the
+    text."""
+    path = folder / FIRST
+    text = path.read_text(encoding="utf-8")
     with started() as server:
         server.initialize(folder)
         server.open(path, text.replace(RIGHT, WRONG, 1))
         server.diagnostics(path, 1)
         server.change(path, 2, {"text": text})
         server.diagnostics(path, 2)
-        for version, key in enumerate(keys(text), 3):
-            sent = server.change(path, version, key.change())
-            arrived, _ = server.diagnostics(path, version)
-            took.append(arrived - sent)
-        return took, server.resident_memory()
+        time.sleep(rest)
+        yield server, text
 
 
 def cold_start() -> list[Row]:

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from bench.check import RIGHT, SYSTEM_FILES, WRONG, system
+from bench.check import SYSTEM_FILES, opened, system
 from bench.generate import FIRST
 from bench.keystrokes import keys, places, position
 from bench.report import Benchmark, Row, listed, median, percentile, seconds
-from bench.server import Server, is_answer, is_diagnostics, started
+from bench.server import Server, is_answer, is_diagnostics
 
 SESSIONS = 2
 BURST = 100
@@ -100,7 +99,7 @@ def asked(folder: Path, request: Request) -> list[Row]:
     rested: list[float] = []
     typing: list[float] = []
     for _ in range(SESSIONS):
-        with opened(folder) as (server, text):
+        with opened(folder, REST) as (server, text):
             if request.capability not in server.capabilities:
                 return []
             rested += at_rest(server, folder / FIRST, text, request)
@@ -160,7 +159,7 @@ def burst() -> list[Row]:
 def after_burst(folder: Path, pause: float, names: Sequence[str]) -> float:
     """The seconds from the last key to its diagnostics; `pause` is the time between keys, in seconds."""
     path = folder / FIRST
-    with opened(folder) as (server, text):
+    with opened(folder, REST) as (server, text):
         offered = [each for each in REQUESTS if each.name in names and each.capability in server.capabilities]
         sent, version = 0.0, 2
         for key in islice(keys(text), BURST + 1):  # in the end a word lacks a letter: there is something to say
@@ -173,21 +172,6 @@ def after_burst(folder: Path, pause: float, names: Sequence[str]) -> float:
                 server.tell(request.method, request.params(path, place), _ID * version + number)
             time.sleep(pause)
         return server.diagnostics(path, version)[0] - sent
-
-
-@contextmanager
-def opened(folder: Path) -> Iterator[tuple[Server, str]]:
-    """A server with the long machine open and looked at, and its text."""
-    path = folder / FIRST
-    text = path.read_text(encoding="utf-8")
-    with started() as server:
-        server.initialize(folder)
-        server.open(path, text.replace(RIGHT, WRONG, 1))
-        server.diagnostics(path, 1)
-        server.change(path, 2, {"text": text})
-        server.diagnostics(path, 2)
-        time.sleep(REST)
-        yield server, text
 
 
 def _offsets(text: str, request: Request) -> Sequence[int]:

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from bench.check import opened
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys
 from bench.report import Row, percentile, seconds, table
-from bench.requests import REQUESTS, at_rest, opened
+from bench.requests import REQUESTS, REST, at_rest
 from bench.server import started
 from roaml import api
 from roaml.project.settings import Settings
@@ -79,7 +80,7 @@ def test_the_server_answers(tmp_path: Path) -> None:
 def test_what_is_asked_is_answered(tmp_path: Path) -> None:
     write_system(tmp_path, 6, lines=350, small_lines=60)
     path = tmp_path / FIRST
-    with opened(tmp_path) as (server, text):
+    with opened(tmp_path, REST) as (server, text):
         for request in REQUESTS:
             assert request.capability in server.capabilities
             took = list(islice(at_rest(server, path, text, request), 8))

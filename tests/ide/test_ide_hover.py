@@ -17,7 +17,7 @@ from roaml.ide import describe_language
 from roaml.ide.hover import hover
 from roaml.ide.markdown import plain
 from roaml.language import HL_SCXML
-from roaml.language.property_syntax import by_operator, shapes
+from roaml.language.json_schema import PROPERTIES
 from roaml.project.settings import Settings
 
 MODELS = {"robot": split_files(ROBOT), "corners": split_files(CORNERS)}
@@ -140,11 +140,15 @@ def test_every_event_variable_is_explained() -> None:
             assert binding.name in describe_language.EVENT_VARIABLES
 
 
-def test_every_operator_of_properties_has_a_shape() -> None:
-    assert {"filter", "Pmin", "U", "∧", "sin", "ite", "initial", "aa"} <= by_operator().keys()
-    for shape in shapes().values():
-        assert shape.title
-        assert all(member.title or member.key == "var" for member in shape.members.values()), shape.name
+def test_every_operator_and_key_of_properties_is_called_something() -> None:
+    operators = dict(PROPERTIES.operators("formula"))
+    assert {"filter", "Pmin", "U", "∧", "sin", "ite", "initial", "aa"} <= operators.keys()
+    assert operators.keys() >= dict(PROPERTIES.operators("expression")).keys()
+    for name, definition in PROPERTIES.root["$defs"].items():
+        if "properties" in definition:
+            assert PROPERTIES.title(definition), name
+            untitled = {key for key, schema in definition["properties"].items() if not PROPERTIES.title(schema)}
+            assert untitled <= {"op", "var"}, name
 
 
 def test_every_place_of_some_systems() -> None:

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import itertools
-from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+
+from reach import reachable
 
 from roaml.jani.expressions import ArrayAccess, Name
 from roaml.jani.model import Assignment, Destination, Edge, Model
@@ -54,16 +55,7 @@ class Explorer:
         Raises:
             OverflowError: there are more than `limit`.
         """
-        seen = {self.initial()}
-        queue = deque(seen)
-        while queue:
-            for after in self.successors(queue.popleft()):
-                if after not in seen:
-                    if len(seen) >= limit:
-                        raise OverflowError
-                    seen.add(after)
-                    queue.append(after)
-        return seen
+        return reachable(self.initial(), self.successors, limit)
 
     def successors(self, state: State) -> Iterator[State]:
         for sync in self.model.system.syncs:

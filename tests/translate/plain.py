@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
+
+from reach import reachable
 
 from roaml.expr import tree as expr
 from roaml.scxml.model import Assign, Automaton, If, Network, Role, Send, Statement, Transition
@@ -65,16 +66,7 @@ class Interpreter:
         return Moment(tuple(machines), frozenset(), ())
 
     def reachable(self, limit: int) -> set[Moment]:
-        seen = {self.initial()}
-        queue = deque(seen)
-        while queue:
-            for after in self.successors(queue.popleft()):
-                if after not in seen:
-                    if len(seen) >= limit:
-                        raise OverflowError
-                    seen.add(after)
-                    queue.append(after)
-        return seen
+        return reachable(self.initial(), self.successors, limit)
 
     # -------------------------------------------------------------------- steps
 

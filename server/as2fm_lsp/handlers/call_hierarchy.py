@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, symbol_kind, unpack
 from roaml.diagnostics import Symbol
 from roaml.ide import calls
@@ -48,13 +49,9 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source = analysis.source(path)
-        if source is None:
-            return []
-        items = calls.items_at(analysis, path, session.convert.offset(source, params.position))
-        return [convert(analysis, item) for item in items]
+        on = asked(server, params.text_document)
+        items = calls.items_at(on.analysis, on.path, on.offset(params.position)) if on else ()
+        return [convert(on.analysis, item) for item in items] if on else []
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.markup import content
 from roaml.ide.hover import hover as hover_at
 
@@ -15,16 +16,12 @@ if TYPE_CHECKING:
 
 
 def register(server: Server) -> None:
-    session = server.session
-
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(params: types.HoverParams) -> types.Hover | None:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source = analysis.source(path)
-        found = hover_at(analysis, path, session.convert.offset(source, params.position)) if source else None
-        if source is None or found is None:
+        on = asked(server, params.text_document)
+        found = hover_at(on.analysis, on.path, on.offset(params.position)) if on else None
+        if on is None or found is None:
             return None
         text_document = server.client_capabilities.text_document
         formats = text_document.hover.content_format if text_document and text_document.hover else None
-        return types.Hover(content(found.text, formats), session.convert.range(source, found.span))
+        return types.Hover(content(found.text, formats), on.range(found.span))

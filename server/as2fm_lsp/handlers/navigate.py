@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.asked import asked
 from roaml.ide import navigate
 from roaml.ide.occurrence import Access
 from roaml.project.analysis import Analysis
@@ -26,18 +27,14 @@ Find = Callable[[Analysis, str, int], Iterable[Location]]
 
 
 def register(server: Server) -> None:
-    session = server.session
-
     def locations(document: types.TextDocumentIdentifier, position: types.Position, find: Find) -> list[types.Location]:
         """What `find` says about a place."""
-        path = session.convert.path(document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source = analysis.source(path)
-        if source is None:
+        on = asked(server, document)
+        if on is None:
             return []
-        found = find(analysis, path, session.convert.offset(source, position))
-        targets = ((analysis.source(each.path), each) for each in found)
-        return [session.convert.location(target, each) for target, each in targets if target is not None]
+        found = find(on.analysis, on.path, on.offset(position))
+        targets = ((on.analysis.source(each.path), each) for each in found)
+        return [on.convert.location(target, each) for target, each in targets if target is not None]
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(params: types.DefinitionParams) -> list[types.Location]:
@@ -65,13 +62,8 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def document_highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source = analysis.source(path)
-        if source is None:
+        on = asked(server, params.text_document)
+        if on is None:
             return []
-        found = navigate.highlights(analysis, path, session.convert.offset(source, params.position))
-        return [
-            types.DocumentHighlight(session.convert.range(source, each.span), _HIGHLIGHTS[each.access])
-            for each in found
-        ]
+        found = navigate.highlights(on.analysis, on.path, on.offset(params.position))
+        return [types.DocumentHighlight(on.range(each.span), _HIGHLIGHTS[each.access]) for each in found]

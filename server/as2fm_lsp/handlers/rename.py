@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from as2fm_lsp.handlers.asked import asked
 from roaml.ide.rename import Refusal, prepare, rename
 
 if TYPE_CHECKING:
@@ -17,36 +18,29 @@ _REQUEST_FAILED = types.LSPErrorCodes.RequestFailed.value
 
 
 def register(server: Server) -> None:
-    session = server.session
-
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare_rename(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        path = session.convert.path(params.text_document.uri)
-        analysis = session.moment().snapshot(path).analysis
-        source = analysis.source(path)
-        if source is None:
+        on = asked(server, params.text_document)
+        if on is None:
             return None
-        found = prepare(analysis, path, session.convert.offset(source, params.position))
+        found = prepare(on.analysis, on.path, on.offset(params.position))
         if isinstance(found, Refusal):
             raise _refused(found)
-        return types.PrepareRenamePlaceholder(session.convert.range(source, found.span), found.name)
+        return types.PrepareRenamePlaceholder(on.range(found.span), found.name)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_(params: types.RenameParams) -> types.WorkspaceEdit | None:
-        path = session.convert.path(params.text_document.uri)
-        moment = session.moment()
-        analysis = moment.snapshot(path).analysis
-        source = analysis.source(path)
-        if source is None:
+        on = asked(server, params.text_document)
+        if on is None:
             return None
-        found = rename(analysis, path, session.convert.offset(source, params.position), params.new_name)
+        found = rename(on.analysis, on.path, on.offset(params.position), params.new_name)
         if isinstance(found, Refusal):
             raise _refused(found)
         changes = {}
         for each, edits in found.edits.items():
-            target = analysis.source(each)
+            target = on.analysis.source(each)
             if target is not None:
-                changes[session.convert.uri(each)] = [session.convert.edit(target, edit) for edit in edits]
+                changes[on.convert.uri(each)] = [on.convert.edit(target, edit) for edit in edits]
         return types.WorkspaceEdit(changes=changes)
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`NAME >= 0.95`: what somebody expects of a property, and whether it is so.
 
-Judged by the estimate, and against it: undecided traces count as if each had gone the wrong way. That the interval
-reaches over the number is told, but decides nothing: no number of traces could ever show that a probability is 1.
+- Judged by the estimate, not by its interval: no number of traces could ever show that a probability is 1. That the
+  interval holds numbers that meet the expectation and others that do not is only told (`Verdict.is_certain`).
+- A bound on a probability counts undecided traces as if each had gone the wrong way; `==` means at most epsilon away.
+- What a sequential test has decided about the same number stands.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from roaml.ide.json_tree import members
 from roaml.ide.markdown import code, lines, name, paragraphs
 from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
 from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
-from roaml.language.property_syntax import MemberType, Shape, by_operator
+from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
 
 _DEPTH = 12
@@ -57,14 +57,15 @@ _SAYS: Mapping[str, str] = {
 
 def operator(symbol: str) -> str:
     """An operator as it is written behind `op`; "" if there is none such."""
-    shape = by_operator().get(symbol)
-    if shape is None:
+    described = dict(PROPERTIES.operators("formula")).get(symbol)
+    if described is None:
         return ""
     known = BINARY_OPERATORS.get(symbol) or UNARY_OPERATORS.get(symbol)
     usual = known.symbol if known else symbol
-    function = "The function of that name; angles in radians." if symbol in UNARY_OPERATORS else shape.documentation
+    is_function = symbol in UNARY_OPERATORS
+    text = "The function of that name; angles in radians." if is_function else PROPERTIES.text(described)
     return paragraphs(
-        _SAYS.get(usual, function),
+        _SAYS.get(usual, text),
         lines(
             f"Takes {known.signature.value}".replace("->", "→") if known else "",
             f"Another spelling of {name(usual)}" if usual != symbol else "",
@@ -72,15 +73,11 @@ def operator(symbol: str) -> str:
     )
 
 
-def member(found: MemberType) -> str:
+def member(key: Key) -> str:
     """A key of a JSON object."""
-    head = (f"**{found.title}**" if found.title else "", name(found.key), "required" if found.required else "")
-    return paragraphs(" · ".join(filter(None, head)), found.documentation)
-
-
-def shape(found: Shape) -> str:
-    """A kind of JSON object."""
-    return paragraphs(f"**{found.title}**", found.documentation)
+    title = PROPERTIES.title(key.schema)
+    head = (f"**{title}**" if title else "", name(key.name), "required" if key.required else "")
+    return paragraphs(" · ".join(filter(None, head)), PROPERTIES.text(key.schema))
 
 
 def global_variable(variable: GlobalVariable) -> str:

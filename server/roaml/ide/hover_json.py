@@ -11,7 +11,7 @@ from roaml.ide.find import systems_of
 from roaml.ide.json_tree import members
 from roaml.ide.markdown import code, paragraphs
 from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
-from roaml.language.property_syntax import Shape, by_operator, shapes
+from roaml.language.json_schema import PROPERTIES, Schema
 from roaml.model.system import Automaton, System
 from roaml.project.analysis import Analysis
 from roaml.text import Span
@@ -47,8 +47,8 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | No
     value = analysis.json(path)
     if value is None:
         return None
-    for shape, owner, member in _members_at(value[0], offset):
-        known = shape.members.get(member.key) if shape else None
+    for schema, owner, member in _members_at(value[0], offset):
+        known = PROPERTIES.keys(schema, owner).get(member.key)
         if member.key_span.contains(offset):
             return (member.key_span, describe_properties.member(known)) if known else None
         held = member.value
@@ -59,10 +59,10 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | No
             head = code(describe_properties.formula(owner))
             said = describe_properties.operator(held.value)
             text = paragraphs(head, said) if said else ""
-        elif member.key == "name" and shape is not None and shape.name == "property":
+        elif member.key == "name" and PROPERTIES.is_a(schema, "property"):
             expression = members(owner).get("expression")
             text = code(describe_properties.formula(expression)) if expression else ""
-        elif known is not None and not known.shape and known.key in ("fun", "constant", "distribution"):
+        elif known is not None and known.name in ("fun", "constant", "distribution"):
             text = describe_properties.member(known)
         return (held.content_span, text) if text else None
     return None
@@ -89,34 +89,31 @@ def value_at(value: JsonValue, offset: int) -> JsonValue | None:
     return None
 
 
-def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Shape | None, JsonObject, Member]]:
-    """The members around an offset, innermost first, with their objects and what these are."""
-    found: list[tuple[Shape | None, JsonObject, Member]] = []
-    wanted = "file"
-    inner: JsonValue | None = value
-    while inner is not None:
+def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObject, Member]]:
+    """The members around an offset, innermost first, with their objects and what the schema says of these."""
+    found: list[tuple[Schema, JsonObject, Member]] = []
+    schema, inner = PROPERTIES.root, value
+    while True:
         if isinstance(inner, JsonArray):
-            inner = next((each for each in inner.items if each.span.contains(offset)), None)
-            continue
-        if not isinstance(inner, JsonObject):
+            schema = PROPERTIES.item(schema, inner)
+            item = next((each for each in inner.items if each.span.contains(offset)), None)
+            if item is None:
+                break
+            inner = item
+        elif isinstance(inner, JsonObject):
+            member = next((each for each in inner.members if each.span.contains(offset)), None)
+            if member is None:
+                break
+            if any(inner.get(key) for key in _OF_FORMULAS):
+                schema = PROPERTIES.definition("formula")
+            found.append((schema, inner, member))
+            if member.value is None:
+                break
+            schema, inner = PROPERTIES.member(schema, inner, member.key), member.value
+        else:
             break
-        shape = shapes().get(wanted) or _by_operator(inner)
-        member = next((each for each in inner.members if each.span.contains(offset)), None)
-        if member is None:
-            break
-        found.append((shape, inner, member))
-        known = shape.members.get(member.key) if shape else None
-        wanted, inner = known.shape if known else "", member.value
     yield from reversed(found)
 
 
-def _by_operator(value: JsonObject) -> Shape | None:
-    operator = value.get("op")
-    if isinstance(operator, JsonString):
-        return by_operator().get(operator.value)
-    return next((shape for shape in shapes().values() if not shape.operators and value.get(_key(shape))), None)
-
-
-def _key(shape: Shape) -> str:
-    """The member by which an object without operator is known."""
-    return {"namedNumber": "constant", "distribution": "distribution"}.get(shape.name, "\0")
+_OF_FORMULAS = ("op", "constant", "distribution")
+"""What has one of these is a formula wherever it stands, also in the parts of a model that are no properties."""

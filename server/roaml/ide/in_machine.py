@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.tree import (
@@ -79,22 +80,16 @@ def in_machine(
     return _Machine(text, machine, path, owner, types, environment).all()
 
 
+@dataclass(frozen=True, slots=True)
 class _Machine:
-    def __init__(
-        self,
-        text: str,
-        machine: Machine,
-        path: str,
-        owner: str,
-        types: Mapping[str, Mapping[str, Type]],
-        environment: Environment,
-    ) -> None:
-        self.text = text
-        self.machine = machine
-        self.path = path
-        self.owner = owner
-        self.types = types
-        self.environment = environment
+    """What `in_machine` is asked about."""
+
+    text: str
+    machine: Machine
+    path: str
+    owner: str
+    types: Mapping[str, Mapping[str, Type]]
+    environment: Environment
 
     def all(self) -> Iterator[Occurrence]:
         machine = self.machine
@@ -123,7 +118,7 @@ class _Machine:
         elif declaration.interface is not None:
             yield from self.interface(declaration.interface, declaration, defines=True)
         if declaration.type is not None and declaration.kind in INTERFACE_KINDS:
-            kind: Kind = INTERFACE_KINDS[declaration.kind]  # type: ignore[assignment]
+            kind: Kind = INTERFACE_KINDS[declaration.kind]
             names = split_type_name(declaration.type.value, kind)
             if names is not None:
                 yield Occurrence(declaration.type.span, Symbol("", "ros-type", "/".join(names), kind))

@@ -127,7 +127,7 @@ def _used(analysis: Analysis) -> list[Symbol]:
         machine = analysis.machine(path)
         for each in machine.declarations if machine else ():
             kind = INTERFACE_KINDS.get(each.kind)
-            definition = analysis.registry.resolve(kind, each.type.value) if kind and each.type else None  # type: ignore[arg-type]
+            definition = analysis.registry.resolve(kind, each.type.value) if kind and each.type else None
             if isinstance(definition, Definition):
                 found[Symbol("", "ros-type", definition.full_name, definition.kind)] = None
     todo = list(found)

@@ -96,12 +96,19 @@ class JsonGrammar:
                 return (each["const"],)
         return ()
 
+    def operators(self, kind: str) -> Iterator[tuple[str, Schema]]:
+        """The operators of formulas or expressions as they are written, with what describes their objects."""
+        for branch in self.definition(kind)["then"]["then"]["allOf"]:
+            described = self._resolve(branch["then"]["$ref"])
+            for operator in self.choices(branch["if"]["properties"]["op"]):
+                yield operator, described
+
+    def title(self, schema: Schema) -> str:
+        return self._said(schema, "title")
+
     def text(self, schema: Schema) -> str:
         """The documentation of a place, Markdown."""
-        for each in self.applying(schema, None):
-            if "description" in each:
-                return str(each["description"])
-        return ""
+        return self._said(schema, "description")
 
     def is_a(self, schema: Schema, definition: str) -> bool:
         """Whether a place is said to be what a definition describes."""
@@ -125,6 +132,10 @@ class JsonGrammar:
             inner = schema.get("properties", {})
             return all(self.matches(inner[name], members[name]) for name in inner if name in members)
         return True
+
+    def _said(self, schema: Schema, word: str) -> str:
+        """What a place says of itself goes before what is said of its kind."""
+        return next((str(each[word]) for each in self.applying(schema, None) if word in each), "")
 
     def _resolve(self, reference: str) -> Schema:
         return self.definition(reference.rpartition("/")[2])

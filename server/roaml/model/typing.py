@@ -15,6 +15,7 @@ from typing import Protocol
 from roaml.expr.infer import Problem, RandomUsed, infer
 from roaml.expr.tree import Number, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
+from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_initial
 from roaml.model.machine import (
@@ -176,7 +177,7 @@ def _event_data(handler: Handler, environment: Environment) -> Type:
 SECTIONS = {"thread-start": "goal"}
 """Parts of the protocol that carry another part's fields."""
 
-INTERFACE_KINDS = {
+INTERFACE_KINDS: Mapping[str, Kind] = {
     "publisher": "msg",
     "subscriber": "msg",
     "service-client": "srv",

@@ -18,7 +18,7 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.expr.types import UNKNOWN, Struct, Type
 from roaml.interfaces.registry import NotFound, Registry
-from roaml.interfaces.types import Definition, Kind
+from roaml.interfaces.types import Definition
 from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
@@ -45,7 +45,7 @@ from roaml.model.system_file import (
     wanted_kind,
 )
 from roaml.model.tree import TreeFile, build_tree_file
-from roaml.model.typing import Environment, TypedMachine, type_machine
+from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile
@@ -386,7 +386,9 @@ class Analysis:
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
         """The ROS types that a machine declares, in order."""
         return tuple(
-            self.interface(_KINDS[d.kind], d.type.value) for d in machine.declarations if d.type and d.kind in _KINDS
+            self.interface(INTERFACE_KINDS[d.kind], d.type.value)
+            for d in machine.declarations
+            if d.type and d.kind in INTERFACE_KINDS
         )
 
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
@@ -410,15 +412,6 @@ class Analysis:
 
 _ROUNDS = 4
 """How often event data are passed on from event to event before their types are taken as they are."""
-
-_KINDS: Mapping[str, Kind] = {
-    "publisher": "msg",
-    "subscriber": "msg",
-    "service-client": "srv",
-    "service-server": "srv",
-    "action-client": "action",
-    "action-server": "action",
-}
 
 
 def _received(machine: Machine) -> set[str]:

@@ -5,6 +5,7 @@
 - Conditions become jumps; `∧`, `∨`, `⇒` and `ite` compute only what they need, as `roaml.jani.semantics` defines.
 - What has a value already is computed here. What can only go wrong stays in the code: it may never be reached.
 - Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is filled up with zeros.
+- A function is compiled where it is called.
 """
 
 from __future__ import annotations
@@ -26,50 +27,22 @@ from roaml.jani.expressions import (
     Real,
     Unary,
 )
-from roaml.jani.model import Function
-from roaml.jani.node import Node, Origin
-from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
-from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.jani.node import Origin
+from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.types import ArrayType
+from roaml.smc import shapes
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage, kind_of, larger, unsupported
+from roaml.smc.names import Meaning, Names, Storage, unsupported
 from roaml.smc.opcodes import FaultCode, Op
-from roaml.smc.registers import BOOL, INT, REAL, Label, Number, Operand, Region, Tape, product
+from roaml.smc.operations import ARITHMETIC, COMPARISONS, MOST, OperatorAssembler
+from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
+from roaml.smc.shapes import kind_of
 
-MOST_ELEMENTS = 1_000_000
-MOST = (1 << 63) - 1
-
-_JUMPS = {
-    # operator: for ints: (jump if it holds, jump if not, whether operands change places for either)
-    BinaryOperator.EQUAL: ((Op.JUMP_EQ, False), (Op.JUMP_NE, False)),
-    BinaryOperator.NOT_EQUAL: ((Op.JUMP_NE, False), (Op.JUMP_EQ, False)),
-    BinaryOperator.LESS: ((Op.JUMP_LT, False), (Op.JUMP_LE, True)),
-    BinaryOperator.LESS_EQUAL: ((Op.JUMP_LE, False), (Op.JUMP_LT, True)),
-    BinaryOperator.GREATER: ((Op.JUMP_LT, True), (Op.JUMP_LE, False)),
-    BinaryOperator.GREATER_EQUAL: ((Op.JUMP_LE, True), (Op.JUMP_LT, False)),
-}
-_REAL_JUMPS = {
-    Op.JUMP_EQ: Op.JUMP_EQ_REAL,
-    Op.JUMP_NE: Op.JUMP_NE_REAL,
-    Op.JUMP_LT: Op.JUMP_LT_REAL,
-    Op.JUMP_LE: Op.JUMP_LE_REAL,
-}
-_ARITHMETIC = {
-    BinaryOperator.ADD: (Op.ADD, Op.ADD_REAL),
-    BinaryOperator.SUBTRACT: (Op.SUB, Op.SUB_REAL),
-    BinaryOperator.MULTIPLY: (Op.MUL, Op.MUL_REAL),
-    BinaryOperator.MINIMUM: (Op.MIN, Op.MIN_REAL),
-    BinaryOperator.MAXIMUM: (Op.MAX, Op.MAX_REAL),
-}
 _LOGICAL = (BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES)
 
 
-class Assembler:
-    """Writes code onto a tape."""
-
-    def __init__(self) -> None:
-        self.tape = Tape()
-        self._calls: list[str] = []
+class Assembler(OperatorAssembler):
+    """Writes expressions, too."""
 
     # ------------------------------------------------------------ pieces of code
 
@@ -90,24 +63,7 @@ class Assembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
         return start
 
-    def end(self) -> None:
-        """The end of a piece of code whose result nobody wants."""
-        self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
-
-    # ------------------------------------------------------------ values
-
-    def known(self, node: Expression, names: Names) -> Number | None:
-        """The value of a scalar that does not depend on the state."""
-        match node:
-            case Integer() | Real() | Boolean():
-                return node.value
-            case NamedNumber():
-                return node.constant.number
-            case Name(identifier):
-                meaning = names.values.get(identifier)
-                return meaning.value if isinstance(meaning, Operand) else None
-            case _:
-                return None
+    # ------------------------------------------------------------ scalars
 
     def value(self, node: Expression, names: Names, into: int = -1) -> Operand:
         """Compute a scalar; with `into`, in that register."""
@@ -123,7 +79,7 @@ class Assembler:
             case NamedNumber():
                 return self.moved(self.tape.constant(REAL, node.constant.number), into)
             case Name(identifier):
-                meaning = self.meaning(node, names)
+                meaning = names.meaning(node)
                 if isinstance(meaning, Region) or (isinstance(meaning, Storage) and meaning.shape):
                     raise FaultError(f"`{identifier}` is an array, a single value is needed here", node.origin)
                 if isinstance(meaning, Storage):
@@ -142,118 +98,31 @@ class Assembler:
                 return self.load(region, into)
             case Call():
                 body, inner = self.called(node, names)
-                try:
-                    return self.value(body, inner, into)
-                finally:
-                    self._calls.pop()
+                return self.value(body, inner, into)
             case ArrayValue() | ArrayConstructor():
                 raise FaultError("this is an array, a single value is needed here", node.origin)
             case _:
                 raise FaultError(unsupported(node), node.origin)
 
-    def meaning(self, node: Name, names: Names) -> Meaning:
-        meaning = names.values.get(node.identifier)
-        if meaning is None:
-            raise FaultError(f"there is no variable `{node.identifier}`", node.origin)
-        return meaning
-
-    def moved(self, operand: Operand, into: int) -> Operand:
-        if into < 0 or operand.register == into:
-            return operand
-        self.tape.emit(Op.MOVE_REAL if operand.kind == REAL else Op.MOVE, into, operand.register)
-        return Operand(operand.kind, into)
-
-    def target(self, kind: str, into: int) -> int:
-        return into if into >= 0 else self.tape.temporary(kind)
-
-    def as_real(self, operand: Operand, into: int = -1) -> Operand:
-        if operand.kind == REAL:
-            return self.moved(operand, into)
-        if operand.value is not None:
-            return self.moved(self.tape.constant(REAL, float(operand.value)), into)
-        register = self.target(REAL, into)
-        self.tape.emit(Op.REAL, register, operand.register)
-        return Operand(REAL, register)
-
     def stored(self, node: Expression, kind: str, names: Names, into: int = -1) -> Operand:
         """Compute a scalar as a value of `kind`."""
         if kind != REAL:
             return self.value(node, names, into)
-        if self.kind(node, names) == REAL:
+        if shapes.kind(node, names) == REAL:
             return self.value(node, names, into)
         return self.as_real(self.value(node, names), into)
 
-    def kind(self, node: Expression, names: Names) -> str:
-        """The kind of a scalar, or of the elements of an array."""
-        match node:
-            case Integer():
-                return INT
-            case Boolean():
-                return BOOL
-            case Real() | NamedNumber():
-                return REAL
-            case Name():
-                return self.meaning(node, names).kind
-            case Unary(op, operand):
-                if op.signature is Signature.LOGICAL:
-                    return BOOL
-                if op.signature is Signature.ROUNDING:
-                    return INT
-                return REAL if op.signature is Signature.REAL else self.kind(operand, names)
-            case Binary(op, left, right):
-                if op.signature in (Signature.LOGICAL, Signature.EQUALITY, Signature.ORDER):
-                    return BOOL
-                if op.signature is Signature.REAL:
-                    return REAL
-                if op is BinaryOperator.POWER and not (isinstance(right, Integer) and right.value >= 0):
-                    return REAL
-                first: Expression = node
-                while isinstance(first, Binary) and first.operator in _ARITHMETIC:
-                    if self.kind(first.right, names) == REAL:
-                        return REAL
-                    first = first.left
-                if first is not node:
-                    return REAL if self.kind(first, names) == REAL else INT
-                return REAL if REAL in (self.kind(left, names), self.kind(right, names)) else INT
-            case Conditional(_, then, otherwise):
-                kinds = (self.kind(then, names), self.kind(otherwise, names))
-                return REAL if REAL in kinds else kinds[0]
-            case ArrayAccess(array, _):
-                return self.kind(array, names)
-            case ArrayValue(elements):
-                inside = {self.kind(each, names) for each in elements}
-                return REAL if REAL in inside else min(inside, default=INT)
-            case ArrayConstructor(variable, _, body):
-                return self.kind(body, names.bound({variable: Operand(INT, 0)}))
-            case Call():
-                return kind_of(self.function(node, names).type)
-            case _:
-                raise FaultError(unsupported(node), node.origin)
-
     def unary(self, node: Unary, names: Names, into: int) -> Operand:
-        op, operand = node.operator, node.operand
-        if op is UnaryOperator.NOT:
+        if node.operator is UnaryOperator.NOT:
             return self.boolean(node, names, into)
-        value = self.value(operand, names)
-        is_int = value.kind != REAL
-        kind = value.kind if op is UnaryOperator.ABS else INT if op.signature is Signature.ROUNDING else REAL
-        if value.value is not None:
-            return self.moved(self.folded(node, (value,), kind), into)
-        if op is UnaryOperator.ABS:
-            self.tape.place(node.origin)
-            register = self.target(value.kind, into)
-            self.tape.emit(Op.ABS if is_int else Op.ABS_REAL, register, value.register)
-            return Operand(value.kind, register)
-        if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
-            return self.moved(value, into)
-        return self.call(node, op, (value,), kind, into)
+        return self.applied(node, self.value(node.operand, names), into)
 
     def binary(self, node: Binary, names: Names, into: int) -> Operand:
         op = node.operator
-        if op in _LOGICAL or op in _JUMPS:
+        if op in _LOGICAL or op in COMPARISONS:
             return self.boolean(node, names, into)
         left, right = node.left, node.right
-        if isinstance(left, Binary) and left.operator is op and op in _ARITHMETIC:
+        if isinstance(left, Binary) and left.operator is op and op in ARITHMETIC:
             return self.chain(node, names, into)
         first = self.value(left, names)
         return self.computed(node, first, self.value(right, names), into)
@@ -268,65 +137,10 @@ class Assembler:
             result = self.computed(part, result, self.value(part.right, names), into if part is node else -1)
         return result
 
-    def computed(self, node: Binary, first: Operand, second: Operand, into: int) -> Operand:
-        op = node.operator
-        is_real = REAL in (first.kind, second.kind) or op.signature is Signature.REAL
-        if op is BinaryOperator.POWER and not (isinstance(node.right, Integer) and node.right.value >= 0):
-            is_real = True
-        kind = REAL if is_real else INT
-        if first.value is not None and second.value is not None:
-            return self.moved(self.folded(node, (first, second), kind), into)
-        if op in _ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real) or op is BinaryOperator.DIVIDE:
-            if is_real:
-                first, second = self.as_real(first), self.as_real(second)
-            code = _ARITHMETIC[op][is_real] if op in _ARITHMETIC else Op.DIVIDE if is_real else Op.REM
-            self.tape.place(node.origin)
-            register = self.target(kind, into)
-            self.tape.emit(code, register, first.register, second.register)
-            return Operand(kind, register)
-        return self.call(node, op, (first, second), kind, into)
-
-    def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
-        for argument in arguments:
-            self.tape.emit(Op.ARGUMENT_REAL if argument.kind == REAL else Op.ARGUMENT, a=argument.register)
-        register = self.target(kind, into)
-        self.tape.place(node.origin)
-        code = Op.CALL_REAL if kind == REAL else Op.CALL_INT
-        self.tape.emit(code, register, c=self.tape.function(op))
-        return Operand(kind, register)
-
-    def folded(self, node: Unary | Binary, operands: Sequence[Operand], kind: str) -> Operand:
-        """An operator whose operands are constants."""
-        constants: list[Expression] = []
-        for operand in operands:
-            value = operand.value
-            assert value is not None
-            if operand.kind == BOOL:
-                constants.append(Boolean(bool(value)))
-            else:
-                constants.append(Real(value) if isinstance(value, float) else Integer(value))
-        plain: Expression
-        plain = Unary(node.operator, *constants) if isinstance(node, Unary) else Binary(node.operator, *constants)
-        try:
-            result = evaluate(plain, {})
-        except EvaluationError as error:
-            code = FaultCode.DIVISION if "division" in error.message else FaultCode.DOMAIN
-            return self.failing(node, code, kind)
-        assert isinstance(result, (bool, int, float))
-        if kind == INT and abs(result) > MOST:
-            return self.failing(node, FaultCode.OVERFLOW, kind)
-        return self.tape.constant(kind, float(result) if kind == REAL else result)
-
-    def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
-        """Something that has no value, if it is ever reached."""
-        self.tape.place(node.origin)
-        self.tape.emit(Op.FAULT, code, value, size)
-        return Operand(kind, self.tape.temporary(kind))
-
     def conditional(
         self, test: Expression, then: Expression, otherwise: Expression, names: Names, into: int
     ) -> Operand:
-        kind = REAL if REAL in (self.kind(then, names), self.kind(otherwise, names)) else self.kind(then, names)
+        kind = REAL if REAL in (shapes.kind(then, names), shapes.kind(otherwise, names)) else shapes.kind(then, names)
         # Not directly into the target: the branches may read it while it is written.
         register = self.tape.temporary(kind)
         no, end = Label(), Label()
@@ -358,7 +172,7 @@ class Assembler:
         match node:
             case Binary(operator=op) if op in _LOGICAL:
                 self.logical(node, names, label, when)
-            case Binary(operator=op) if op in _JUMPS:
+            case Binary(operator=op) if op in COMPARISONS:
                 self.comparison(node, names, label, when)
             case Conditional(test, then, otherwise):
                 no, end = Label(), Label()
@@ -401,42 +215,19 @@ class Assembler:
 
     def comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
         op, left, right = node.operator, node.left, node.right
-        if op.signature is Signature.EQUALITY and (self.shape(left, names) or self.shape(right, names)):
+        if op.signature is Signature.EQUALITY and (shapes.shape(left, names) or shapes.shape(right, names)):
             self.array_comparison(node, names, label, when)
             return
-        first, second = self.value(left, names), self.value(right, names)
-        if first.value is not None and second.value is not None:
-            if bool(op.function(first.value, second.value)) is when:
-                self.tape.jump(Op.JUMP, label)
-            return
-        (code, swapped), (opposite, opposite_swapped) = _JUMPS[op]
-        if REAL not in (first.kind, second.kind):
-            if not when:
-                code, swapped = opposite, opposite_swapped
-            if swapped:
-                first, second = second, first
-            self.tape.jump(code, label, first.register, second.register)
-            return
-        first, second = self.as_real(first), self.as_real(second)
-        if swapped:
-            first, second = second, first
-        if when:
-            self.tape.jump(_REAL_JUMPS[code], label, first.register, second.register)
-            return
-        # Not the opposite comparison: with a number that is none, neither holds.
-        holds = Label()
-        self.tape.jump(_REAL_JUMPS[code], holds, first.register, second.register)
-        self.tape.jump(Op.JUMP, label)
-        self.tape.mark(holds)
+        self.compared(op, self.value(left, names), self.value(right, names), label, when)
 
     def array_comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
         equal = node.operator is BinaryOperator.EQUAL
-        shape, other = self.shape(node.left, names), self.shape(node.right, names)
+        shape, other = shapes.shape(node.left, names), shapes.shape(node.right, names)
         if shape != other:
             if equal is not when:
                 self.tape.jump(Op.JUMP, label)
             return
-        kind = REAL if REAL in (self.kind(node.left, names), self.kind(node.right, names)) else INT
+        kind = REAL if REAL in (shapes.kind(node.left, names), shapes.kind(node.right, names)) else INT
         left, right = (self.materialized(each, kind, shape, names) for each in (node.left, node.right))
         unequal = Label()
         goes = label if equal is not when else unequal
@@ -448,49 +239,6 @@ class Assembler:
         self.tape.mark(unequal)
 
     # ------------------------------------------------------------ arrays
-
-    def shape(self, node: Expression, names: Names) -> tuple[int, ...]:
-        """The lengths of an array in all dimensions; () for a scalar."""
-        match node:
-            case Name():
-                meaning = self.meaning(node, names)
-                return () if isinstance(meaning, Operand) else meaning.shape
-            case ArrayAccess(array, _):
-                return self.shape(array, names)[1:]
-            case ArrayValue(elements):
-                inner: tuple[int, ...] = ()
-                for each in elements:
-                    inner = larger(inner, self.shape(each, names))
-                return (len(elements), *inner)
-            case ArrayConstructor(variable, length, body):
-                size = self.length(node, length, names)
-                inner = self.shape(body, names.bound({variable: self.tape.constant(INT, 0)}))
-                return (size, *inner)
-            case Conditional(_, then, otherwise):
-                return larger(self.shape(then, names), self.shape(otherwise, names))
-            case Call():
-                function = self.function(node, names)
-                if not isinstance(function.type, ArrayType):
-                    return ()
-                body, inner_names = self.called(node, names, shapes_only=True)
-                try:
-                    return self.shape(body, inner_names)
-                finally:
-                    self._calls.pop()
-            case _:
-                return ()
-
-    def length(self, node: ArrayConstructor, length: Expression, names: Names) -> int:
-        known = {name: m.value for name, m in names.values.items() if isinstance(m, Operand) and m.value is not None}
-        try:
-            size = evaluate(length, known, names.functions)
-        except EvaluationError as error:
-            raise FaultError(
-                "the length of an array must not depend on the state", error.origin or node.origin
-            ) from None
-        if not isinstance(size, int) or not 0 <= size <= MOST_ELEMENTS:
-            raise FaultError(f"an array cannot have {size} elements", length.origin)
-        return size
 
     def element(self, node: ArrayAccess, names: Names) -> Region:
         """The part of an array that is accessed; its shape is () for a single element."""
@@ -536,7 +284,7 @@ class Assembler:
         """The registers of an array; what is not in registers is put there."""
         match node:
             case Name():
-                meaning = self.meaning(node, names)
+                meaning = names.meaning(node)
                 if isinstance(meaning, Storage):
                     return Region(meaning.kind, meaning.shape, meaning.base)
                 if isinstance(meaning, Region):
@@ -545,7 +293,7 @@ class Assembler:
             case ArrayAccess():
                 return self.element(node, names)
             case _:
-                return self.materialized(node, self.kind(node, names), self.shape(node, names), names)
+                return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
     def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: Names) -> Region:
         """A copy of an array in registers of its own."""
@@ -568,8 +316,8 @@ class Assembler:
                         self.fill(elements[position], part, names, watch)
                     else:
                         self.put(elements[position], part, names, watch)
-            case ArrayConstructor(variable, length, body):
-                size = self.length(node, length, names)
+            case ArrayConstructor(variable, _, body):
+                size = shapes.length(node, names)
                 for position in range(into.shape[0]):
                     part = self.part(into, position)
                     if position >= size:
@@ -590,16 +338,9 @@ class Assembler:
                 self.tape.mark(end)
             case Call():
                 body, inner = self.called(node, names)
-                try:
-                    self.fill(body, into, inner, watch)
-                finally:
-                    self._calls.pop()
+                self.fill(body, into, inner, watch)
             case _:
                 self.copy(self.region(node, names), into, watch, node)
-
-    def part(self, region: Region, position: int) -> Region:
-        shape = region.shape[1:]
-        return Region(region.kind, shape, region.base + position * product(shape), region.offset)
 
     def put(self, node: Expression, cell: Region, names: Names, watch: int) -> None:
         """Store a scalar into a single cell."""
@@ -608,93 +349,17 @@ class Assembler:
             return
         self.write(self.stored(node, cell.kind, names), cell, watch)
 
-    def write(self, value: Operand, cell: Region, watch: int) -> None:
-        is_real = cell.kind == REAL
-        if cell.offset >= 0:
-            code = Op.STORE_REAL if is_real else Op.STORE
-            self.tape.emit(code, cell.base, cell.offset, value.register, watch)
-        elif watch >= 0:
-            self.tape.emit(Op.SET_REAL if is_real else Op.SET, cell.base, value.register, watch)
-        else:
-            self.moved(value, cell.base)
-
-    def clear(self, into: Region, watch: int) -> None:
-        zero = self.tape.constant(into.kind, 0)
-        for i in range(into.size):
-            self.write(zero, Region(into.kind, (), into.base + i, into.offset), watch)
-
-    def copy(self, source: Region, into: Region, watch: int, node: Node) -> None:
-        """Copy an array to a region without offset."""
-        if len(source.shape) != len(into.shape):
-            raise FaultError("arrays of different dimensions", node.origin)
-        if source.kind != into.kind and into.kind == REAL:
-            for i in range(into.size):
-                value = self.load(Region(source.kind, (), source.base + i, source.offset))
-                self.write(self.as_real(value), Region(REAL, (), into.base + i), watch)
-            return
-        if source.shape[1:] == into.shape[1:] and source.shape[0] <= into.shape[0]:
-            self.copy_block(source, into, watch)
-            rest = into.size - source.size
-            if rest:
-                self.clear(Region(into.kind, (rest,), into.base + source.size), watch)
-            return
-        if source.shape[0] > into.shape[0]:
-            self.failing(node, FaultCode.INDEX, INT, into.shape[0], into.shape[0])
-            return
-        for position in range(into.shape[0]):
-            part = self.part(into, position)
-            if position < source.shape[0]:
-                self.copy(self.part(source, position), part, watch, node)
-            else:
-                self.clear(part, watch)
-
-    def copy_block(self, source: Region, into: Region, watch: int) -> None:
-        is_real = into.kind == REAL
-        if source.offset < 0:
-            code = Op.COPY_REAL if is_real else Op.COPY
-            self.tape.emit(code, into.base, source.base, watch, source.size)
-            return
-        code = Op.COPY_INDEXED_REAL if is_real else Op.COPY_INDEXED
-        self.tape.emit(code, into.base, source.base, source.offset, source.size)
-        if watch >= 0:
-            self.tape.emit(Op.NOTE, watch)
-
-    def load(self, cell: Region, into: int = -1) -> Operand:
-        """The value of a single cell."""
-        if cell.offset < 0:
-            return self.moved(Operand(cell.kind, cell.base), into)
-        register = self.target(cell.kind, into)
-        self.tape.emit(Op.LOAD_REAL if cell.kind == REAL else Op.LOAD, register, cell.base, cell.offset)
-        return Operand(cell.kind, register)
-
     # ------------------------------------------------------------ functions
 
-    def function(self, node: Call, names: Names) -> Function:
-        function = names.functions.get(node.function)
-        if function is None:
-            raise FaultError(f"there is no function `{node.function}`", node.origin)
-        return function
-
-    def called(self, node: Call, names: Names, shapes_only: bool = False) -> tuple[Expression, Names]:
-        """The body of a function, and what names mean in it: it is compiled where it is called. Who asks takes the
-        function off `_calls` afterwards."""
-        function = self.function(node, names)
-        if node.function in self._calls:
-            raise FaultError(f"`{node.function}` calls itself, which is not supported", node.origin)
-        if len(node.arguments) != len(function.parameters):
-            wanted, given = len(function.parameters), len(node.arguments)
-            raise FaultError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
+    def called(self, node: Call, names: Names) -> tuple[Expression, Names]:
+        """The body of a function, and what names mean in it."""
+        function = names.called(node)
         bound: dict[str, Meaning] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):
-            kind = kind_of(parameter.type)
             if isinstance(parameter.type, ArrayType):
-                shape = self.shape(argument, names)
-                bound[parameter.name] = Region(kind, shape, 0) if shapes_only else self.region(argument, names)
-            elif shapes_only:
-                known = self.known(argument, names)
-                bound[parameter.name] = Operand(kind, 0, known)
+                bound[parameter.name] = self.region(argument, names)
             else:
+                kind = kind_of(parameter.type)
                 value = self.stored(argument, kind, names)
                 bound[parameter.name] = Operand(kind, value.register, value.value)
-        self._calls.append(node.function)
-        return function.body, names.bound(bound)
+        return function.body, names.inside(function, bound)

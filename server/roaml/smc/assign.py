@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Conditional, Expression, Name
 from roaml.jani.node import Origin
-from roaml.smc.assemble import MOST, Assembler
+from roaml.smc.assemble import Assembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Names, Storage, unsupported
 from roaml.smc.opcodes import Op
+from roaml.smc.operations import MOST
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
@@ -52,7 +53,7 @@ class AssignmentAssembler(Assembler):
             inner = inner.array
         if not isinstance(inner, Name):
             raise FaultError(unsupported(inner), target.origin)
-        storage = self.meaning(inner, names)
+        storage = names.meaning(inner)
         if not isinstance(storage, Storage) or storage.is_constant:
             raise FaultError(f"`{inner.identifier}` cannot be assigned to", target.origin)
         if len(accesses) > len(storage.shape):

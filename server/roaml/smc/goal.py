@@ -43,7 +43,7 @@ from roaml.smc.registers import Operand
 TRUE, FALSE, DEADLOCK, NO_DEADLOCK = -1, -2, -3, -4
 NOT, AND, OR = -1, -2, -3
 
-COMPARISONS = {
+_MIRRORED = {
     BinaryOperator.LESS: BinaryOperator.GREATER,
     BinaryOperator.LESS_EQUAL: BinaryOperator.GREATER_EQUAL,
     BinaryOperator.GREATER: BinaryOperator.LESS,
@@ -168,11 +168,11 @@ class _Writer:
                     elif function not in _ONE_STATE:
                         raise FaultError(f"the filter `{function.value}` is not supported", formula.origin)
                     formula = values
-                case BinaryFormula(operator, left, right) if operator in COMPARISONS and threshold is None:
+                case BinaryFormula(operator, left, right) if operator in _MIRRORED and threshold is None:
                     if isinstance(left, ProperFormula):
                         formula, other = left, right
                     else:
-                        formula, other, operator = right, left, COMPARISONS[operator]
+                        formula, other, operator = right, left, _MIRRORED[operator]
                     threshold = Threshold(operator, self.number(other))
                 case _:
                     return formula, threshold
@@ -181,9 +181,8 @@ class _Writer:
         """The value of an expression without variables."""
         if isinstance(formula, ProperFormula):
             raise FaultError("a number is needed here", formula.origin)
-        known = {n: m.value for n, m in self.names.values.items() if isinstance(m, Operand) and m.value is not None}
         try:
-            value = evaluate(formula, known, self.names.functions)
+            value = evaluate(formula, self.names.constants(), self.names.functions)
         except EvaluationError as error:
             raise FaultError(error.message, error.origin or formula.origin) from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -11,10 +11,11 @@ from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.model import Assignment, Automaton, Function, Model, Variable
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BoundedType, Type
-from roaml.smc.assign import AssignmentAssembler
+from roaml.smc import shapes
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage, kind_of, larger, shape_of
-from roaml.smc.registers import INT, REAL, Number, Operand
+from roaml.smc.names import Meaning, Names, Storage
+from roaml.smc.registers import INT, REAL, Number, Operand, Tape, product
+from roaml.smc.shapes import kind_of, larger, shape_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Layout:
         return (*self.shared, *(storage for instance in self.instances for storage in instance.own))
 
 
-def lay_out(model: Model, assembler: AssignmentAssembler) -> Layout:
+def lay_out(model: Model, tape: Tape) -> Layout:
     """Give a place to everything that has a value; registers of variables come before all others.
 
     Raises:
@@ -80,12 +81,11 @@ def lay_out(model: Model, assembler: AssignmentAssembler) -> Layout:
         drafts.append((automaton, inner, own))
     scopes = [{**values, **{storage.name: storage for storage in own}} for _, _, own in drafts]
     named = [(a, Names(scope, inner)) for (a, inner, _), scope in zip(drafts, scopes, strict=True)]
-    _grow(named, assembler, constants)
-    tape = assembler.tape
+    _grow(named, constants)
     for storage in (*shared, *(storage for _, _, own in drafts for storage in own)):
-        _place(storage, initial[id(storage)], assembler)
+        _place(storage, initial[id(storage)], tape)
     for storage in constant_arrays:
-        _place(storage, initial[id(storage)], assembler)
+        _place(storage, initial[id(storage)], tape)
     for constant in model.constants:
         if constant.name not in arrays:
             value = constants[constant.name]
@@ -101,7 +101,28 @@ def lay_out(model: Model, assembler: AssignmentAssembler) -> Layout:
         Instance(automaton, Names(scope, inner), own, frozenset(v.name for v in automaton.variables if v.transient))
         for (automaton, inner, own), scope in zip(drafts, scopes, strict=True)
     )
-    return Layout(Names(values, functions), shared, instances, initial)
+    layout = Layout(Names(values, functions), shared, instances, initial)
+    _check_start(model, layout)
+    return layout
+
+
+def _check_start(model: Model, layout: Layout) -> None:
+    known: dict[str, Value] = dict(layout.names.constants())
+    for storage in layout.shared:
+        known[storage.name] = layout.initial[id(storage)]
+    scopes = [(model.restrict_initial, known)]
+    for instance in layout.instances:
+        own = {storage.name: layout.initial[id(storage)] for storage in instance.own}
+        scopes.append((instance.automaton.restrict_initial, {**known, **own}))
+    for clause, values in scopes:
+        if clause is None:
+            continue
+        try:
+            holds = evaluate(clause.exp, values, layout.names.functions)
+        except EvaluationError as error:
+            raise FaultError(error.message, error.origin) from None
+        if not holds:
+            raise FaultError("there is no initial state: the initial values do not fulfil this", clause.exp.origin)
 
 
 def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
@@ -159,9 +180,7 @@ def _storage(name: str, type_: Type, value: Value) -> Storage:
     return Storage(name, type_, kind_of(type_), shape_of(value) if isinstance(type_, ArrayType) else ())
 
 
-def _grow(
-    scopes: list[tuple[Automaton, Names]], assembler: AssignmentAssembler, constants: Mapping[str, Value]
-) -> None:
+def _grow(scopes: list[tuple[Automaton, Names]], constants: Mapping[str, Value]) -> None:
     """Make arrays as large as the largest value that is ever assigned to them."""
     known: dict[str, Meaning] = {
         name: Operand(INT, -1, value) for name, value in constants.items() if isinstance(value, (int, float))
@@ -180,7 +199,7 @@ def _grow(
     for _ in range(len(assignments) + 1):
         changed = False
         for assignment, names, storage, depth in assignments:
-            shape = assembler.shape(assignment.value, names)
+            shape = shapes.shape(assignment.value, names)
             inner = storage.shape[depth:]
             if len(shape) == len(inner) and larger(inner, shape) != inner:
                 storage.shape = (*storage.shape[:depth], *larger(inner, shape))
@@ -196,12 +215,9 @@ def _assignments(automaton: Automaton) -> Iterator[Assignment]:
             yield from destination.assignments
 
 
-def _place(storage: Storage, value: Value, assembler: AssignmentAssembler) -> None:
-    size = 1
-    for length in storage.shape:
-        size *= length
-    storage.base = assembler.tape.room(storage.kind, size)
-    cells: MutableSequence[Any] = assembler.tape.reals if storage.kind == REAL else assembler.tape.ints
+def _place(storage: Storage, value: Value, tape: Tape) -> None:
+    storage.base = tape.room(storage.kind, product(storage.shape))
+    cells: MutableSequence[Any] = tape.reals if storage.kind == REAL else tape.ints
     _fill(cells, storage.base, storage.shape, value)
 
 
@@ -211,8 +227,6 @@ def _fill(cells: MutableSequence[Any], base: int, shape: tuple[int, ...], value:
         cells[base] = value if isinstance(value, float) else int(value)
         return
     assert isinstance(value, tuple)
-    size = 1
-    for length in shape[1:]:
-        size *= length
+    size = product(shape[1:])
     for position, each in enumerate(value):
         _fill(cells, base + position * size, shape[1:], each)

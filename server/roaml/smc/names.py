@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names stand for while a model is compiled, and what kinds and shapes values have."""
+"""What names stand for while a model is compiled."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from roaml.jani.expressions import Call, Expression, Name, walk
-from roaml.jani.model import Function
+from roaml.jani.expressions import ArrayAccess, Call, Expression, Name, walk
+from roaml.jani.model import Assignment, Function
 from roaml.jani.node import Node
-from roaml.jani.semantics import Value
-from roaml.jani.types import ArrayType, BasicType, BoundedType, Type
+from roaml.jani.types import Type
 from roaml.smc.fault import FaultError
-from roaml.smc.registers import BOOL, INT, REAL, Number, Operand, Region
+from roaml.smc.registers import Number, Operand, Region
 
 
 @dataclass(slots=True)
@@ -36,46 +35,39 @@ Meaning: TypeAlias = Storage | Operand | Region
 
 @dataclass(frozen=True)
 class Names:
-    """What names mean somewhere."""
+    """What names mean somewhere; `calls` are the functions in whose bodies this is."""
 
     values: Mapping[str, Meaning]
     functions: Mapping[str, Function]
+    calls: tuple[str, ...] = ()
 
     def bound(self, more: Mapping[str, Meaning]) -> Names:
-        return Names({**self.values, **more}, self.functions)
+        return replace(self, values={**self.values, **more})
 
+    def inside(self, function: Function, parameters: Mapping[str, Meaning]) -> Names:
+        """What names mean in the body of a function."""
+        return Names({**self.values, **parameters}, self.functions, (*self.calls, function.name))
 
-def kind_of(type_: Type) -> str:
-    """The kind of values of a type, of the elements of an array type.
+    def constants(self) -> dict[str, Number]:
+        """The names whose values do not depend on the state."""
+        return {name: m.value for name, m in self.values.items() if isinstance(m, Operand) and m.value is not None}
 
-    Raises:
-        FaultError: values of this type are not supported.
-    """
-    while isinstance(type_, ArrayType):
-        type_ = type_.element
-    if isinstance(type_, BoundedType):
-        type_ = type_.base
-    kinds = {BasicType.BOOL: BOOL, BasicType.INT: INT, BasicType.REAL: REAL}
-    if isinstance(type_, BasicType) and type_ in kinds:
-        return kinds[type_]
-    raise FaultError("only variables of type bool, int, real and arrays of these are supported")
+    def meaning(self, node: Name) -> Meaning:
+        meaning = self.values.get(node.identifier)
+        if meaning is None:
+            raise FaultError(f"there is no variable `{node.identifier}`", node.origin)
+        return meaning
 
-
-def larger(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
-    """The least shape that holds both."""
-    if len(first) != len(second):
-        return first if len(first) > len(second) else second
-    return tuple(map(max, first, second))
-
-
-def shape_of(value: Value) -> tuple[int, ...]:
-    """The shape of a value."""
-    if not isinstance(value, tuple):
-        return ()
-    inner: tuple[int, ...] = ()
-    for each in value:
-        inner = larger(inner, shape_of(each))
-    return (len(value), *inner)
+    def called(self, node: Call) -> Function:
+        function = self.functions.get(node.function)
+        if function is None:
+            raise FaultError(f"there is no function `{node.function}`", node.origin)
+        if node.function in self.calls:
+            raise FaultError(f"`{node.function}` calls itself, which is not supported", node.origin)
+        if len(node.arguments) != len(function.parameters):
+            wanted, given = len(function.parameters), len(node.arguments)
+            raise FaultError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
+        return function
 
 
 def variables_in(expression: Expression, functions: Mapping[str, Function]) -> set[str]:
@@ -91,6 +83,16 @@ def variables_in(expression: Expression, functions: Mapping[str, Function]) -> s
                 called.add(node.function)
                 if node.function in functions:
                     stack.append(functions[node.function].body)
+    return found
+
+
+def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[str]:
+    """The names that an assignment depends on: its value, and where it stores this."""
+    found = variables_in(assignment.value, functions)
+    target: Expression = assignment.target
+    while isinstance(target, ArrayAccess):
+        found |= variables_in(target.index, functions)
+        target = target.array
     return found
 
 

@@ -7,13 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
-from roaml.jani.expressions import ArrayAccess, Expression
 from roaml.jani.model import Destination, Edge
 from roaml.smc.batch import Problem
 from roaml.smc.goal import Asked
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import Checker
-from roaml.smc.names import Storage, variables_in
+from roaml.smc.names import Storage, read_by, variables_in
 from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
 from roaml.smc.registers import BOOL, REAL
 
@@ -130,11 +129,7 @@ class Recorder:
         layout = self.legend.layout.instances[part.instance]
         found = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
         for assignment in part.destination.assignments:
-            found |= variables_in(assignment.value, layout.names.functions)
-            target: Expression = assignment.target
-            while isinstance(target, ArrayAccess):
-                found |= variables_in(target.index, layout.names.functions)
-                target = target.array
+            found |= read_by(assignment, layout.names.functions)
         own = {storage.name for storage in layout.own}
         return {Variable(part.instance if name in own else -1, name) for name in found}
 

@@ -175,22 +175,20 @@ def _names(analysis: Analysis, path: str) -> Iterator[Item]:
 
 def _operators(grammar: JsonGrammar, kind: str) -> Iterator[Item]:
     """An object for each operator, with all that it needs."""
-    for branch in grammar.definition(kind)["then"]["then"]["allOf"]:
-        definition = grammar.definition(branch["then"]["$ref"].rpartition("/")[2])
-        for operator in grammar.choices(branch["if"]["properties"]["op"]):
-            if operator in _ALIASES:
-                continue
-            made = Snippet().text("{" + f'"op": "{operator}"')
-            for key in definition["required"]:
-                if key != "op":
-                    choices = grammar.choices(definition["properties"][key])
-                    made.text(f', "{key}": ')
-                    made = made.text('"').stop(choices).text('"') if choices else made.stop()
-            made.text("}")
-            detail = definition["title"]
-            about = Symbol(grammar.name, "json", operator, definition.get("description", ""))
-            rank = Rank.LATE if operator in _SELDOM else Rank.USUAL
-            yield Item(f"{{{operator}}}", ItemKind.SKELETON, str(made), detail, about, rank, f"{{{operator}")
+    for operator, described in grammar.operators(kind):
+        if operator in _ALIASES:
+            continue
+        made = Snippet().text("{" + f'"op": "{operator}"')
+        for key in described["required"]:
+            if key != "op":
+                choices = grammar.choices(described["properties"][key])
+                made.text(f', "{key}": ')
+                made = made.text('"').stop(choices).text('"') if choices else made.stop()
+        made.text("}")
+        about = Symbol(grammar.name, "json", operator, grammar.text(described))
+        rank = Rank.LATE if operator in _SELDOM else Rank.USUAL
+        detail = grammar.title(described)
+        yield Item(f"{{{operator}}}", ItemKind.SKELETON, str(made), detail, about, rank, f"{{{operator}")
 
 
 def _references(analysis: Analysis, path: str, place: _Place) -> Iterator[Item]:

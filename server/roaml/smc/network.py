@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can happen in a model: locations, the edges that can be taken, and which of them are taken together.
+
+- Every edge without action and every combination of edges of a synchronisation vector is one choice.
+- Edges that can never be taken and ways of probability 0 are left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from roaml.jani.expressions import ArrayAccess, Binary, Boolean, Expression, Unary
+from roaml.jani.model import Assignment, Destination, Edge, Model
+from roaml.jani.node import Node
+from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.smc.fault import FaultError
+from roaml.smc.layout import Instance, Layout
+from roaml.smc.names import Names, read_by, variables_in
+from roaml.smc.registers import Operand
+
+_CLOSE = 1e-6
+
+
+@dataclass(slots=True)
+class Way:
+    """A destination of an edge; `probability` is None where it depends on the state."""
+
+    destination: Destination
+    probability: float | None
+
+
+@dataclass(slots=True)
+class Step:
+    """An edge of an instance that can be taken. `guard` is None if it is always enabled."""
+
+    edge: Edge
+    ways: list[Way]
+    guard: Expression | None
+    is_inert: bool
+
+
+@dataclass(slots=True)
+class Slot:
+    """The edges of an instance for one action, by location."""
+
+    instance: int
+    action: str | None
+    steps: dict[int, list[Step]] = field(default_factory=dict)
+    vectors: list[int] = field(default_factory=list)
+    reads: set[str] = field(default_factory=set)
+    writes: set[str] = field(default_factory=set)
+
+
+class Reads:
+    """Which variables matter to a part of a model: looked up once. The part is kept, so that no other gets its id."""
+
+    def __init__(self) -> None:
+        self._found: dict[int, tuple[Node, set[str]]] = {}
+
+    def names_in(self, expression: Expression, names: Names) -> set[str]:
+        if id(expression) not in self._found:
+            self._found[id(expression)] = expression, variables_in(expression, names.functions)
+        return self._found[id(expression)][1]
+
+    def by(self, assignment: Assignment, names: Names) -> set[str]:
+        if id(assignment) not in self._found:
+            self._found[id(assignment)] = assignment, read_by(assignment, names.functions)
+        return self._found[id(assignment)][1]
+
+
+class Network:
+    """The locations, slots and vectors of a model.
+
+    Attributes:
+        locations: instance and name of each location; `first_location` and `location_of` by instance.
+        vectors: the slots of each vector, and its action.
+    """
+
+    def __init__(self, model: Model, layout: Layout) -> None:
+        self.model = model
+        self.layout = layout
+        self.reads = Reads()
+        self.locations: list[tuple[int, str]] = []
+        self.first_location: list[int] = []
+        self.location_of: list[dict[str, int]] = []
+        self.slots: list[Slot] = []
+        self.vectors: list[tuple[list[int], str | None]] = []
+        self._slot_of: dict[tuple[int, str | None, int], int] = {}
+        self._number_locations()
+        self._collect_steps()
+        self._collect_vectors()
+
+    def _number_locations(self) -> None:
+        for number, instance in enumerate(self.layout.instances):
+            self.first_location.append(len(self.locations))
+            table = {}
+            for location in instance.automaton.locations:
+                if location.time_progress is not None:
+                    raise FaultError("conditions for time progress are not supported", location.origin)
+                table[location.name] = len(self.locations)
+                self.locations.append((number, location.name))
+            self.location_of.append(table)
+            if len(instance.automaton.initial_locations) != 1:
+                name = instance.automaton.name
+                raise FaultError(f"`{name}` must have one initial location", instance.automaton.origin)
+
+    def _collect_steps(self) -> None:
+        prepared: dict[int, list[Step | None]] = {}
+        for number, (instance, element) in enumerate(
+            zip(self.layout.instances, self.model.system.elements, strict=True)
+        ):
+            edges = [*instance.automaton.edges, *_accepting(instance, element.input_enable)]
+            key = id(instance.automaton)
+            if element.input_enable or key not in prepared:
+                prepared[key] = [self._step(edge, instance) for edge in edges]
+            silent: dict[int, int] = {}
+            for edge, step in zip(edges, prepared[key], strict=True):
+                if step is None:
+                    continue
+                source = self.location_of[number].get(edge.source)
+                if source is None:
+                    raise FaultError(f"there is no location `{edge.source}`", edge.origin)
+                count = 0
+                if edge.action is None:
+                    count = silent[source] = silent.get(source, 0) + 1
+                slot = self._slot(number, edge.action, count)
+                slot.steps.setdefault(source, []).append(step)
+                for way in step.ways:
+                    for assignment in way.destination.assignments:
+                        slot.reads |= self.reads.by(assignment, instance.names)
+                        slot.writes.add(root(assignment))
+
+    def _slot(self, instance: int, action: str | None, count: int) -> Slot:
+        key = (instance, action, count)
+        if key not in self._slot_of:
+            self._slot_of[key] = len(self.slots)
+            self.slots.append(Slot(instance, action))
+        return self.slots[self._slot_of[key]]
+
+    def _step(self, edge: Edge, instance: Instance) -> Step | None:
+        """None for what can never be taken."""
+        if edge.rate is not None:
+            raise FaultError("rates are not supported", edge.origin)
+        guard = None if edge.guard is None else edge.guard.exp
+        if guard is not None:
+            known = self._known(guard, instance)
+            if known is False:
+                return None
+            if known is True:
+                guard = None
+        ways = []
+        for destination in edge.destinations:
+            clause = destination.probability
+            probability = 1.0 if clause is None else self._known(clause.exp, instance)
+            if probability is not None and probability < 0:
+                raise FaultError("a probability must not be negative", destination.origin or edge.origin)
+            if probability != 0:
+                ways.append(Way(destination, None if probability is None else float(probability)))
+        if not ways:
+            raise FaultError("the probabilities of this edge do not add up to 1", edge.origin)
+        if any(way.probability is None for way in ways):
+            for way in ways:
+                way.probability = None
+        else:
+            total = sum(way.probability or 0 for way in ways)
+            if abs(total - 1) > _CLOSE:
+                raise FaultError(f"the probabilities of this edge add up to {total:g}, not to 1", edge.origin)
+        is_inert = all(way.destination.location == edge.source and not way.destination.assignments for way in ways)
+        return Step(edge, ways, guard, is_inert)
+
+    def _known(self, expression: Expression, instance: Instance) -> bool | float | None:
+        """The value of an expression that does not depend on the state."""
+        names = instance.names
+        if isinstance(expression, Boolean):
+            return expression.value
+        read = self.reads.names_in(expression, names)
+        if any(not isinstance(names.values.get(name), Operand) for name in read):
+            return None
+        try:
+            value = evaluate(expression, names.constants() if read else {}, names.functions)
+        except EvaluationError:
+            return None
+        return value if isinstance(value, (bool, int, float)) else None
+
+    def _collect_vectors(self) -> None:
+        syncs = [(list(sync.participants), sync.result) for sync in self.model.system.syncs]
+        if not syncs and len(self.layout.instances) == 1:
+            actions = dict.fromkeys(slot.action for slot in self.slots if slot.action is not None)
+            syncs = [([(0, action)], action) for action in actions]
+        found = [([self._slot_of.get((i, action, 0), -1) for i, action in parts], result) for parts, result in syncs]
+        silent = [([number], None) for number, slot in enumerate(self.slots) if slot.action is None]
+        for slots, result in (*found, *silent):
+            if slots and -1 not in slots:
+                for slot in slots:
+                    self.slots[slot].vectors.append(len(self.vectors))
+                self.vectors.append((slots, result))
+
+
+def root(assignment: Assignment) -> str:
+    """The variable that is assigned to."""
+    target: Expression = assignment.target
+    while isinstance(target, ArrayAccess):
+        target = target.array
+    return getattr(target, "identifier", "")
+
+
+def _accepting(instance: Instance, actions: tuple[str, ...]) -> list[Edge]:
+    """Loops that accept an action wherever no edge for it is enabled: what `input-enable` means."""
+    found = []
+    for action in actions:
+        for location in instance.automaton.locations:
+            there = [e for e in instance.automaton.edges if e.action == action and e.source == location.name]
+            guard: Expression | None = None
+            if any(edge.guard is None for edge in there):
+                continue
+            for edge in there:
+                assert edge.guard is not None
+                closed: Expression = Unary(UnaryOperator.NOT, edge.guard.exp)
+                guard = closed if guard is None else _both(guard, closed)
+            clause = None if guard is None else replace(there[0].guard, exp=guard)  # type: ignore[type-var]
+            loop = Destination(location.name)
+            found.append(Edge(location.name, (loop,), action, clause, origin=location.origin))
+    return found
+
+
+def _both(left: Expression, right: Expression) -> Expression:
+    return Binary(BinaryOperator.AND, left, right)

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Operators on values that are in registers: computed here where they are known, else code.
+
+What can only go wrong stays in the code: it may never be reached.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Real, Unary
+from roaml.jani.node import Node
+from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
+from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.smc.cells import CellAssembler
+from roaml.smc.opcodes import FaultCode, Op
+from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
+
+MOST = (1 << 63) - 1
+
+COMPARISONS = {
+    # operator: for ints: (jump if it holds, jump if not, whether operands change places for either)
+    BinaryOperator.EQUAL: ((Op.JUMP_EQ, False), (Op.JUMP_NE, False)),
+    BinaryOperator.NOT_EQUAL: ((Op.JUMP_NE, False), (Op.JUMP_EQ, False)),
+    BinaryOperator.LESS: ((Op.JUMP_LT, False), (Op.JUMP_LE, True)),
+    BinaryOperator.LESS_EQUAL: ((Op.JUMP_LE, False), (Op.JUMP_LT, True)),
+    BinaryOperator.GREATER: ((Op.JUMP_LT, True), (Op.JUMP_LE, False)),
+    BinaryOperator.GREATER_EQUAL: ((Op.JUMP_LE, True), (Op.JUMP_LT, False)),
+}
+_REAL_JUMPS = {
+    Op.JUMP_EQ: Op.JUMP_EQ_REAL,
+    Op.JUMP_NE: Op.JUMP_NE_REAL,
+    Op.JUMP_LT: Op.JUMP_LT_REAL,
+    Op.JUMP_LE: Op.JUMP_LE_REAL,
+}
+ARITHMETIC = {
+    BinaryOperator.ADD: (Op.ADD, Op.ADD_REAL),
+    BinaryOperator.SUBTRACT: (Op.SUB, Op.SUB_REAL),
+    BinaryOperator.MULTIPLY: (Op.MUL, Op.MUL_REAL),
+    BinaryOperator.MINIMUM: (Op.MIN, Op.MIN_REAL),
+    BinaryOperator.MAXIMUM: (Op.MAX, Op.MAX_REAL),
+}
+
+
+class OperatorAssembler(CellAssembler):
+    """Writes operators, too."""
+
+    def applied(self, node: Unary, value: Operand, into: int) -> Operand:
+        """An operator to its one operand."""
+        op = node.operator
+        is_int = value.kind != REAL
+        kind = value.kind if op is UnaryOperator.ABS else INT if op.signature is Signature.ROUNDING else REAL
+        if value.value is not None:
+            return self.moved(self.folded(node, (value,), kind), into)
+        if op is UnaryOperator.ABS:
+            self.tape.place(node.origin)
+            register = self.target(value.kind, into)
+            self.tape.emit(Op.ABS if is_int else Op.ABS_REAL, register, value.register)
+            return Operand(value.kind, register)
+        if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
+            return self.moved(value, into)
+        return self.call(node, op, (value,), kind, into)
+
+    def computed(self, node: Binary, first: Operand, second: Operand, into: int) -> Operand:
+        op = node.operator
+        is_real = REAL in (first.kind, second.kind) or op.signature is Signature.REAL
+        if op is BinaryOperator.POWER and not (isinstance(node.right, Integer) and node.right.value >= 0):
+            is_real = True
+        kind = REAL if is_real else INT
+        if first.value is not None and second.value is not None:
+            return self.moved(self.folded(node, (first, second), kind), into)
+        if op in ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real) or op is BinaryOperator.DIVIDE:
+            if is_real:
+                first, second = self.as_real(first), self.as_real(second)
+            code = ARITHMETIC[op][is_real] if op in ARITHMETIC else Op.DIVIDE if is_real else Op.REM
+            self.tape.place(node.origin)
+            register = self.target(kind, into)
+            self.tape.emit(code, register, first.register, second.register)
+            return Operand(kind, register)
+        return self.call(node, op, (first, second), kind, into)
+
+    def compared(self, op: BinaryOperator, first: Operand, second: Operand, label: Label, when: bool) -> None:
+        """Jump to `label` if the comparison of two scalars is `when`, else go on."""
+        if first.value is not None and second.value is not None:
+            if bool(op.function(first.value, second.value)) is when:
+                self.tape.jump(Op.JUMP, label)
+            return
+        (code, swapped), (opposite, opposite_swapped) = COMPARISONS[op]
+        if REAL not in (first.kind, second.kind):
+            if not when:
+                code, swapped = opposite, opposite_swapped
+            if swapped:
+                first, second = second, first
+            self.tape.jump(code, label, first.register, second.register)
+            return
+        first, second = self.as_real(first), self.as_real(second)
+        if swapped:
+            first, second = second, first
+        if when:
+            self.tape.jump(_REAL_JUMPS[code], label, first.register, second.register)
+            return
+        # Not the opposite comparison: with a number that is none, neither holds.
+        holds = Label()
+        self.tape.jump(_REAL_JUMPS[code], holds, first.register, second.register)
+        self.tape.jump(Op.JUMP, label)
+        self.tape.mark(holds)
+
+    def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
+        for argument in arguments:
+            self.tape.emit(Op.ARGUMENT_REAL if argument.kind == REAL else Op.ARGUMENT, a=argument.register)
+        register = self.target(kind, into)
+        self.tape.place(node.origin)
+        code = Op.CALL_REAL if kind == REAL else Op.CALL_INT
+        self.tape.emit(code, register, c=self.tape.function(op))
+        return Operand(kind, register)
+
+    def folded(self, node: Unary | Binary, operands: Sequence[Operand], kind: str) -> Operand:
+        """An operator whose operands are constants."""
+        constants: list[Expression] = []
+        for operand in operands:
+            value = operand.value
+            assert value is not None
+            if operand.kind == BOOL:
+                constants.append(Boolean(bool(value)))
+            else:
+                constants.append(Real(value) if isinstance(value, float) else Integer(value))
+        plain: Expression
+        plain = Unary(node.operator, *constants) if isinstance(node, Unary) else Binary(node.operator, *constants)
+        try:
+            result = evaluate(plain, {})
+        except EvaluationError as error:
+            code = FaultCode.DIVISION if "division" in error.message else FaultCode.DOMAIN
+            return self.failing(node, code, kind)
+        assert isinstance(result, (bool, int, float))
+        if kind == INT and abs(result) > MOST:
+            return self.failing(node, FaultCode.OVERFLOW, kind)
+        return self.tape.constant(kind, float(result) if kind == REAL else result)
