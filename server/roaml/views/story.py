@@ -39,7 +39,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
     found = []
     for number, (step, time) in enumerate(zip(story.steps, story.clock, strict=True)):
         if story.folded and number == FIRST:
-            found.append(Line(step.number, "…", "", f"… {story.folded:,} steps that matter …", "", ()))
+            found.append(Line(step.number, "", "", f"… {story.folded:,} steps that matter …", "", ()))
         changes = tuple(_change(change) for change in step.changes)
         actors = _actors(step)
         if [part.automaton for part in actors] == [CLOCK]:
