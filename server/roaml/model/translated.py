@@ -84,3 +84,13 @@ def received_by(action: str) -> str:
 
 _ON_SEND = "_on_send"
 _ON_RECEIVE = "_on_receive"
+
+# --------------------------------------------------------------------- variables
+
+
+def is_length(variable: str) -> bool:
+    """Whether it is the length of an array that stands beside it (spec/05 §2)."""
+    return _LENGTH.search(variable) is not None
+
+
+_LENGTH = re.compile(r"\.d[0-9]+_len\Z")

@@ -46,7 +46,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
     folded = range(FIRST, len(told) - LAST)
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
-        found.insert(FIRST, Line(told[FIRST].number, "…", "", _more(folded), "", ()))
+        found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
     return found
 
 
@@ -208,7 +208,7 @@ def _chance(probability: Clause | None) -> str:
 
 def _message(message: Message) -> str:
     values = ", ".join(f"{name}: {_plain(value)}" for name, value in message.values.items())
-    return f"{message.event}({_short(values)})" if values else message.event
+    return f"{message.name}({_short(values)})" if values else message.name
 
 
 def _change(change: Change) -> str:

@@ -2,8 +2,9 @@
 """A story in turns, as people think of it: an automaton hears an event, and does all that follows from it.
 
 A translated system takes many steps for that: each statement is one, each event waits in an automaton of its own
-between sender and receiver, and the inner nodes of a behavior tree pass ticks down and answers up. A turn is told if
-one of its steps matters, or if it hears what such a turn says; what only passes things on is left out.
+between sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks
+down and answers up. A turn is told if one of its steps matters, or if it hears what such a turn says; what only passes
+things on is left out.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from roaml.jani.node import Origin
-from roaml.model.translated import CLOCK, received_by, sent_by
+from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.typing import STATUSES
 from roaml.smc.record import Change, Part, Plain, TraceStep
 from roaml.smc.story import Story
@@ -114,9 +115,15 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """An event with the parameters that it was sent with, by their names. `sender` is None if nobody has sent it."""
+    """An event with the parameters that it was sent with, by their names.
+
+    Attributes:
+        name: of the event, without that of the client whom a service or action serves with it.
+        sender: None if nobody has sent it.
+    """
 
     event: str
+    name: str
     values: Mapping[str, Plain]
     sender: Turn | None = None
 
@@ -140,6 +147,7 @@ class _Reader:
     def __init__(self, story: Story) -> None:
         actions = [{edge.action or "" for edge in automaton.edges} for automaton in story.automata]
         self._story = story
+        self._automata = {automaton.name for automaton in story.automata}
         self._relevant = frozenset(story.relevant)
         self._events = {event for found in actions for action in found if (event := sent_by(action))}
         self._hearing = [any(map(received_by, found)) for found in actions]
@@ -157,7 +165,7 @@ class _Reader:
         at = name.rfind("__")
         while at > 0:
             if name[:at] in self._events:
-                if "." not in name[at:]:  # the length of an array stands beside it
+                if not is_length(name):
                     self._parameters[name[:at]].append(name)
                 return True
             at = name.rfind("__", 0, at)
@@ -168,7 +176,7 @@ class _Reader:
         for change in step.changes:
             if change.variable.instance < 0:
                 self._values[change.variable.name] = change.after
-        actors = [part for part in step.parts if part.automaton not in self._events and part.automaton != CLOCK]
+        actors = [part for part in step.parts if part.automaton not in self._events]
         heard = self._heard(step)
         for part in actors:
             turn = self._current.get(part.instance)
@@ -187,19 +195,24 @@ class _Reader:
 
     def _send(self, event: str, sender: Turn | None) -> None:
         values = {_parameter(event, name): self._values[name] for name in self._parameters.get(event, ())}
-        self._messages[event] = Message(event, values, sender)
+        self._messages[event] = Message(event, self._name(event), values, sender)
         if sender is not None:
             sender.messages.append(self._messages[event])
 
     def _heard(self, step: TraceStep) -> Message | None:
         event = received_by(step.action or "")
-        return self._messages.get(event, Message(event, {})) if event else None
+        return self._messages.get(event, Message(event, self._name(event), {})) if event else None
+
+    def _name(self, event: str) -> str:
+        name, _, client = event.partition("_client_")
+        return name if client in self._automata else event
 
     def _changes(self, step: TraceStep, part: Part, *, is_last: bool) -> Iterator[Change]:
         """Those of its own variables, and of the model's that carry no event; the latter are told once."""
         for change in step.changes:
             instance, name = change.variable
-            if instance == part.instance or (instance < 0 and is_last and name not in self._of_events):
+            is_lasting = instance < 0 and is_last and name not in self._of_events
+            if (instance == part.instance or is_lasting) and not is_length(name):
                 yield change
 
 
@@ -220,7 +233,9 @@ def _told(story: Story, found: Sequence[Turn]) -> Iterator[Turn]:
     for turn in found:
         sender = turn.heard.sender if turn.heard else None
         is_overheard = sender is not None and sender.matters and sender.instance not in inner
-        if turn.instance in inner:
+        if is_generated(turn.automaton):
+            is_told = False
+        elif turn.instance in inner:
             turn.changes.clear()  # those of a node that comes with BehaviorTree.CPP: how it counts its children
             is_told = turn.matters and turn.status in ("SUCCESS", "FAILURE")
         else:

@@ -57,9 +57,9 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
             item.iconPath = new vscode.ThemeIcon("symbol-variable");
             return item;
         }
-        const { Collapsed, None } = vscode.TreeItemCollapsibleState;
+        const { Expanded, None } = vscode.TreeItemCollapsibleState;
         const label = entry.who === "" ? entry.what : `${entry.who}: ${entry.what}`;
-        const item = new vscode.TreeItem(label, entry.details.length > 0 ? Collapsed : None);
+        const item = new vscode.TreeItem(label, entry.details.length > 0 ? Expanded : None);
         item.description = [entry.time, entry.place].filter((each) => each !== "").join(" · ");
         item.tooltip = [label, item.description, ...entry.details].join("\n");
         if (entry.uri !== undefined) {

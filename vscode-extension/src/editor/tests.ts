@@ -195,15 +195,14 @@ export class PropertyTests implements vscode.Disposable {
         }
         const missed = vscode.l10n.t("expected {0}", outcome.missed.join(", "));
         run.appendOutput(`${line}, ${missed}\r\n`, undefined, item);
-        const text = new vscode.MarkdownString(`${escaped(line)}  \n${escaped(missed)}`);
+        const text = new vscode.MarkdownString(escaped(`${short}, ${missed}`));
         if (outcome.hasCounterexample) {
             const link = `${SHOW_COUNTEREXAMPLE}?${encodeURIComponent(JSON.stringify([asked.system, asked.property]))}`;
             text.appendMarkdown(`\n\n[${vscode.l10n.t("Show Counterexample")}](command:${link})`);
             text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE] };
         }
-        const message = new vscode.TestMessage(text);
-        if (item.uri && item.range) message.location = new vscode.Location(item.uri, item.range);
-        run.failed(item, message, milliseconds);
+        // Without a place: the lens and the hint say the same on that line.
+        run.failed(item, new vscode.TestMessage(text), milliseconds);
     }
 
     private wrong({ message, uri, range }: Wrong): vscode.TestMessage {
@@ -221,7 +220,7 @@ function rangeOf({ start, end }: Property["range"]): vscode.Range {
     return new vscode.Range(start.line, start.character, end.line, end.character);
 }
 
-/** Names of properties may hold what Markdown takes for a sign. */
+/** Markdown takes the brackets of an interval for a sign. */
 function escaped(text: string): string {
     return text.replaceAll(/[\\`*_{}[\]()#+\-.!<>|]/g, "\\$&");
 }
