@@ -22,6 +22,8 @@ HERE = Path(__file__).parent
 ROBOT = HERE.parents[1] / "examples/assembly_robot"
 DROPPED = 446
 """A trace in which the robot with its bug loses the block."""
+EMPTY = 372
+"""A trace in which a robot that charges too late stands still."""
 
 PlaceOf = Callable[[Location], str]
 
@@ -50,6 +52,26 @@ def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
     assert "why &lt;now&gt;" in page
     for who in {line.who for line in lines(story, place_of)}:
         assert page.count(f"<th>{who}</th>") == 1
+
+
+def test_what_only_passes_on_is_left_out() -> None:
+    """Between a client and its server stands a handler, and the answer holds a text with its length."""
+    folder = ROBOT.parent / "delivery_robot"
+    texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
+    subject = of_system(api.load(str(folder / "main.xml"), texts=texts))
+    ready = api.checker(subject.model, ["never_empty"])
+    story = tell(Recorder(ready, ready.asked[0], 0, 10_000), EMPTY, subject.clock)
+    told = lines(story, lambda _: "")
+    assert {line.who for line in told} == {
+        "Battery",
+        "BatteryAbove (bt_1002)",
+        "ReactiveFallback (bt_1001)",
+        "Deliver (bt_1004)",
+        "Building",
+    }
+    said = [text for line in told for text in (line.what, *line.details)]
+    assert "sends srv_hand_over_response(success: true, message: 'taken')" in said
+    assert not [text for text in said if "_client_" in text or "_len" in text]
 
 
 def walked(written: Json) -> Story:
