@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import * as path from "node:path";
 import type { Locator } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
 import type { Window } from "./support/window";
+import { write } from "./support/workbench";
 
 export function verification(stage: Stage): void {
     stage.use();
@@ -23,11 +26,125 @@ export function verification(stage: Stage): void {
             await window.screenshot("verified");
         },
     );
+
+    stage.test("the Test Explorer runs properties and tells what came of them", late, async (window) => {
+        await window.openFile("properties.jani");
+        await window.running();
+        await explore(window);
+        const [delivered, empty] = [row(window, "all_delivered"), row(window, "never_empty")];
+        await delivered.hover();
+        await delivered.getByRole("button", { name: "Run Test" }).click();
+        await icon(delivered, "passed").waitFor({ timeout: PATIENCE });
+        await delivered.filter({ hasText: /1 \[0\.9\d+, 1\]/ }).waitFor();
+        await icon(empty, "unset").waitFor();
+        await window.run("Test: Run All Tests");
+        await icon(empty, "failed").waitFor({ timeout: PATIENCE });
+        await empty.filter({ hasText: /0\.5\d* \[0\.4\d*, 0\.5\d*\]/ }).waitFor();
+        await icon(row(window, "main.xml"), "failed").waitFor();
+        // What was expected, and the way to a trace in which it is not so.
+        await window.page.locator(".test-output-peek-tree .monaco-list-row", { hasText: "never_empty" }).click();
+        await window.page.locator(".composite.panel", { hasText: /\], expected ≥ 0\.9/ }).waitFor();
+        const link = window.page.getByRole("link", { name: "Show Counterexample" });
+        await link.waitFor();
+        await window.screenshot("test-explorer");
+        await link.click();
+        await window.page.locator(".panel .message", { hasText: "never_empty failed in trace" }).waitFor();
+        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+    });
+
+    stage.test("a counterexample leads to the lines, and lights where it is in the pictures", late, async (window) => {
+        await window.openFile("tree.xml");
+        await window.running();
+        await button(window, "Show Behavior Tree").click();
+        const tree = await window.picture();
+        await window.openFile("properties.jani");
+        await lens(window, "Verify").nth(1).click();
+        await lens(window, "Show counterexample").click({ timeout: PATIENCE });
+        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+        await step(window, "BatteryAbove: receives topic_battery_msg").first().click();
+        await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
+        await window.statusItem("Ln 18, Col 9").waitFor();
+        await tree.locator('.node.lit[data-label="BatteryAbove"]').waitFor();
+        await window.screenshot("counterexample");
+        // What has changed stands below the step.
+        await window.press("ArrowRight");
+        await step(window, "battery: 100 → 40").waitFor();
+        await step(window, "ReactiveSequence: receives").first().click();
+        await tree.locator('.node.lit[data-label="ReactiveSequence"]').waitFor();
+        await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
+        assert.equal(await tree.locator(".node.lit").count(), 1);
+        // The machine that takes the step is drawn, in the state that it is then in.
+        await window.openFile("building.ascxml");
+        await button(window, "Show State Machine").click();
+        const machine = await window.picture('.node[data-label="open"]');
+        await step(window, "Battery: sends").first().click();
+        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        await machine.locator('.node.lit[data-label="driving"]').waitFor();
+        await window.screenshot("counterexample-machine");
+    });
+
+    stage.test("a result is stale while its system says something else", late, async (window) => {
+        await window.openFile("properties.jani");
+        await window.running();
+        await explore(window);
+        await lens(window, "Verify").first().click();
+        const [delivered, told] = [row(window, "all_delivered"), "Verify · 1 \\[0\\.9\\d+, 1\\]"];
+        await lens(window, told).waitFor({ timeout: PATIENCE });
+        await icon(delivered, "passed").waitFor();
+        await window.openFile("tree.xml");
+        await window.goBehind("tree.xml", 'level="');
+        await window.type("1");
+        await icon(delivered, "passed").and(window.page.locator(".retired")).waitFor();
+        await window.openFile("properties.jani");
+        await lens(window, `${told}, stale`).waitFor();
+        await window.screenshot("stale");
+        await window.openFile("tree.xml");
+        await window.press("Control+Z");
+        await window.openFile("properties.jani");
+        await lens(window, told).waitFor();
+    });
 }
 
 /** A verification takes its time where no compiler has made the kernel fast. */
 const PATIENCE = 120_000;
 
+/** The robot charges too late: in every second trace its battery is empty before. */
+function late(): string {
+    const folder = sample({ ...MEND, "tree.xml": (text) => text.replace('level="30"', 'level="0"') });
+    const verify = { "as2fm.verify.epsilon": 0.05, "as2fm.verify.expectations": { never_empty: ">= 0.9" } };
+    write(path.join(folder, ".vscode/settings.json"), JSON.stringify(verify));
+    return folder;
+}
+
 function lens(window: Window, title: string): Locator {
     return window.page.locator(".codelens-decoration a", { hasText: new RegExp(`^${title}$`) });
+}
+
+/** Above the editor, as soon as the server has said what its file is. */
+function button(window: Window, name: string): Locator {
+    return window.page.locator(".editor-actions").getByRole("button", { name });
+}
+
+/** Show the properties of the system in the Test Explorer. */
+async function explore(window: Window): Promise<void> {
+    // VS Code asks for no lenses once the focus has gone elsewhere.
+    await lens(window, "Verify").first().waitFor();
+    await window.run("Testing: Focus on Test Explorer View");
+    await row(window, "main.xml").click();
+    await window.press("ArrowRight");
+    await row(window, "never_empty").waitFor();
+}
+
+/** A row of the Test Explorer. */
+function row(window: Window, text: string | RegExp): Locator {
+    return window.page.locator(".test-explorer-tree .monaco-list-row", { hasText: text });
+}
+
+function icon(row: Locator, state: "passed" | "failed" | "unset"): Locator {
+    return row.locator(`.computed-state.codicon-testing-${state}-icon`);
+}
+
+/** A row of the counterexample. */
+function step(window: Window, text: string | RegExp): Locator {
+    return window.page.locator(".panel .monaco-list-row", { hasText: text });
 }

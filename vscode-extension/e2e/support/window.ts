@@ -18,7 +18,7 @@ export class Window {
         await page.keyboard.press("Control+P");
         await page.locator(".quick-input-widget input").fill(name);
         await page
-            .locator(`.quick-input-list [aria-label*="${path.basename(name)}"]`)
+            .locator(`.quick-input-list .focused[aria-label*="${path.basename(name)}"]`)
             .first()
             .waitFor();
         await page.keyboard.press("Enter");
@@ -33,7 +33,7 @@ export class Window {
     async run(title: string): Promise<void> {
         await this.page.keyboard.press("F1");
         await this.page.locator(".quick-input-widget input").fill(`>${title}`);
-        await this.page.locator(`.quick-input-list [aria-label^="${title}"]`).first().waitFor();
+        await this.page.locator(`.quick-input-list .focused[aria-label^="${title}"]`).first().waitFor();
         await this.page.keyboard.press("Enter");
     }
 
@@ -131,13 +131,13 @@ export class Window {
         await this.page.keyboard.type(text);
     }
 
-    /** The document of a picture, inside of the frames of its webview. */
-    async picture(): Promise<Frame> {
+    /** The document of a picture, inside of the frames of its webview; of several, the one that shows something. */
+    async picture(shown = "svg.picture"): Promise<Frame> {
         for (;;) {
             for (const frame of this.page.frames()) {
                 if (
                     await frame
-                        .locator("svg.picture")
+                        .locator(shown)
                         .count()
                         .catch(() => 0)
                 )
