@@ -55,7 +55,7 @@ export function verification(stage: Stage): void {
     stage.test("a counterexample leads to the lines, and lights where it is in the pictures", late, async (window) => {
         await window.openFile("tree.xml");
         await window.running();
-        await window.run("AS2FM: Show Behavior Tree");
+        await button(window, "Show Behavior Tree").click();
         const tree = await window.picture();
         await window.openFile("properties.jani");
         await lens(window, "Verify").nth(1).click();
@@ -68,13 +68,14 @@ export function verification(stage: Stage): void {
         await window.screenshot("counterexample");
         // What has come of it stands below the step.
         await step(window, "battery: 100 → 40").waitFor();
+        await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
         await step(window, "ReactiveFallback (bt_1001): answers SUCCESS").first().click();
         await tree.locator('.node.lit[data-label="ReactiveFallback"]').waitFor();
         await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
         assert.equal(await tree.locator(".node.lit").count(), 1);
         // The machine that takes the step is drawn, in the state that it is then in.
         await window.openFile("building.ascxml");
-        await window.run("AS2FM: Show State Machine");
+        await button(window, "Show State Machine").click();
         const machine = await window.picture('.node[data-label="open"]');
         await step(window, "Battery: receives").first().click();
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
@@ -117,6 +118,11 @@ function late(): string {
 
 function lens(window: Window, title: string): Locator {
     return window.page.locator(".codelens-decoration a", { hasText: new RegExp(`^${title}$`) });
+}
+
+/** Above the editor, as soon as the server has said what its file is. */
+function button(window: Window, name: string): Locator {
+    return window.page.locator(".editor-actions").getByRole("button", { name });
 }
 
 /** Show the properties of the system in the Test Explorer. */
