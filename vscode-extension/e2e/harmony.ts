@@ -44,7 +44,24 @@ export function harmony(stage: Stage): void {
     const xml = fakeExtension("redhat", "vscode-xml", XML_EXTENSION, ["onLanguage:xml"]);
     const python = fakeExtension("ms-python", "python", PYTHON_EXTENSION, []);
     stage.use({ extensions: [xml, python] });
+    const other = () => {
+        const folder = path.join(temporaryFolder("other"), "other");
+        write(path.join(folder, "main.xml"), "<project />");
+        return folder;
+    };
     const illFormed = () => sample({ ...MEND, "tree.xml": (text) => text.replace("<Charge />", "<ill") });
+
+    stage.test("another project that has a main.xml is left alone", other, async (window) => {
+        await window.openFile("main.xml");
+        await window.run("View: Focus Problems");
+        await window.page.locator(".markers-panel", { hasText: "No problems" }).waitFor();
+        assert.equal(await window.statusItem("AS2FM").count(), 0);
+        await window.screenshot("left-alone");
+        // Until something is opened that is ours.
+        write(path.join(window.folder, "battery.ascxml"), "<ascxml />");
+        await window.page.locator(".explorer-folders-view .monaco-list-row", { hasText: "battery.ascxml" }).dblclick();
+        await window.running();
+    });
 
     stage.test("nothing is said twice, and the schemas are offered", illFormed, async (window) => {
         await window.openFile("tree.xml");

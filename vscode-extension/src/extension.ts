@@ -12,6 +12,7 @@ import { LanguageServer } from "./editor/server";
 import { StatusItem } from "./editor/statusItem";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
+import { wanted } from "./editor/wanted";
 import { offerSchemas } from "./editor/xmlExtension";
 
 let server: LanguageServer | undefined;
@@ -36,8 +37,16 @@ export function activate(context: vscode.ExtensionContext): void {
     registerCommands({ context, log, server, status, documents, tasks, plain, pictures, tests, counterexamples });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchWishes(context, server, log);
-    void server.start();
-    void offerSchemas(context, log);
+    void start(context, server, log);
+}
+
+async function start(
+    context: vscode.ExtensionContext,
+    server: LanguageServer,
+    log: vscode.LogOutputChannel,
+): Promise<void> {
+    await wanted(context.subscriptions);
+    await Promise.all([server.start(), offerSchemas(context, log)]);
 }
 
 export async function deactivate(): Promise<void> {
