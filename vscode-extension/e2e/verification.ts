@@ -73,6 +73,10 @@ export function verification(stage: Stage): void {
         await tree.locator('.node.lit[data-label="ReactiveFallback"]').waitFor();
         await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
         assert.equal(await tree.locator(".node.lit").count(), 1);
+        // A picture that is opened later is lit as well.
+        await window.page.locator(".tab", { hasText: "Behavior Tree: " }).locator(".codicon-close").click();
+        await button(window, "Show Behavior Tree").click();
+        await (await window.picture()).locator('.node.lit[data-label="ReactiveFallback"]').waitFor();
         // The machine that takes the step is drawn, in the state that it is then in.
         await window.openFile("building.ascxml");
         await button(window, "Show State Machine").click();

@@ -14,6 +14,7 @@ export class PicturePanels implements vscode.Disposable {
     private readonly panels = new Map<PictureKind, PicturePanel>();
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
+    private lit: readonly Lit[] = [];
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -40,14 +41,16 @@ export class PicturePanels implements vscode.Disposable {
         let panel = this.panels.get(kind);
         if (!panel) {
             panel = new PicturePanel(kind, this.context, this.server, this.log);
+            panel.lit = this.lit.find((each) => each.kind === kind);
             this.panels.set(kind, panel);
             panel.onDispose(() => this.panels.delete(kind));
         }
         await panel.show(uri);
     }
 
-    /** Light nodes in the pictures that are open; those of an earlier time go out. */
+    /** Light nodes in the pictures that are open, and in those that will be; those of an earlier time go out. */
     async light(lit: readonly Lit[]): Promise<void> {
+        this.lit = lit;
         for (const [kind, panel] of this.panels) await panel.light(lit.find((each) => each.kind === kind));
     }
 
@@ -74,7 +77,8 @@ class PicturePanel implements vscode.Disposable {
     private uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
-    private lit = "";
+    /** What the last step has lit, in whichever file. */
+    lit: Lit | undefined;
     private shownUri = "";
     private ready = false;
     private asked = 0;
@@ -138,11 +142,16 @@ class PicturePanel implements vscode.Disposable {
 
     /** Of a machine, the picture changes to the one that has the node. */
     async light(lit: Lit | undefined): Promise<void> {
-        this.lit = lit?.node ?? "";
+        this.lit = lit;
         if (lit && this.kind === "machine" && this.shownUri !== lit.uri) {
             this.uri = vscode.Uri.parse(lit.uri);
             await this.refresh();
-        } else this.post({ type: "light", node: this.lit });
+        } else this.post({ type: "light", node: this.litNode });
+    }
+
+    /** States of two machines may be called alike. */
+    private get litNode(): string {
+        return this.lit && (this.kind !== "machine" || this.lit.uri === this.shownUri) ? this.lit.node : "";
     }
 
     dispose(): void {
@@ -160,7 +169,7 @@ class PicturePanel implements vscode.Disposable {
     }
 
     private draw(): void {
-        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here, lit: this.lit });
+        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here, lit: this.litNode });
         else this.post({ type: "none", reason: nothingOf(this.kind) });
     }
 
