@@ -19,6 +19,9 @@ export function firstStart(stage: Stage): void {
         const problem = window.page.locator(".markers-panel .monaco-list-row", { hasText: "levle" });
         await problem.waitFor();
         assert.match((await problem.textContent()) ?? "", /there is no variable `levle`; did you mean `level`\?/);
+        await problem.getByText("there is no variable").first().click();
+        await window.statusItem("Ln 28, Col 40").waitFor();
+        await window.squiggles.first().waitFor();
         await window.screenshot("mistake");
     });
 
