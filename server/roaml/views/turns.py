@@ -10,9 +10,10 @@ things on is left out.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.typing import STATUSES
@@ -22,6 +23,9 @@ from roaml.smc.story import Story
 _NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _CALL = re.compile(r"bt_\d+_(tick|halt)")
 _ANSWER = re.compile(r"bt_\d+_(halt_)?response")
+_VALID = ".valid"
+_FIELDS = "ros_fields__"
+_ENDS = ("SUCCESS", "FAILURE")
 
 
 @dataclass(slots=True)
@@ -97,7 +101,7 @@ class Turn:
     @property
     def status(self) -> str:
         """The status that it answers to the tree with; "" if it does not."""
-        given = [message.values["status"] for message in self.messages if message.event == f"{self.protocol}response"]
+        given = [message.values.get("status") for message in self.messages if self._answers(message)]
         return next((name for name, number in STATUSES.items() if number in given), "")
 
     @property
@@ -129,20 +133,30 @@ class Message:
 
 
 def turns(story: Story) -> list[Turn]:
-    """The turns that are told."""
-    return list(_told(story, _all_turns(story)))
-
-
-def _all_turns(story: Story) -> list[Turn]:
-    """All turns, in the order in which they begin; those of automata that only hold an event are none."""
+    """The turns that are told, in the order in which they begin."""
     reader = _Reader(story)
     for index in range(len(story.steps)):
         reader.read(index)
-    return reader.turns
+    return [turn for turn in reader.turns if turn.ends or _is_told(turn, reader.inner)]
+
+
+def _is_told(turn: Turn, inner: Collection[int]) -> bool:
+    if is_generated(turn.automaton):
+        return False
+    if turn.instance in inner:
+        return turn.matters and turn.status in _ENDS
+    sender = turn.heard.sender if turn.heard else None
+    is_overheard = sender is not None and sender.matters and sender.instance not in inner
+    return (turn.matters or is_overheard) and not turn.is_calm
 
 
 class _Reader:
-    """Reads the steps one after the other, and knows what holds after each."""
+    """Reads the steps one after the other, and knows what holds after each.
+
+    Attributes:
+        inner: the nodes of BehaviorTree.CPP that tick children. What they count is their own business.
+        turns: but for automata that only hold an event.
+    """
 
     def __init__(self, story: Story) -> None:
         actions = [{edge.action or "" for edge in automaton.edges} for automaton in story.automata]
@@ -154,14 +168,15 @@ class _Reader:
         self._values = dict(story.start)
         self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
         self._of_events = {name for name in self._values if self._is_of_event(name)}
+        self.inner = frozenset(n for n, automaton in enumerate(story.automata) if _is_inner(automaton))
         self._messages: dict[str, Message] = {}
         self._current: dict[int, Turn] = {}
         self.turns: list[Turn] = []
 
     def _is_of_event(self, name: str) -> bool:
         """Whether a variable of the model carries an event; what is a parameter of it is noted."""
-        if name.endswith(VALID):
-            return name.removesuffix(VALID) in self._events
+        if name.endswith(_VALID):
+            return name.removesuffix(_VALID) in self._events
         at = name.rfind("__")
         while at > 0:
             if name[:at] in self._events:
@@ -186,7 +201,8 @@ class _Reader:
                 self._current[part.instance] = turn
                 self.turns.append(turn)
             turn.parts.append(part)
-            turn.changes += self._changes(step, part, is_last=part is actors[-1])
+            if part.instance not in self.inner:
+                turn.changes += self._changes(step, part, is_last=part is actors[-1])
             turn.matters |= index in self._relevant
             turn.ends |= index == len(self._story.steps) - 1
         event = sent_by(step.action or "")
@@ -216,29 +232,11 @@ class _Reader:
                 yield change
 
 
-VALID = ".valid"
-_FIELDS = "ros_fields__"
-
-
 def _parameter(event: str, variable: str) -> str:
     return variable.removeprefix(f"{event}__").removeprefix(_FIELDS)
 
 
-def _told(story: Story, found: Sequence[Turn]) -> Iterator[Turn]:
-    inner = frozenset(
-        number
-        for number, automaton in enumerate(story.automata)
-        if any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
-    )
-    for turn in found:
-        sender = turn.heard.sender if turn.heard else None
-        is_overheard = sender is not None and sender.matters and sender.instance not in inner
-        if is_generated(turn.automaton):
-            is_told = False
-        elif turn.instance in inner:
-            turn.changes.clear()  # those of a node that comes with BehaviorTree.CPP: how it counts its children
-            is_told = turn.matters and turn.status in ("SUCCESS", "FAILURE")
-        else:
-            is_told = (turn.matters or is_overheard) and not turn.is_calm
-        if is_told or turn.ends:
-            yield turn
+def _is_inner(automaton: Automaton) -> bool:
+    """Whether it calls children, and no model of the user says how: then its places are in the tree."""
+    calls = any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
+    return calls and all(edge.origin is None or edge.origin.path.endswith(".xml") for edge in automaton.edges)
