@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
+from roaml.model.globals import FIELD_PREFIX
+from roaml.model.system import builtin_plugins
 from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.typing import STATUSES
 from roaml.smc.record import Change, Part, Plain, TraceStep
@@ -24,7 +26,6 @@ _NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _CALL = re.compile(r"bt_\d+_(tick|halt)")
 _ANSWER = re.compile(r"bt_\d+_(halt_)?response")
 _VALID = ".valid"
-_FIELDS = "ros_fields__"
 _ENDS = ("SUCCESS", "FAILURE")
 
 
@@ -154,7 +155,8 @@ class _Reader:
     """Reads the steps one after the other, and knows what holds after each.
 
     Attributes:
-        inner: the nodes of BehaviorTree.CPP that tick children. What they count is their own business.
+        inner: the nodes of BehaviorTree.CPP that tick children, and what ticks the root. What they count is their own
+            business; a control node that the user has written is told like any other.
         turns: but for automata that only hold an event.
     """
 
@@ -233,10 +235,10 @@ class _Reader:
 
 
 def _parameter(event: str, variable: str) -> str:
-    return variable.removeprefix(f"{event}__").removeprefix(_FIELDS)
+    return variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX)
 
 
 def _is_inner(automaton: Automaton) -> bool:
-    """Whether it calls children, and no model of the user says how: then its places are in the tree."""
-    calls = any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
-    return calls and all(edge.origin is None or edge.origin.path.endswith(".xml") for edge in automaton.edges)
+    node = _NODE.fullmatch(automaton.name)
+    comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
+    return comes_along and any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
