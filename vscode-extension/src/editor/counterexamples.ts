@@ -9,8 +9,13 @@ import type { LanguageServer } from "./server";
 const VIEW = "as2fm.counterexample";
 const SHOW_STEP = "as2fm.showStep";
 
-/** A step, or what has come of it. */
-type Entry = Step | string;
+/** What has come of a step. An object: the same may come of several, and VS Code tells entries apart by identity. */
+interface Detail {
+    readonly of: Step;
+    readonly text: string;
+}
+
+type Entry = Step | Detail;
 
 export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
     private readonly changed = new vscode.EventEmitter<undefined>();
@@ -52,8 +57,8 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     }
 
     getTreeItem(entry: Entry): vscode.TreeItem {
-        if (typeof entry === "string") {
-            const item = new vscode.TreeItem(entry);
+        if ("of" in entry) {
+            const item = new vscode.TreeItem(entry.text);
             item.iconPath = new vscode.ThemeIcon("symbol-variable");
             return item;
         }
@@ -71,11 +76,11 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
 
     getChildren(entry?: Entry): Entry[] {
         if (entry === undefined) return [...(this.shown?.steps ?? [])];
-        return typeof entry === "string" ? [] : [...entry.details];
+        return "of" in entry ? [] : entry.details.map((text) => ({ of: entry, text }));
     }
 
     getParent(entry: Entry): Entry | undefined {
-        return typeof entry === "string" ? this.shown?.steps.find(({ details }) => details.includes(entry)) : undefined;
+        return "of" in entry ? entry.of : undefined;
     }
 
     dispose(): void {
