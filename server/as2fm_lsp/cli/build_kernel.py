@@ -2,7 +2,7 @@
 """`python -m as2fm_lsp.cli.build_kernel`: compile the kernel of the model checker where it is installed.
 
 A wheel for every platform carries the kernel as Python and as the C text that Cython has made of it. Where there is a C
-compiler, as on most machines with ROS, verification becomes more than a hundred times faster by this. Nothing is lost
+compiler, as on most machines with ROS, verification becomes about a hundred times as fast by this. Nothing is lost
 if it fails: the kernel stays what it was.
 """
 
@@ -57,9 +57,9 @@ def build(source: Path = SOURCE) -> Path:
     return target
 
 
-def main() -> int:
+def main(source: Path = SOURCE) -> int:
     try:
-        build()
+        build(source)
     except (BuildError, OSError) as error:
         print(f"{error}; verification runs as plain Python", file=sys.stderr)
         return 1

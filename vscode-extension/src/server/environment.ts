@@ -85,8 +85,7 @@ export class PrivateEnvironment {
      * changes: properties are then verified more slowly.
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
-        const { out, err } = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"]);
-        onOutput(out + err);
+        await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
     }
 
     private async finish(python: Python): Promise<Server | Failure> {

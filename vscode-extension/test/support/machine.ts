@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Machine } from "../../src/server/machine";
-import type { Ended } from "../../src/server/run";
+import type { Ended, RunOptions } from "../../src/server/run";
 
 type Program = (args: readonly string[]) => Partial<Ended>;
 
@@ -12,11 +12,13 @@ export class FakeMachine implements Machine {
 
     constructor(private readonly programs: Readonly<Record<string, Program>>) {}
 
-    run(command: string, args: readonly string[]): Promise<Ended> {
+    run(command: string, args: readonly string[], { onOutput }: RunOptions = {}): Promise<Ended> {
         this.ran.push([command, ...args].join(" "));
         const program = this.programs[command];
         const ended = program ? program(args) : { status: null, err: `spawn ${command} ENOENT` };
-        return Promise.resolve({ status: 0, out: "", err: "", ...ended });
+        const whole = { status: 0, out: "", err: "", ...ended };
+        onOutput?.(whole.out + whole.err);
+        return Promise.resolve(whole);
     }
 
     which(name: string): Promise<string | undefined> {
