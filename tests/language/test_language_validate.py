@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from lxml import etree
 
@@ -223,8 +223,10 @@ VALUES = st.sampled_from(NUMBERS + WORDS)
 
 @given(st.sampled_from(ATTRIBUTES), VALUES)
 def test_tables_and_schema_agree_on_values(case: tuple[Grammar, str, AttributeType], value: str) -> None:
-    """What the tables accept libxml2 accepts, and the other way round."""
+    """What the tables accept libxml2 accepts, and the other way round. But a model has no use for the numbers NaN and
+    INF that XML Schema knows."""
     grammar, name, attribute = case
+    assume(attribute.simple.base != "double" or value not in ("NaN", "INF"))
     grammar.validator.validate(etree.Element(name, {attribute.name: value}))
     assert bool(unmet(attribute.simple, value)) is (
         f"attribute '{attribute.name}':" in str(grammar.validator.error_log)
