@@ -218,8 +218,9 @@ def _workspace(server: Server) -> None:
 
     @server.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:
-        await _watch(server)
-        await _fetch_settings(server)
+        if session.client_settings:  # while the client, busy with its own start, is asked for what may be the same
+            diagnostics.schedule()
+        await asyncio.gather(_watch(server), _fetch_settings(server))
         server.tell_problems()
         diagnostics.schedule()
 
@@ -283,7 +284,9 @@ async def _fetch_settings(server: Server) -> bool:
     except Exception as error:  # a client that cannot answer is as good as one without settings
         log.warning("the client's settings cannot be read: %s", error)
         return False
-    server.session.configure(answer[0] if answer and isinstance(answer[0], dict) else {})
+    settings = answer[0] if answer and isinstance(answer[0], dict) else {}
+    if settings != server.session.client_settings:  # what is known was found out with the settings
+        server.session.configure(settings)
     return True
 
 

@@ -25,12 +25,18 @@ PULLS = types.ClientCapabilities(
 class Client(LanguageClient):
     """The client of pytest-lsp, which holds every message against the specification, with what is asked here."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, is_slow: bool = False) -> None:
+        """
+        Args:
+            is_slow: it is asked for its settings, and does not come to answering before `answers` is set.
+        """
         super().__init__(converter_factory=default_converter)
         self.published: dict[str, types.PublishDiagnosticsParams] = {}
         self.history: list[types.PublishDiagnosticsParams] = []
         self.news = asyncio.Event()
-        register_lsp_features(self, DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published})
+        self.answers = asyncio.Event()
+        features = DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published}
+        register_lsp_features(self, features | ({types.WORKSPACE_CONFIGURATION: _late} if is_slow else {}))
 
     # ------------------------------------------------------------- documents
 
@@ -128,15 +134,21 @@ def _published(client: Client, params: types.PublishDiagnosticsParams) -> None:
     client.news.set()
 
 
+async def _late(client: Client, params: types.ConfigurationParams) -> object:
+    await client.answers.wait()
+    return DEFAULT_CLIENT_FEATURES[types.WORKSPACE_CONFIGURATION](client, params)
+
+
 @asynccontextmanager
 async def connect(
     *folders: Path,
     capabilities: types.ClientCapabilities | None = None,
     options: dict[str, object] | None = None,
     settings: dict[str, object] | None = None,
+    is_slow: bool = False,
 ) -> AsyncIterator[Client]:
     """A server with these folders open."""
-    client = Client()
+    client = Client(is_slow=is_slow)
     capabilities = capabilities or types.ClientCapabilities()
     if settings is not None:
         client.set_configuration({"as2fm": settings})

@@ -290,6 +290,26 @@ def _severities(client: Client, path: Path) -> list[types.DiagnosticSeverity | N
     return [each.severity for each in client.published[path.as_uri()].diagnostics]
 
 
+async def test_settings_that_come_with_the_first_message(tmp_path: Path) -> None:
+    """Whoever sends them need not have answered before there are diagnostics."""
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    path = tmp_path / "clock.ascxml"
+    sent: dict[str, object] = {"settings": {"severity": {"undeclared-variable": "hint"}}}
+    async with connect(tmp_path, options=sent, settings={}, is_slow=True) as client:
+        await client.until_codes(path, "undeclared-variable")
+        assert _severities(client, path) == [types.DiagnosticSeverity.Hint]
+        client.answers.set()
+        await client.until(lambda: _severities(client, path) == [types.DiagnosticSeverity.Error])
+
+
+async def test_settings_that_the_client_has_changed_its_mind_about(tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    path = tmp_path / "clock.ascxml"
+    sent: dict[str, object] = {"settings": {"ignore": ["undeclared-variable"]}}
+    async with connect(tmp_path, options=sent, settings={"exclude": ["none"]}) as client:
+        await client.until_codes(path, "undeclared-variable")
+
+
 async def test_settings_that_are_sent(tmp_path: Path) -> None:
     """By a client that cannot be asked for them."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
