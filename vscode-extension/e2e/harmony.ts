@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { MEND, sample, type Stage } from "./support/stage";
-import { temporaryFolder, write } from "./support/workbench";
+import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 
 /** Stands in for the XML extension: the part of its interface that is used, and what it says of ill-formed files. */
 const XML_EXTENSION = `
@@ -23,7 +23,10 @@ exports.activate = () => {
 };
 `;
 
-/** Stands in for the extension for Python: the active interpreter is what the folder's `.python` names. */
+/**
+ * Stands in for the extension for Python: the active interpreter is what the folder's `.python` names. It says so when
+ * there is no `.python-starts`.
+ */
 const PYTHON_EXTENSION = `
 const vscode = require("vscode");
 const fs = require("fs");
@@ -31,13 +34,17 @@ const active = (folder) => {
     try { return { path: fs.readFileSync(vscode.Uri.joinPath(folder, ".python").fsPath, "utf8") }; }
     catch { return { path: "" }; }
 };
-exports.activate = () => ({
-    environments: {
-        getActiveEnvironmentPath: active,
-        resolveEnvironment: async ({ path }) => path && { executable: { uri: vscode.Uri.file(path) } },
-        onDidChangeActiveEnvironmentPath: new vscode.EventEmitter().event,
-    },
-});
+const starts = () => fs.existsSync(vscode.Uri.joinPath(vscode.workspace.workspaceFolders[0].uri, ".python-starts").fsPath);
+exports.activate = async () => {
+    while (starts()) await new Promise((resolve) => setTimeout(resolve, 50));
+    return {
+        environments: {
+            getActiveEnvironmentPath: active,
+            resolveEnvironment: async ({ path }) => path && { executable: { uri: vscode.Uri.file(path) } },
+            onDidChangeActiveEnvironmentPath: new vscode.EventEmitter().event,
+        },
+    };
+};
 `;
 
 export function harmony(stage: Stage): void {
@@ -87,6 +94,22 @@ export function harmony(stage: Stage): void {
         await window.run("AS2FM: Show Versions");
         await window.notification("from the Python environment").waitFor();
     });
+
+    stage.test("the server that ran last is not waited for", withPython, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.running();
+        const starts = path.join(window.folder, ".python-starts");
+        write(starts, "");
+        await Promise.all([window.page.waitForEvent("load"), window.run("Developer: Reload Window")]);
+        await window.squiggles.first().waitFor();
+        await window.run("AS2FM: Show Versions");
+        await window.notification("from the Python environment").waitFor();
+        // It is then asked, and names another.
+        write(path.join(window.folder, ".python"), "");
+        fs.rmSync(starts);
+        await window.statusItem("AS2FM: 0.1.0").and(window.page.locator('[aria-label*="own environment"]')).waitFor();
+        await window.squiggles.first().waitFor();
+    });
 }
 
 function privatePython(home: string): string {
@@ -94,13 +117,4 @@ function privatePython(home: string): string {
     const [name] = fs.readdirSync(environments);
     assert.ok(name !== undefined);
     return path.join(environments, name, "bin/python");
-}
-
-function fakeExtension(publisher: string, name: string, main: string, activationEvents: readonly string[]): string {
-    const version = "0.0.1";
-    const folder = path.join(temporaryFolder(name), `${publisher}.${name}-${version}`);
-    const manifest = { name, publisher, version, engines: { vscode: "^1.90.0" }, main: "./main.js", activationEvents };
-    write(path.join(folder, "package.json"), JSON.stringify(manifest));
-    write(path.join(folder, "main.js"), main);
-    return folder;
 }

@@ -46,7 +46,7 @@ async function start(
     log: vscode.LogOutputChannel,
 ): Promise<void> {
     await wanted(context.subscriptions);
-    await Promise.all([server.start(), offerSchemas(context, log)]);
+    await Promise.all([server.open(), offerSchemas(context, log)]);
 }
 
 export async function deactivate(): Promise<void> {
@@ -68,7 +68,7 @@ function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, l
     );
     // A server that runs from elsewhere does not depend on the interpreter.
     const onChange = () => {
-        if (server.state.kind === "failed" || (server.state.kind === "running" && usesPython(server))) again();
+        if (server.state.kind === "failed" || usesPython(server)) void server.look();
     };
     onInterpreterChange(onChange).then(
         (subscriptions) => {

@@ -11,6 +11,7 @@ class Fake implements Ports {
     readonly states: string[] = [];
     readonly restarts: Exit[] = [];
     readonly sessions: { end(exit: Exit): void; stopped: boolean }[] = [];
+    readonly launched: Server[] = [];
     found: Server | Failure = SERVER;
     launching: () => Promise<void> = () => Promise.resolve();
     time = 0;
@@ -22,7 +23,8 @@ class Fake implements Ports {
         onStep("venv");
         return Promise.resolve(this.found);
     }
-    async launch(): Promise<Session> {
+    async launch(server: Server): Promise<Session> {
+        this.launched.push(server);
         await this.launching();
         let end: (exit: Exit) => void = () => undefined;
         const ended = new Promise<Exit>((resolve) => (end = resolve));
@@ -139,6 +141,69 @@ test("a restart ends the server that runs, and is no crash", async () => {
         [true, false],
     );
     assert.deepEqual(fake.restarts, []);
+});
+
+const OTHER: Server = { ...SERVER, origin: "python", command: "/env/bin/python" };
+
+test("a server that is expected is started before it is looked for", async () => {
+    const fake = new Fake();
+    const supervisor = new Supervisor(fake);
+    await supervisor.expect(SERVER);
+    assert.deepEqual(fake.states, ["starting", "running"]);
+    assert.deepEqual(fake.launched, [SERVER]);
+});
+
+test("where another is found, or none, that counts", async () => {
+    const fake = new Fake();
+    const supervisor = new Supervisor(fake);
+    await supervisor.expect(OTHER);
+    assert.deepEqual(supervisor.state, { kind: "running", server: SERVER });
+    assert.deepEqual(fake.launched, [OTHER, SERVER]);
+    assert.deepEqual(
+        fake.sessions.map((session) => session.stopped),
+        [true, false],
+    );
+    fake.found = { kind: "no-server" };
+    await supervisor.expect(OTHER);
+    assert.deepEqual(supervisor.state, { kind: "failed", failure: { kind: "no-server" } });
+    assert.ok(fake.sessions.every((session) => session.stopped));
+});
+
+test("an expected server that does not start is no failure", async () => {
+    const fake = new Fake();
+    let left = 1;
+    fake.launching = () => (left-- > 0 ? Promise.reject(new Error("it is gone")) : Promise.resolve());
+    const supervisor = new Supervisor(fake);
+    await supervisor.expect(OTHER);
+    assert.deepEqual(fake.states, ["starting", "searching", "starting", "running"]);
+    assert.deepEqual(supervisor.state, { kind: "running", server: SERVER });
+});
+
+test("looking again leaves the server alone that is found again, and tells what is wrong", async () => {
+    const fake = new Fake();
+    const supervisor = new Supervisor(fake);
+    await supervisor.look();
+    await supervisor.look();
+    assert.deepEqual(fake.launched, [SERVER]);
+    fake.found = { ...SERVER, version: "0.2.0" };
+    await supervisor.look();
+    assert.deepEqual(fake.launched, [SERVER, fake.found]);
+    fake.find = () => Promise.reject(new Error("oops"));
+    await supervisor.look();
+    assert.deepEqual(supervisor.state, { kind: "failed", failure: { kind: "internal", detail: "oops" } });
+});
+
+test("what a search finds after a newer wish changes nothing", async () => {
+    const fake = new Fake();
+    const supervisor = new Supervisor(fake);
+    await supervisor.start();
+    let find: (found: Server) => void = () => undefined;
+    fake.find = () => new Promise((resolve) => (find = resolve));
+    const looking = supervisor.look();
+    await supervisor.stop();
+    find(OTHER);
+    await looking;
+    assert.equal(supervisor.state.kind, "stopped");
 });
 
 test("what was overtaken changes nothing any more", async () => {

@@ -84,6 +84,11 @@ export class Window {
         return this.page.locator(".statusbar-item", { hasText: text });
     }
 
+    /** The count in the status bar, as soon as there is anything to count. */
+    get firstProblem(): Locator {
+        return this.page.locator('[id="status.problems"]', { hasText: "1" });
+    }
+
     notification(text: string): Locator {
         return this.page.locator(".notification-list-item", { hasText: text });
     }

@@ -24,6 +24,8 @@ export interface Options {
     readonly environment?: Readonly<Record<string, string>>;
     /** Further extensions, as folders. */
     readonly extensions?: readonly string[];
+    /** Without the packaged extension. */
+    readonly bare?: boolean;
 }
 
 export class Workbench {
@@ -46,7 +48,7 @@ export class Workbench {
         ];
         const settings = { ...SETTINGS, ...options.settings };
         write(path.join(home, "data/data/Machine/settings.json"), JSON.stringify(settings));
-        if (options.home === undefined) {
+        if (options.home === undefined && options.bare !== true) {
             const install = [
                 "--install-extension",
                 path.join(EXTENSION, "as2fm.vsix"),
@@ -134,7 +136,7 @@ function addExtension(extensions: string, folder: string): void {
         fs.readFileSync(path.join(folder, "package.json"), "utf8"),
     ) as Manifest;
     const list = path.join(extensions, "extensions.json");
-    const known = JSON.parse(fs.readFileSync(list, "utf8")) as unknown[];
+    const known = fs.existsSync(list) ? (JSON.parse(fs.readFileSync(list, "utf8")) as unknown[]) : [];
     const location = { $mid: 1, path: target, scheme: "file" };
     known.push({
         identifier: { id: `${publisher}.${name}` },
@@ -143,6 +145,21 @@ function addExtension(extensions: string, folder: string): void {
         relativeLocation: path.basename(folder),
     });
     fs.writeFileSync(list, JSON.stringify(known));
+}
+
+/** The folder of an extension made of one script. */
+export function fakeExtension(
+    publisher: string,
+    name: string,
+    main: string,
+    activationEvents: readonly string[],
+): string {
+    const version = "0.0.1";
+    const folder = path.join(temporaryFolder(name), `${publisher}.${name}-${version}`);
+    const manifest = { name, publisher, version, engines: { vscode: "^1.90.0" }, main: "./main.js", activationEvents };
+    write(path.join(folder, "package.json"), JSON.stringify(manifest));
+    write(path.join(folder, "main.js"), main);
+    return folder;
 }
 
 interface Manifest {

@@ -25,20 +25,7 @@ interface EnvironmentsApi {
 const PYTHON = "ms-python.python";
 const ENVIRONMENTS = "ms-python.vscode-python-envs";
 
-/** In milliseconds. */
-const PATIENCE = 5000;
-
-export function activeInterpreters(log: vscode.LogOutputChannel): Promise<string[]> {
-    // One that does not answer must not keep the server from starting.
-    const late = new Promise<string[]>((resolve) => {
-        setTimeout(() => {
-            resolve([]);
-        }, PATIENCE);
-    });
-    return Promise.race([asked(log), late]);
-}
-
-async function asked(log: vscode.LogOutputChannel): Promise<string[]> {
+export async function activeInterpreters(log: vscode.LogOutputChannel): Promise<string[]> {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri;
     const found: (string | undefined)[] = [];
     try {

@@ -11,15 +11,21 @@ import { DidChangeConfigurationNotification, type RequestType } from "vscode-lan
 import { PrivateEnvironment, type Step } from "../server/environment";
 import { expanded, findServer } from "../server/find";
 import { thisMachine } from "../server/machine";
+import { Recall } from "../server/recall";
 import { isFailure, type Failure, type Server } from "../server/server";
 import { Supervisor, type State } from "../server/supervisor";
 import { connect, type Connection, type Listener } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
 import { tellStep } from "./wording";
 
+/** In milliseconds. */
+const PATIENCE = 5000;
+
 export class LanguageServer implements vscode.Disposable {
     private readonly supervisor: Supervisor;
     private readonly environment: PrivateEnvironment;
+    private readonly recall: Recall;
+    private readonly wheel: string;
     private readonly states = new vscode.EventEmitter<State>();
     private connection: Connection | undefined;
 
@@ -33,9 +39,11 @@ export class LanguageServer implements vscode.Disposable {
     ) {
         const wheel = findWheel(context.extensionPath);
         const folder = join(context.globalStorageUri.fsPath, "environments");
+        this.wheel = wheel.id;
+        this.recall = new Recall(context.workspaceState);
         this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.id);
         this.supervisor = new Supervisor({
-            find: () => this.find(),
+            find: (hurry) => this.find(hurry),
             install: (onStep) => this.installWithProgress(onStep),
             launch: async (server) => {
                 this.connection = await connect(server, log, this.listener);
@@ -43,7 +51,8 @@ export class LanguageServer implements vscode.Disposable {
             },
             now: Date.now,
             changed: (state) => {
-                if (state.kind !== "running") this.connection = undefined;
+                if (state.kind === "running") void this.recall.keep(this.wishes(), state.server);
+                else this.connection = undefined;
                 void vscode.commands.executeCommand("setContext", "as2fm.running", state.kind === "running");
                 this.states.fire(state);
             },
@@ -65,8 +74,19 @@ export class LanguageServer implements vscode.Disposable {
         return this.connection?.client;
     }
 
+    /** With the window: the server that ran last is started before it is looked for. */
+    open(): Promise<void> {
+        const expected = this.recall.server(this.wishes());
+        return expected ? this.supervisor.expect(expected) : this.supervisor.start();
+    }
+
     start(): Promise<void> {
         return this.supervisor.start();
+    }
+
+    /** What may be found has changed: the server that runs goes on if it is still the one. */
+    look(): Promise<void> {
+        return this.supervisor.look();
     }
 
     install(): Promise<void> {
@@ -97,12 +117,29 @@ export class LanguageServer implements vscode.Disposable {
         void this.supervisor.stop();
     }
 
-    private async find(): Promise<Server | Failure> {
+    /** All that decides which server is found, but for what other extensions and the machine say. */
+    private wishes(): readonly unknown[] {
+        return [path("server.path"), path("interpreter"), vscode.workspace.isTrusted, this.wheel];
+    }
+
+    private async find(hurry: boolean): Promise<Server | Failure> {
         const trusted = vscode.workspace.isTrusted;
         const [server, interpreter] = [path("server.path"), path("interpreter")];
-        const active = trusted && server === "" && interpreter === "" ? await activeInterpreters(this.log) : [];
+        const active = trusted && server === "" && interpreter === "" ? await this.active(hurry) : [];
         const found = await findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
         return isFailure(found) && found.kind === "no-server" ? this.renewed(found) : found;
+    }
+
+    private active(hurry: boolean): Promise<readonly string[]> {
+        const asked = activeInterpreters(this.log);
+        if (!hurry) return asked;
+        // An extension that does not answer must not keep the server from starting.
+        const late = new Promise<readonly string[]>((resolve) => {
+            setTimeout(() => {
+                resolve([]);
+            }, PATIENCE);
+        });
+        return Promise.race([asked, late]);
     }
 
     /** Who has had the server installed before gets the new one without being asked; the old one, if that fails. */
@@ -118,7 +155,7 @@ export class LanguageServer implements vscode.Disposable {
 
     private async installWithProgress(onStep: (step: Step) => void): Promise<Server | Failure> {
         const interpreter = path("interpreter");
-        const active = vscode.workspace.isTrusted ? await activeInterpreters(this.log) : [];
+        const active = vscode.workspace.isTrusted ? await this.active(true) : [];
         const preferred = interpreter === "" ? active : [interpreter];
         const options = { location: vscode.ProgressLocation.Notification, cancellable: true, title: "AS2FM" };
         const onOutput = (text: string) => {

@@ -29,3 +29,10 @@ export type FailureKind = Failure["kind"];
 export function isFailure(value: Server | Failure | undefined): value is Failure {
     return value !== undefined && "kind" in value;
 }
+
+export function isServer(value: unknown): value is Server {
+    if (typeof value !== "object" || value === null) return false;
+    const { origin, command, args, version } = value as Partial<Record<keyof Server, unknown>>;
+    const texts = [origin, command, version, ...(Array.isArray(args) ? (args as unknown[]) : [undefined])];
+    return texts.every((each) => typeof each === "string");
+}

@@ -7,6 +7,7 @@
  * - What has been overtaken by a newer wish changes nothing any more.
  */
 
+import { isDeepStrictEqual } from "node:util";
 import type { Step } from "./environment";
 import { isFailure, type Failure, type Server } from "./server";
 
@@ -34,7 +35,8 @@ export interface Session {
 }
 
 export interface Ports {
-    find(): Promise<Server | Failure>;
+    /** `hurry`: nothing runs until a server is found, so whoever does not say soon where one is, is passed over. */
+    find(hurry: boolean): Promise<Server | Failure>;
     install(onStep: (step: Step) => void): Promise<Server | Failure>;
     /** Start a server and wait until it has answered. */
     launch(server: Server): Promise<Session>;
@@ -65,7 +67,25 @@ export class Supervisor {
     async start(): Promise<void> {
         const wish = await this.begin();
         this.set(wish, { kind: "searching" });
-        await this.use(wish, () => this.ports.find());
+        await this.use(wish, () => this.ports.find(true));
+    }
+
+    /** As `start`, but the server that will probably be found is started first: a search may take longer than a start. */
+    async expect(server: Server): Promise<void> {
+        const wish = await this.begin();
+        await this.launch(wish, server);
+        if (wish === this.wish) await this.look();
+    }
+
+    /** Look for a server again: the one that runs goes on, unless it is another that is found. */
+    async look(): Promise<void> {
+        if (this.current.kind === "running") {
+            const [wish, { server }] = [this.wish, this.current];
+            // A search that fails is made again, and what is wrong then told, by `start`.
+            const found = await this.ports.find(false).catch(() => undefined);
+            if (wish !== this.wish || isDeepStrictEqual(found, server)) return;
+        }
+        await this.start();
     }
 
     /** Make the private environment and start the server in it. */
