@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The VS Code extension: lint, types, unit tests, the package, and what it does in a real workbench.
-# `--package` stops before the workbench, `--end-to-end` does only that; other arguments choose end-to-end tests by name.
+# Arguments choose end-to-end tests by name.
 # Says nothing while all is well.
 set -eu
 cd "$(dirname "$0")/../vscode-extension"
@@ -22,11 +22,6 @@ quietly() {
     rm -f "$log"
 }
 
-if [ "${1:-}" = --end-to-end ]; then
-    quietly npm run e2e
-    exit
-fi
-
 wanted="$(cat package.json package-lock.json | cksum) $(node --version)"
 if [ "$(cat node_modules/.prepared 2>/dev/null)" != "$wanted" ]; then
     quietly npm ci
@@ -36,5 +31,4 @@ quietly npm run package
 quietly npm run lint
 quietly npm run unit
 sh e2e/workbench/setup.sh
-[ "${1:-}" != --package ] || exit 0
 quietly npm run e2e -- "$@"
