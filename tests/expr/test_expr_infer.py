@@ -109,7 +109,7 @@ TYPES = [
     ("unknown && b", "bool"),
     ("unknown == p", "bool"),
     ("v[unknown]", "int16"),
-    ("[unknown, 1]", "int[2]"),
+    ("b ? unknown : 1", "int"),
     ("Math.max(unknown - 5, 0)", "unknown"),
     ("Math.floor(unknown)", "int"),
     ("_msg.", "unknown"),
@@ -195,6 +195,11 @@ PROBLEMS = [
     ("«Math.random()» * 2", "RandomUsed()"),
     ("p.«length»", "LengthOfStruct(struct=Point)"),
     ("«{x: 1}»", "ObjectUsed()"),
+    ("[1, «i»]", "ElementComputed()"),
+    ("[-1, «1 + 1»]", "ElementComputed()"),
+    ("[[true], [!true, «!b»]]", "ElementComputed()"),
+    ("['a', «s»]", "ElementComputed()"),
+    ("[«p»]", "ElementComputed()"),
 ]
 
 
@@ -215,6 +220,7 @@ SEVERAL = [
     ("f % (1 - 1)", ["DivisionByZero 1 - 1"]),
     ("zz & yy", ["UnknownName zz", "UnknownName yy"]),
     ("v.push(zz)", ["UnknownFunction v.push", "UnknownName zz"]),
+    ("[zz, i]", ["UnknownName zz"]),
     ("zz ? zz : b", ["UnknownName zz", "UnknownName zz"]),
 ]
 

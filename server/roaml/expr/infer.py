@@ -161,6 +161,13 @@ class ObjectUsed:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class ElementComputed:
+    """An element of an array literal that is no literal itself (spec/03 §2)."""
+
+    span: Span
+
+
 Problem: TypeAlias = (
     UnknownName
     | UnknownMember
@@ -176,6 +183,7 @@ Problem: TypeAlias = (
     | RandomUsed
     | LengthOfStruct
     | ObjectUsed
+    | ElementComputed
 )
 
 
@@ -400,9 +408,12 @@ class _Inference:
     def array(self, expr: ArrayLiteral) -> Type:
         if not expr.elements:
             return EMPTY_ARRAY
+        known = len(self.problems)
         element = self.type_of(expr.elements[0])
         for other in expr.elements[1:]:
             element = self.common(element, other)
+        if len(self.problems) == known:
+            self.problems += (ElementComputed(each.span) for each in expr.elements if not _is_literal(each))
         return Array(element, len(expr.elements))
 
     def common(self, first: Type, other: Expr) -> Type:
@@ -429,3 +440,10 @@ def _function_name(function: Expr) -> str | None:
         case Member():
             return f".{function.name}"
     return None
+
+
+def _is_literal(element: Expr) -> bool:
+    match element:
+        case Unary():
+            return isinstance(element.operand, (Number, Boolean))
+    return isinstance(element, (Number, Boolean, String, ArrayLiteral, ObjectLiteral))

@@ -107,6 +107,9 @@ def lower_expr(expr: Expr, scope: Scope) -> Expr:
 
 def _lower_part(expr: Name | Member | Index, scope: Scope) -> Expr:
     """A part of a value that no name stands for: `'abc'.length`."""
+    chosen = _chosen_part(expr)
+    if chosen is not None:
+        return lower_expr(chosen, scope)
     match expr:
         case Member():
             return replace(expr, object=lower_expr(expr.object, scope))
@@ -115,12 +118,30 @@ def _lower_part(expr: Name | Member | Index, scope: Scope) -> Expr:
     return expr
 
 
-def lower_leaves(expr: Expr, scope: Scope) -> list[tuple[Path, Expr]]:
-    """A value as one plain value per leaf member of its type; one with an empty path if it is no struct."""
-    if isinstance(expr, Conditional):
-        test = lower_expr(expr.test, scope)
-        parts = zip(lower_leaves(expr.then, scope), lower_leaves(expr.otherwise, scope), strict=False)
+def _chosen_part(expr: Expr) -> Conditional | None:
+    """`(b ? p : q).x` as `b ? p.x : q.x`: only what has a name has parts in the model."""
+    match expr:
+        case Conditional():
+            return expr
+        case Member() | Index() if (chosen := _chosen_part(expr.object)) is not None:
+            then, otherwise = replace(expr, object=chosen.then), replace(expr, object=chosen.otherwise)
+            return Conditional(expr.span, chosen.test, then, otherwise)
+    return None
+
+
+def lower_leaves(expr: Expr, scope: Scope, type_: Type) -> list[tuple[Path, Expr]]:
+    """A value as one plain value per leaf member of its type; one with an empty path if it is no struct.
+
+    Args:
+        type_: what the value is used as.
+    """
+    chosen = _chosen_part(expr)
+    if chosen is not None:
+        test = lower_expr(chosen.test, scope)
+        parts = zip(lower_leaves(chosen.then, scope, type_), lower_leaves(chosen.otherwise, scope, type_), strict=False)
         return [(path, Conditional(expr.span, test, then, otherwise)) for (path, then), (_, otherwise) in parts]
+    if isinstance(expr, ArrayLiteral) and not expr.elements:
+        return [(path, expr) for path, _ in leaves(type_)]
     access = access_of(expr, scope)
     if access is not None and not access.length:
         return [(path, access.leaf(path)) for path, _ in leaves(access.type)]

@@ -85,7 +85,7 @@ class StatementLowering:
             for path, _ in leaves(struct):
                 yield Assign(target.leaf(path), self.value(statement.value, scope), origin)
             return
-        for path, value in self.values(statement.value, scope):
+        for path, value in self.values(statement.value, scope, target.type):
             yield from self.store(target.leaf(path), value, origin)
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
@@ -106,9 +106,9 @@ class StatementLowering:
         yield Assign(location, used, origin)
         yield from (Assign(name(data.id), data.value, origin) for data in drawn)
 
-    def values(self, value: Value | None, scope: Scope) -> list[tuple[tuple[str, ...], Expr]]:
+    def values(self, value: Value | None, scope: Scope, type_: Type) -> list[tuple[tuple[str, ...], Expr]]:
         if isinstance(value, Expression):
-            return lower_leaves(value.tree, scope)
+            return lower_leaves(value.tree, scope, type_)
         return [((), self.value(value, scope))]
 
     def value(self, value: Value | None, scope: Scope) -> Expr:
@@ -142,16 +142,16 @@ class StatementLowering:
         assert param.name is not None
         origin = self.context.origin(param.element.span)
         identifier = prefix + param.name.value.replace(".", SEPARATOR)
-        types = self.types(param.value, scope)
-        for path, value in self.values(param.value, scope):
+        type_ = self.type(param.value, scope)
+        types = dict(leaves(type_))
+        for path, value in self.values(param.value, scope, type_):
             yield Param(SEPARATOR.join((identifier, *path)), value, origin), types.get(path, UNKNOWN)
 
-    def types(self, value: Value | None, scope: Scope) -> dict[tuple[str, ...], Type]:
-        """The types of an expression's leaves."""
+    def type(self, value: Value | None, scope: Scope) -> Type:
         if not isinstance(value, Expression):
-            return {}
+            return UNKNOWN
         known = {**scope.variables, **scope.event}
-        return dict(leaves(infer(value.tree, known.get)[0]))
+        return infer(value.tree, known.get)[0]
 
     def send(self, event: str, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
         """What is drawn at random is stored before the event can be received (spec/07 1.13)."""
@@ -255,7 +255,7 @@ class StatementLowering:
         held = self.context.port(PortRead(statement.key, statement.element.span))
         assert isinstance(held, Reference)
         value = Param("value", lower_expr(statement.value.tree, scope), origin)
-        type_ = self.types(statement.value, scope).get((), UNKNOWN)
+        type_ = self.type(statement.value, scope)
         yield from self.send(f"{BLACKBOARD_WRITE_PREFIX}{held.variable}", ((value, type_),), origin)
 
 

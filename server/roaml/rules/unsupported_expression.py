@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.expr.infer import ObjectUsed
+from roaml.expr.infer import ElementComputed, ObjectUsed
 from roaml.expr.parse import UNSUPPORTED
 from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
@@ -17,12 +17,18 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if isinstance(value.value, Expression):
             yield from (finding for finding in value.value.findings if finding.code == UNSUPPORTED)
         for problem in value.problems:
-            if isinstance(problem, ObjectUsed):
-                yield RULE.at(
-                    problem.span,
-                    "an object in braces can only be the initial value of a struct; assign the members one by one, "
-                    "or another struct",
-                )
+            match problem:
+                case ObjectUsed():
+                    yield RULE.at(
+                        problem.span,
+                        "an object in braces can only be the initial value of a struct; assign the members one by one, "
+                        "or another struct",
+                    )
+                case ElementComputed():
+                    yield RULE.at(
+                        problem.span,
+                        "an array in brackets has literals only; assign this element with an `<assign>` of its own",
+                    )
 
 
 RULE = Rule(
