@@ -17,7 +17,7 @@ import bisect
 import codecs
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
@@ -99,6 +99,22 @@ class Decoded:
         if self.sources is None:
             return span_of((self.base + start, self.base + end))
         return span_of((self.sources[start], self.sources[end]))
+
+    def stripped(self) -> Decoded:
+        """Without surrounding white space."""
+        text = self.text.strip()
+        start = self.text.index(text)
+        sources = None if self.sources is None else self.sources[start : start + len(text) + 1]
+        return Decoded(text, self.base + start, sources)
+
+
+def joined(pieces: Sequence[Decoded]) -> Decoded:
+    """At least one piece, one after the other."""
+    if len(pieces) == 1:
+        return pieces[0]
+    sources = [piece.offset(index) for piece in pieces for index in range(len(piece.text))]
+    end = pieces[-1].offset(len(pieces[-1].text))
+    return Decoded("".join(piece.text for piece in pieces), pieces[0].base, (*sources, end))
 
 
 _LINE_END = re.compile(r"\r\n|\n|\r")

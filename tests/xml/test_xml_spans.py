@@ -50,6 +50,28 @@ def test_tags() -> None:
     assert cut(second.content_span) == ""
 
 
+CONTENTS = [
+    # what is inside, its character data, and for each character the one in the source
+    ("", None, ""),
+    (" <b/>\n", None, ""),
+    (" a &lt; b ", "a < b", "a & b"),
+    ("<![CDATA[ a &lt; b ]]>", "a &lt; b", "a &lt; b"),
+    ("a<!-- c -->b", "ab", "ab"),
+    ("\n<!-- c --> <![CDATA[a]]> &amp;<b>c</b> d ", "a & d", "a & d"),
+]
+
+
+@pytest.mark.parametrize(("inside", "text", "written"), CONTENTS)
+def test_content(inside: str, text: str | None, written: str) -> None:
+    document = parse(f"<a>{inside}</a>")
+    assert document.root is not None
+    content = document.content(document.root)
+    assert (content and content.text) == text
+    if content is not None:
+        assert "".join(document.text[content.offset(i)] for i in range(len(content.text))) == written
+        assert document.text[content.offset(len(content.text)) - 1] in (written[-1], "]")
+
+
 ATTRIBUTES = [
     # element, name, value, value as written, whole
     ("a", "xmlns:x", "u", "u", 'xmlns:x="u"'),

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
 from roaml.model.kinds import FileKind
-from roaml.model.syntax import Expression, expression_in, text_span
+from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
-from roaml.text import Span
+from roaml.text import Decoded
 from roaml.xml import Document, Element
 
 GRAMMARS = {
@@ -59,22 +59,22 @@ def path_at(file: XmlFile, offset: int) -> list[Typed]:
     return found
 
 
-def expression_spans(each: Typed) -> Iterator[Span]:
-    """Where expressions stand in the attributes and in the text of an element, in the order of the text."""
+def expression_sources(document: Document, each: Typed) -> Iterator[Decoded]:
+    """What expressions stand in the attributes and in the text of an element, in the order of the text."""
     element, type_ = each
     if type_ is None:
         return
     for attribute in element.attributes:
         known = type_.attributes.get(attribute.name)
         if known is not None and known.value in _EXPRESSIONS and attribute.has_value:
-            yield attribute.value_span
-    if type_.value in _EXPRESSIONS and (span := text_span(element)):
-        yield span
+            yield document.decoded(attribute.value_span)
+    if type_.value in _EXPRESSIONS and (source := document.content(element)):
+        yield source
 
 
 def expressions(document: Document, each: Typed) -> Iterator[Expression]:
     """The expressions of an element, in the order of the text."""
-    return (expression_in(document, span) for span in expression_spans(each))
+    return (expression_from(source) for source in expression_sources(document, each))
 
 
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
@@ -82,8 +82,9 @@ def expression_at(file: XmlFile, offset: int) -> Expression | None:
     around = path_at(file, offset)
     if not around:
         return None
-    span = next((span for span in expression_spans(around[-1]) if span.contains(offset)), None)
-    return None if span is None else expression_in(file.document, span)
+    sources = expression_sources(file.document, around[-1])
+    source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
+    return None if source is None else expression_from(source)
 
 
 def _roots(document: Document) -> list[Element]:

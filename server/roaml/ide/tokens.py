@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from roaml.expr import parse as expr
 from roaml.ide.json_tree import values
-from roaml.ide.syntax import Typed, XmlFile, expression_spans, walk, xml_file
+from roaml.ide.syntax import Typed, XmlFile, expression_sources, walk, xml_file
 from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, Member
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, AttributeType
 from roaml.model.kinds import FileKind
@@ -117,8 +117,8 @@ def _xml(file: XmlFile) -> Iterator[Token]:
             known = type_.attributes.get(attribute.name) if type_ else None
             yield Token(attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use)))
             yield from _value(file, attribute, known)
-        for span in expression_spans(each):
-            yield from expression_tokens(file.document.decoded(span))
+        for source in expression_sources(file.document, each):
+            yield from expression_tokens(source)
 
 
 def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:

@@ -152,10 +152,10 @@ class _Builder:
         type_ = HL_SCXML.elements[element.name]
         kind = next(a.defines for a in type_.attributes.values() if a.defines)
         if kind == "timer":
-            rate = text_or_port(element, "rate_hz")
+            rate = text_or_port(self.document, element, "rate_hz")
             return Declaration(element, kind, name_of(element.get("name")), None, None, rate)
         attribute = next(name for name in INTERFACE_ATTRIBUTES if name in type_.attributes)
-        interface = text_or_port(element, attribute)
+        interface = text_or_port(self.document, element, attribute)
         handle = name_of(element.get("name"))
         if handle is None and isinstance(interface, Name):
             handle = interface

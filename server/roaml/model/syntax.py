@@ -11,7 +11,7 @@ from roaml.expr.parse import parse
 from roaml.expr.tree import Expr
 from roaml.expr.types import TypeName, parse_type
 from roaml.text import Decoded, Span
-from roaml.xml import Attribute, Document, Element, Text, children_text
+from roaml.xml import Attribute, Document, Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +77,12 @@ def expression_of(document: Document, attribute: Attribute | None) -> Expression
     """The expression in an attribute; None if the attribute is missing or has no value yet."""
     if attribute is None or not attribute.has_value:
         return None
-    return expression_in(document, attribute.value_span)
+    return expression_from(document.decoded(attribute.value_span))
 
 
-def expression_in(document: Document, span: Span) -> Expression:
-    source = document.decoded(span)
+def expression_from(source: Decoded) -> Expression:
     tree, findings = parse(source)
-    return Expression(source, span, tree, findings)
+    return Expression(source, source.span(0, len(source.text)), tree, findings)
 
 
 def type_of(attribute: Attribute | None) -> TypeRef | None:
@@ -101,11 +100,11 @@ def value_of(document: Document, element: Element, name: str) -> Value | None:
         return None
     if (read := port_read(child)) is not None:
         return read
-    span = text_span(child)
-    return None if span is None else expression_in(document, span)
+    source = document.content(child)
+    return None if source is None else expression_from(source)
 
 
-def text_or_port(element: Element, name: str) -> Name | PortRead | None:
+def text_or_port(document: Document, element: Element, name: str) -> Name | PortRead | None:
     """Like `value_of`, for values that are plain text."""
     attribute = element.get(name)
     if attribute is not None:
@@ -115,22 +114,11 @@ def text_or_port(element: Element, name: str) -> Name | PortRead | None:
         return None
     if (read := port_read(child)) is not None:
         return read
-    span, text = text_span(child), children_text(child).strip()
-    return None if span is None else Name(text, span)
+    source = document.content(child)
+    return None if source is None else Name(source.text, source.span(0, len(source.text)))
 
 
 def port_read(element: Element) -> PortRead | None:
     """The `<bt_get_input>` in a value element."""
     read = element.find("bt_get_input")
     return None if read is None else PortRead(name_of(read.get("key")), read.span)
-
-
-def text_span(element: Element) -> Span | None:
-    """Where the text of a value element stands, without surrounding white space; None if it has none."""
-    for node in element.nodes:
-        if isinstance(node, Text) and (text := node.value.strip()):
-            lead = len(node.value) - len(node.value.lstrip())
-            raw_length = node.span.end - node.span.start
-            trail = len(node.value) - lead - len(text)
-            return Span(node.span.start + lead, node.span.start + raw_length - trail)
-    return None

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from roaml.diagnostics import Finding
-from roaml.text import Decoded, Span
+from roaml.text import Decoded, Span, joined
 from roaml.xml.escapes import decoded
 
 
@@ -167,6 +167,19 @@ class Document:
     def decoded(self, span: Span) -> Decoded:
         """The text in `span` with its references resolved, and the way back to the source."""
         return decoded(self.text, span)
+
+    def content(self, element: Element) -> Decoded | None:
+        """The character data directly inside an element, without surrounding white space and comments, and the way
+        back to the source; None if there is none."""
+        pieces = []
+        for node in element.nodes:
+            match node:
+                case Text() if node.value:
+                    pieces.append(self.decoded(node.span))
+                case CData():
+                    pieces.append(Decoded(node.value, node.span.start + len("<![CDATA[")))
+        found = joined(pieces).stripped() if pieces else None
+        return found if found is not None and found.text else None
 
     def path_at(self, offset: int) -> list[Element]:
         """The elements around `offset`, outermost first; a caret at the end of an unfinished element is inside it."""
