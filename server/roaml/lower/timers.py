@@ -25,7 +25,7 @@ from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
-from roaml.model.system_file import NANOSECONDS
+from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period
 from roaml.model.translated import CLOCK, CLOCK_STEP, TIMER_PREFIX
 from roaml.scxml.model import (
     Assign,
@@ -43,8 +43,6 @@ from roaml.scxml.model import (
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.text import Location
 
-NANOSECONDS_PER_SECOND = 10**9
-
 
 @dataclass(frozen=True, slots=True)
 class Timer:
@@ -53,24 +51,13 @@ class Timer:
     Attributes:
         user: the plain automaton that it ticks for.
         handle: its name there.
-        period: in ns.
     """
 
     user: str
     handle: str
     event: str | None
-    period: int
+    period: Period
     origin: Location
-
-
-def period(rate: Fraction) -> int:
-    """A timer's period in ns, rounded down in the largest unit that is exact or keeps three digits (spec/04 §6)."""
-    exact = NANOSECONDS_PER_SECOND / rate
-    for unit in NANOSECONDS.values():
-        count = exact / unit
-        if count.denominator == 1 or count >= 101:
-            return math.floor(count) * unit
-    return max(1, math.floor(exact))
 
 
 def timers_of(program: Program, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
@@ -133,8 +120,8 @@ def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
 
 def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     """The automaton that counts the time and makes timers tick."""
-    unit = min(_unit(timer.period) for timer in timers)
-    periods = [timer.period // unit for timer in timers]
+    unit = min(timer.period.unit for timer in timers)
+    periods = [timer.period.nanoseconds // unit for timer in timers]
     step = math.gcd(*periods)
     end = -(-(program.parameters.max_time or 0) // unit)
     origin = program.place
@@ -167,11 +154,6 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     timeout = State("timeout", (), (), (), origin)
     data = Data("current_time", BASE_TYPES["int64"], integer(0), origin)
     return PlainAutomaton(CLOCK, Role.CLOCK, "idle", (data,), (idle, timeout), origin)
-
-
-def _unit(period_ns: int) -> int:
-    """The largest unit, in ns, of which a period is a multiple."""
-    return next(unit for unit in NANOSECONDS.values() if period_ns % unit == 0)
 
 
 def _tick(event: str, due: Expr, origin: Location) -> Statement:

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Periods of timers, and the unit in which the clock of a system counts (spec/04 §6)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roaml.model.expand import Constant
+from roaml.model.system import Automaton, System
+from roaml.model.system_file import NANOSECONDS, Parameters
+
+NANOSECONDS_PER_SECOND = 10**9
+
+
+@dataclass(frozen=True, slots=True)
+class Period:
+    """`count` times `unit`, which is in ns."""
+
+    count: int
+    unit: int
+
+    @property
+    def nanoseconds(self) -> int:
+        return self.count * self.unit
+
+
+def period(rate: Fraction) -> Period:
+    """The period of a rate in Hz, rounded down in the largest unit that is exact or keeps three digits."""
+    exact = NANOSECONDS_PER_SECOND / rate
+    for unit in NANOSECONDS.values():
+        count = exact / unit
+        if count.denominator == 1 or count >= 101:
+            return Period(math.floor(count), unit)
+    return Period(max(1, math.floor(exact)), 1)
+
+
+def periods(system: System, parameters: Parameters) -> Iterator[Period]:
+    """The periods of all timers of a system; those whose rate is none are left out."""
+    if system.instances:
+        yield period(Fraction(str(parameters.tick_rate)))
+    for automaton in system.automata:
+        for timer in automaton.outline.timers:
+            rate = _rate(automaton, timer.rate, timer.port)
+            if rate is not None:
+                yield period(rate)
+
+
+def _rate(automaton: Automaton, text: str, port: str) -> Fraction | None:
+    value = automaton.port(port) if port else Constant(text)
+    if not isinstance(value, Constant):
+        return None
+    try:
+        rate = Fraction(value.text.strip())
+    except (ValueError, ZeroDivisionError):
+        return None
+    return rate if 0 < rate <= NANOSECONDS_PER_SECOND else None

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""inexact-max-time: see inexact_max_time.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.system_file import NANOSECONDS
+from roaml.model.timing import periods
+from roaml.rules.rule import Rule, SystemContext
+from roaml.text import Span, TextEdit
+
+NAMES = {nanoseconds: name for name, nanoseconds in NANOSECONDS.items()}
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    end = context.file.parameters.max_time
+    unit = min((each.unit for each in periods(context.system, context.file.parameters)), default=1)
+    if end is None or end % unit == 0:
+        return
+    section = context.file.element.find("parameters") or context.file.element.find("mc_parameters")
+    given = [element for element in section.elements if element.name == "max_time"] if section else []
+    if not given:
+        return
+    value, written = given[-1].get("value"), given[-1].get("unit")
+    if value is None or written is None:
+        return
+    name, count = NAMES[unit], -(-end // unit)
+    message = f"the clock counts in {name}, the unit of its timers: this is no whole number of them"
+    edits = (TextEdit(value.value_span, str(count)), TextEdit(written.value_span, name))
+    place = Span(min(value.span.start, written.span.start), max(value.span.end, written.span.end))
+    yield RULE.at(place, message, Fix(f"Let it run for {count} {name}", edits, preferred=False))
+
+
+RULE = Rule(
+    "inexact-max-time", Severity.ERROR, "The clock cannot count to `max_time` in the unit of its timers.", system=check
+)
