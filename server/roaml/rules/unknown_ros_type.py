@@ -20,13 +20,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
             continue
         found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-        if not isinstance(found, NotFound):
-            continue
         span = declaration.type.span
+        if not isinstance(found, NotFound):
+            yield from _with_kind(declaration.type.value, span)
+            continue
         if found.reason is Reason.UNKNOWN_PACKAGE:
             yield _unknown_package(found, span)
         else:
             yield RULE.at(span, found.message, *replacements(span, found.close))
+
+
+def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
+    """The name that ROS 2 itself uses: what is meant is clear, but other tools for these models do not take it."""
+    package, *kind, name = type_.split("/")
+    if kind:
+        short = f"{package}/{name}"
+        yield RULE.at(span, f"in a model a type has no `/{kind[0]}/`: write `{short}`", *replacements(span, (short,)))
 
 
 def _unknown_package(found: NotFound, span: Span) -> Finding:
