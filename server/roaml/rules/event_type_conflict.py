@@ -7,8 +7,9 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.expr.types import Array, EmptyArray, Scalar, Type, Unknown, is_kind, leaves
+from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, is_kind, leaves, unwrap
 from roaml.model.machine import Communicate, Declaration, Param, Send
+from roaml.model.outline import SentField
 from roaml.model.system import Event
 from roaml.model.typing import TypedValue, Use, find_handle
 from roaml.rules.interfaces import declared
@@ -36,25 +37,42 @@ def _parameter(event: Event, param: Param, value: TypedValue) -> Iterator[Findin
     """All senders of an event must agree on the types of its parameters (spec/01 §6.2)."""
     if param.name is None:
         return
-    mine = flattened(param.name.value, value.sent)
     for automaton, sent in event.senders:
         for other in sent.params:
-            theirs = flattened(other.name, other.type)
-            for name in (name for name in mine if name in theirs and not same(mine[name], theirs[name])):
-                there = phrase(theirs[name])
-                hint = ROUND if value.type != value.sent and same(value.type, theirs[name]) else ""
+            for name, mine, theirs in _differing(param.name.value, value.sent, other):
+                there = phrase(theirs)
+                hint = ROUND if value.type != value.sent and same(value.type, theirs) else ""
                 yield RULE.at(
                     value.value.span,
-                    f"`{name}` is {phrase(mine[name])} here, and {there} in another `{event.name}`{hint}",
+                    f"`{name}` is {phrase(mine)} here, and {there} in another `{event.name}`{hint}",
                     related=(Related(Symbol(automaton.path, "event", event.name), f"sent as {there}"),),
                 )
                 return
 
 
+def _differing(name: str, type_: Type, other: SentField) -> Iterator[tuple[str, Type, Type]]:
+    """What two senders say of one parameter: its name, and its type for one and for the other."""
+    if flat(name) == flat(other.name) and _is_struct(type_) is not _is_struct(other.type):
+        if not isinstance(type_, (Unknown, EmptyArray)) and not isinstance(other.type, (Unknown, EmptyArray)):
+            yield name, type_, other.type
+        return
+    theirs = flattened(other.name, other.type)
+    for leaf, mine in flattened(name, type_).items():
+        if leaf in theirs and not same(mine, theirs[leaf]):
+            yield leaf, mine, theirs[leaf]
+
+
+def _is_struct(type_: Type) -> bool:
+    return isinstance(unwrap(type_)[0], Struct)
+
+
+def flat(name: str) -> str:
+    return name.replace(".", "__")
+
+
 def flattened(name: str, type_: Type) -> dict[str, Type]:
     """What a parameter is in the translation: one parameter for each leaf of a struct (spec/01 §3.3)."""
-    start = name.replace(".", "__")
-    return {"__".join((start, *path)): leaf for path, leaf in leaves(type_)}
+    return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
 
 
 def same(left: Type, right: Type) -> bool:

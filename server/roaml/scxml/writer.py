@@ -15,12 +15,14 @@ from typing import NamedTuple
 from xml.sax.saxutils import escape
 
 from roaml.expr.format import format_expr
-from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Send, State, Target, Transition
+from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Role, Send, State, Target, Transition
 from roaml.text import Location
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 NOBODY = "NONE"
 DRAWN = "__RAND__"
+DELAY = "1"
+"""Of the clock's event to itself, so that time passes only when nothing else is to be done."""
 _INDENT = "    "
 
 
@@ -144,6 +146,8 @@ class _Writer:
         ]
         for target in self.receivers.get(statement.event, (NOBODY,)):
             attributes = {"event": statement.event, "target": target}
+            if self.automaton.role is Role.CLOCK and target == self.automaton.name:
+                attributes["delay"] = DELAY
             yield from _element("send", attributes, params, statement.origin, always=True)
 
     def choice(self, statement: If) -> Lines:

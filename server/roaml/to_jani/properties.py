@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as they are checked: comparisons with an array literal are spelled out (spec/05 §10)."""
+"""Properties as they are checked (spec/05 §10).
+
+- Comparisons with an array literal are spelled out.
+- The clock of the system is a variable: bounds on time, and on rewards, of which there are none, are left out.
+- Only path formulas and operators keep their comments.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from roaml.jani.expressions import ArrayAccess, ArrayValue, Binary, Expression, Name
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator
-from roaml.jani.properties import Property
+from roaml.jani.properties import BinaryPath, Filter, Probability, Property, UnaryPath
 from roaml.jani.rewrite import rewrite
 from roaml.to_jani.shapes import Shape
 from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
@@ -26,6 +32,10 @@ def expanded(property_: Property, variables: Mapping[str, Shape]) -> Property:
                 if stored is not None and isinstance(right, ArrayValue):
                     same = equal_arrays(stored, _listed(right))
                     return same if operator is BinaryOperator.EQUAL else negated(same)
+            case UnaryPath() | BinaryPath():
+                return replace(node, time_bounds=None, reward_bounds=None)
+            case Property() | Filter() | Probability():
+                return replace(node, comment=None)
         return node
 
     return rewrite(property_, change)

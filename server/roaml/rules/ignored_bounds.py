@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ignored-bounds: see ignored_bounds.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.jani.node import Node
+from roaml.jani.properties import BinaryPath, UnaryPath, walk
+from roaml.rules.rule import PropertiesContext, Rule
+
+TIME = "the bound has no effect, as the model counts steps only; for times compare the clock's `sec` in the formula"
+REWARD = "the bound has no effect, as the model has no rewards"
+
+
+def check(context: PropertiesContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    for property_ in context.properties:
+        for formula in walk(property_.expression):
+            if isinstance(formula, (UnaryPath, BinaryPath)):
+                if formula.time_bounds is not None:
+                    yield from _ignored(formula.time_bounds, TIME)
+                for bound in formula.reward_bounds or ():
+                    yield from _ignored(bound, REWARD)
+
+
+def _ignored(bound: Node, message: str) -> Iterator[Finding]:
+    if bound.origin is not None:
+        yield RULE.at(bound.origin.span, message)
+
+
+RULE = Rule("ignored-bounds", Severity.WARNING, "A property has bounds that are not looked at.", properties=check)
