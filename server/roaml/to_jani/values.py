@@ -346,6 +346,8 @@ def equal_arrays(left: ArrayForm, right: ArrayForm) -> Expression:
 
 def _equals_literal(stored: ArrayForm, literal: Listed) -> Expression:
     assert isinstance(stored, Stored)
+    if len(literal.elements) > stored.shape.capacities[len(stored.indexes)]:
+        return jani.Boolean(False)
     same = equal(stored.lengths(1), Integer(len(literal.elements)))
     for i, element in enumerate(literal.elements):
         part = stored.element(Integer(i))
