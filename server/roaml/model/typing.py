@@ -140,12 +140,15 @@ STATUS = BASE_TYPES["int8"]
 
 
 def bindings(handler: Handler, part: str, machine: Machine, environment: Environment) -> dict[str, Type]:
-    """The event variables known in the `part` ("cond" or "body") of a handler, with their types (spec/01 §12.1)."""
-    found = {}
-    for binding in handler.type.binds:
-        if binding.only in ("", part):
-            found[binding.name] = event_variable(binding, handler, machine, environment)
-    return found
+    """The event variables known in the `part` ("cond" or "body") of a handler, with their types."""
+    return {binding.name: event_variable(binding, handler, machine, environment) for binding in bound_in(handler, part)}
+
+
+def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
+    """The event variables known in a part of a handler (spec/01 §12.1): a transition without event knows none."""
+    if handler.trigger == "":
+        return ()
+    return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
 
 
 def event_variable(binding: Binding, handler: Handler, machine: Machine, environment: Environment) -> Type:
