@@ -108,6 +108,7 @@ class PluginOutline:
     Attributes:
         children: the greatest literal child index that it ticks or halts, plus 1.
         any_child: it ticks or halts children by a variable index.
+        ticked_children: the literal indexes of the children that it ticks; None if it may tick any.
         halts_children: it halts children and waits for their answer.
     """
 
@@ -117,6 +118,7 @@ class PluginOutline:
     answers_halt: bool
     children: int
     any_child: bool
+    ticked_children: frozenset[int] | None
     halts_children: bool
 
 
@@ -281,9 +283,10 @@ def _port_key(value: Name | PortRead | None) -> str:
 def _plugin(machine: Machine) -> PluginOutline:
     triggers = {handler.trigger for handler in _handlers(machine)}
     statements = list(_executed(machine))
-    calls = [statement for statement in statements if isinstance(statement, CallChild) and statement.child]
-    indexes = [c.child.value for c in calls if c.child]
-    literal = [int(index[:6]) for index in indexes if index.isascii() and index.isdigit()]
+    calls = [statement for statement in statements if isinstance(statement, CallChild)]
+    indexes = [_index(call.child) for call in calls if call.child]
+    literal = [index for index in indexes if index is not None]
+    ticked = [_index(call.child) for call in calls if not call.halts]
     return PluginOutline(
         "bt-tick" in triggers,
         "bt-halt" in triggers,
@@ -291,8 +294,14 @@ def _plugin(machine: Machine) -> PluginOutline:
         any(isinstance(statement, ReturnHalted) for statement in statements),
         max(literal, default=-1) + 1,
         len(literal) < len(indexes),
-        any(call.halts for call in calls) and "child-halted" in triggers,
+        None if None in ticked else frozenset(index for index in ticked if index is not None),
+        any(call.halts for call in calls if call.child) and "child-halted" in triggers,
     )
+
+
+def _index(child: Name | None) -> int | None:
+    """The index of a child if it is written out."""
+    return int(child.value[:6]) if child and child.value.isascii() and child.value.isdigit() else None
 
 
 def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:

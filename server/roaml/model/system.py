@@ -316,5 +316,5 @@ def _builtin(element: ElementType) -> MachineOutline:
         for a in element.ports
         if a.port
     )
-    plugin = PluginOutline(True, True, True, True, 0, has_children, has_children)
+    plugin = PluginOutline(True, True, True, True, 0, has_children, None, has_children)
     return MachineOutline(element.name, "ascxml", False, True, ports, (), (), (), (), (), plugin)
