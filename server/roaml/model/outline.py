@@ -138,6 +138,16 @@ class MachineOutline:
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
 
+    @property
+    def takes_part_in_tree(self) -> bool:
+        """Whether anything in the machine belongs to a behavior tree, were it an event of that name (spec/08, A')."""
+        plugin = self.plugin
+        takes = plugin.ticked or plugin.halted
+        answers = plugin.answers_tick or plugin.answers_halt
+        calls = plugin.children > 0 or plugin.any_child
+        events = (*(sent.event for sent in self.sent), *(received.event for received in self.received))
+        return takes or answers or calls or bool(self.ports) or any(event.startswith("bt_") for event in events)
+
     def port(self, key: str) -> PortOutline | None:
         return next((port for port in self.ports if port.key == key), None)
 
