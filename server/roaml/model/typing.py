@@ -17,7 +17,7 @@ from roaml.expr.tree import Number, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
-from roaml.model.initial import InitialProblem, check_initial
+from roaml.model.initial import InitialProblem, check_bound, check_initial
 from roaml.model.machine import (
     Assign,
     Chart,
@@ -247,7 +247,8 @@ class _Typer:
         target = data.id.value if data.id else ""
         for value, use in ((data.value, Use.INITIAL), (data.lower, Use.BOUND), (data.upper, Use.BOUND)):
             if isinstance(value, Expression):
-                problems = () if value.broken else check_initial(value.tree, wanted)
+                check = check_bound if use is Use.BOUND else check_initial
+                problems = () if value.broken else check(value.tree, wanted)
                 self.values.append(TypedValue(use, value, wanted, wanted, problems, data.element, place, target))
             elif value is not None:
                 self.port(use, value, wanted, data.element, place, target)
