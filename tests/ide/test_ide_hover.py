@@ -90,7 +90,7 @@ def test_text(tmp_path: Path, case: str) -> None:
 MACHINE = """<ascxml name="M" version="1.0" initial="s">
   <datamodel>
     <data id="a" type="int32[3]" expr="[]"/>
-    <data id="b" type="float64" lower_bound_incl="0" upper_bound_incl="9" expr="0.5"/>
+    <data id="b" type="float64" lower_bound_incl="0.0" upper_bound_incl="9.0" expr="0.5"/>
   </datamodel>
   <ros_time_rate name="t" rate_hz="20"/>
   <state id="s">
@@ -116,7 +116,7 @@ a[0] |% 2  number % number : int or float|The remainder of the division.
 a.l|ength  length : int|How many elements a has now. Assigning a smaller number shortens it, 0 empties it.
 SUCC|ESS  SUCCESS = 1|An answer of a node of the tree.
 _b|t.status  _bt|  status : int8|The answer of the child.
-"|b" t  b : float64|Meant from 0 to 9 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
+"|b" t  b : float64|Meant from 0.0 to 9.0 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
 id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · up to 3 elements · starts as []|Read 3 times
 n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Written once
 target="|done  state done|Not defined|From s on the timer t|Nothing leads away

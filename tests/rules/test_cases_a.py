@@ -44,6 +44,21 @@ def test_case(code: str, text: str, tmp_path: Path) -> None:
     assert not [d.message for d in diagnostics if d.code == "internal-error"]
 
 
+@pytest.mark.parametrize(
+    ("declaration", "severity"),
+    [
+        ('<ros_time_rate name="t" rate_hz="1" />', Severity.ERROR),
+        ('<ros_topic_publisher name="t" topic="/t" type="std_msgs/Empty" />', Severity.WARNING),
+    ],
+)
+def test_only_timers_may_not_be_declared_twice_in_the_same_way(
+    declaration: str, severity: Severity, tmp_path: Path
+) -> None:
+    text = f'<ascxml name="A" version="1.0" initial="a">{declaration * 2}<state id="a" /></ascxml>'
+    diagnostics, _ = check_text(tmp_path, text)
+    assert [d.severity for d in diagnostics if d.code == "duplicate-handle"] == [severity]
+
+
 def place(folder: Path, diagnostic: Diagnostic) -> tuple[str, int, int, str]:
     """File, start and end on the first line, and code; what is empty is marked by one caret."""
     path = Path(diagnostic.path)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from roaml.expr import infer
 from roaml.expr.tree import ArrayLiteral, Expr, ObjectLiteral
-from roaml.expr.types import Array, Struct, Type, Unknown, fits
+from roaml.expr.types import Array, Struct, Type, Unknown, fits, is_kind
 from roaml.text import Span
 
 
@@ -57,6 +57,15 @@ def check_initial(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
     return tuple(problems)
 
 
+def check_bound(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
+    """What keeps `expr` from being a bound of a variable: unlike a value, an int is no bound of a real."""
+    problems = check_initial(expr, wanted)
+    given, _ = infer.infer(expr, lambda _: None)
+    if not problems and is_kind(wanted, "real") and is_kind(given, "int"):
+        return (WrongType(expr.span, given, wanted),)
+    return problems
+
+
 def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
     match expr, wanted:
         case ObjectLiteral(), Struct():
@@ -68,6 +77,9 @@ def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
                 _check(element, wanted.element, problems)
         case ObjectLiteral(), Unknown():
             pass
+        case ArrayLiteral(), Unknown():  # perhaps of structs: then its elements may be objects
+            for element in expr.elements:
+                _check(element, wanted, problems)
         case ObjectLiteral(), _:
             problems.append(WrongType(expr.span, Struct("object", ()), wanted))
         case _:

@@ -108,6 +108,7 @@ class PluginOutline:
     Attributes:
         children: the greatest literal child index that it ticks or halts, plus 1.
         any_child: it ticks or halts children by a variable index.
+        ticked_children: the literal indexes of the children that it ticks; None if it may tick any.
         halts_children: it halts children and waits for their answer.
     """
 
@@ -117,6 +118,7 @@ class PluginOutline:
     answers_halt: bool
     children: int
     any_child: bool
+    ticked_children: frozenset[int] | None
     halts_children: bool
 
 
@@ -135,6 +137,16 @@ class MachineOutline:
     timers: tuple[TimerOutline, ...]
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
+
+    @property
+    def takes_part_in_tree(self) -> bool:
+        """Whether anything in the machine belongs to a behavior tree, were it an event of that name (spec/08, A')."""
+        plugin = self.plugin
+        takes = plugin.ticked or plugin.halted
+        answers = plugin.answers_tick or plugin.answers_halt
+        calls = plugin.children > 0 or plugin.any_child
+        events = (*(sent.event for sent in self.sent), *(received.event for received in self.received))
+        return takes or answers or calls or bool(self.ports) or any(event.startswith("bt_") for event in events)
 
     def port(self, key: str) -> PortOutline | None:
         return next((port for port in self.ports if port.key == key), None)
@@ -281,9 +293,10 @@ def _port_key(value: Name | PortRead | None) -> str:
 def _plugin(machine: Machine) -> PluginOutline:
     triggers = {handler.trigger for handler in _handlers(machine)}
     statements = list(_executed(machine))
-    calls = [statement for statement in statements if isinstance(statement, CallChild) and statement.child]
-    indexes = [c.child.value for c in calls if c.child]
-    literal = [int(index[:6]) for index in indexes if index.isascii() and index.isdigit()]
+    calls = [statement for statement in statements if isinstance(statement, CallChild)]
+    indexes = [_index(call.child) for call in calls if call.child]
+    literal = [index for index in indexes if index is not None]
+    ticked = [_index(call.child) for call in calls if not call.halts]
     return PluginOutline(
         "bt-tick" in triggers,
         "bt-halt" in triggers,
@@ -291,8 +304,14 @@ def _plugin(machine: Machine) -> PluginOutline:
         any(isinstance(statement, ReturnHalted) for statement in statements),
         max(literal, default=-1) + 1,
         len(literal) < len(indexes),
-        any(call.halts for call in calls) and "child-halted" in triggers,
+        None if None in ticked else frozenset(index for index in ticked if index is not None),
+        any(call.halts for call in calls if call.child) and "child-halted" in triggers,
     )
+
+
+def _index(child: Name | None) -> int | None:
+    """The index of a child if it is written out."""
+    return int(child.value[:6]) if child and child.value.isascii() and child.value.isdigit() else None
 
 
 def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:

@@ -177,7 +177,21 @@ class System:
     def complete(self) -> bool:
         """Whether everything is known that is said between the files. Only then does a missing side mean something."""
         known = all(self.plugin(instance.plugin)[1] is not None for instance in self.instances)
-        return self.readable and known and all(automaton.outline.sound for automaton in self.automata)
+        placed = not self.ticked_nodes and not self.idle_plugins
+        return self.readable and known and placed and all(automaton.outline.sound for automaton in self.automata)
+
+    @cached_property
+    def ticked_nodes(self) -> frozenset[str]:
+        """The files listed as nodes that are plugins: they take ticks."""
+        return frozenset(path for path, outline in self.nodes if outline.plugin.ticked)
+
+    @cached_property
+    def idle_plugins(self) -> frozenset[str]:
+        """The files listed as plugins that have nothing of one, nor does the tree use them by name."""
+        used = {instance.plugin for instance in self.instances}
+        return frozenset(
+            path for path, outline in self.plugins if outline.name not in used and not outline.takes_part_in_tree
+        )
 
     @cached_property
     def by_instance(self) -> Mapping[int, Automaton]:
@@ -316,5 +330,5 @@ def _builtin(element: ElementType) -> MachineOutline:
         for a in element.ports
         if a.port
     )
-    plugin = PluginOutline(True, True, True, True, 0, has_children, has_children)
+    plugin = PluginOutline(True, True, True, True, 0, has_children, None, has_children)
     return MachineOutline(element.name, "ascxml", False, True, ports, (), (), (), (), (), plugin)

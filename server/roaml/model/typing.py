@@ -17,7 +17,7 @@ from roaml.expr.tree import Number, walk
 from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
-from roaml.model.initial import InitialProblem, check_initial
+from roaml.model.initial import InitialProblem, check_bound, check_initial
 from roaml.model.machine import (
     Assign,
     Chart,
@@ -140,12 +140,15 @@ STATUS = BASE_TYPES["int8"]
 
 
 def bindings(handler: Handler, part: str, machine: Machine, environment: Environment) -> dict[str, Type]:
-    """The event variables known in the `part` ("cond" or "body") of a handler, with their types (spec/01 §12.1)."""
-    found = {}
-    for binding in handler.type.binds:
-        if binding.only in ("", part):
-            found[binding.name] = event_variable(binding, handler, machine, environment)
-    return found
+    """The event variables known in the `part` ("cond" or "body") of a handler, with their types."""
+    return {binding.name: event_variable(binding, handler, machine, environment) for binding in bound_in(handler, part)}
+
+
+def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
+    """The event variables known in a part of a handler (spec/01 §12.1): a transition without event knows none."""
+    if handler.trigger == "":
+        return ()
+    return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
 
 
 def event_variable(binding: Binding, handler: Handler, machine: Machine, environment: Environment) -> Type:
@@ -244,7 +247,8 @@ class _Typer:
         target = data.id.value if data.id else ""
         for value, use in ((data.value, Use.INITIAL), (data.lower, Use.BOUND), (data.upper, Use.BOUND)):
             if isinstance(value, Expression):
-                problems = () if value.broken else check_initial(value.tree, wanted)
+                check = check_bound if use is Use.BOUND else check_initial
+                problems = () if value.broken else check(value.tree, wanted)
                 self.values.append(TypedValue(use, value, wanted, wanted, problems, data.element, place, target))
             elif value is not None:
                 self.port(use, value, wanted, data.element, place, target)

@@ -49,13 +49,20 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
     least = max(calls.children, 1 if calls.any_child else 0)
     if count < least:
         yield _too_few(node, least, UNBOUNDED if calls.any_child else least)
-    elif count > calls.children and not calls.any_child:
-        extra = node.children[calls.children].element.name_span
-        if calls.children == 0:
-            message = f"`{plugin.name}` is a leaf: it never ticks a child"
-        else:
-            message = f"`{plugin.name}` ticks {_children(calls.children)}: this one is never ticked"
-        yield RULE.at(extra, message, _without(context, node, calls.children))
+    if calls.ticked_children is None:
+        return
+    for index, child in enumerate(node.children):
+        span = child.element.name_span
+        if index >= calls.children and not calls.any_child:
+            if calls.children == 0:
+                message = f"`{plugin.name}` is a leaf: it never ticks a child"
+            else:
+                message = f"`{plugin.name}` has {_children(calls.children)}: this one is never ticked"
+            yield RULE.at(span, message, _without(context, node, index))
+            return
+        if index not in calls.ticked_children:
+            message = f'this child is never ticked: `{plugin.name}` has no `<bt_tick_child id="{index}">`'
+            yield RULE.at(span, message)
 
 
 def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:

@@ -10,10 +10,12 @@ from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
 from roaml.language.grammar import ElementType
 from roaml.rules.elements import known_elements, removal
-from roaml.rules.rule import FileContext, Rule
+from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.unknown_element import rename_tag
 from roaml.text import Span, TextEdit
 from roaml.xml import Attribute, Element
+
+ROOT = "ascxml"
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -27,6 +29,15 @@ def check(context: FileContext) -> Iterator[Finding]:
             known = type_.attributes.get(attribute.name)
             if known is not None:
                 yield from _attribute(context, element, attribute, known)
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """The system decides which dialect its machines are written in (spec/08), and the current one has one root only."""
+    machine = context.machine
+    if context.system is not None and not context.older and machine.root != ROOT:
+        message = f"the machines of a `<roaml>` system have the root `<{ROOT}>`, not `<{machine.root}>`"
+        rename = replace(rename_tag(machine.element, ROOT), safe=True)
+        yield RULE.at(machine.element.name_span, message, rename, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
 
 
 def _is_newer_tree(root: Element | None) -> bool:
@@ -69,4 +80,4 @@ def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -
     return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
 
 
-RULE = Rule("deprecated-spelling", Severity.HINT, "An older spelling is used.", file=check)
+RULE = Rule("deprecated-spelling", Severity.HINT, "An older spelling is used.", file=check, machine=check_machine)

@@ -38,7 +38,9 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     if _meaning(declaration) == _meaning(before):
         message = f"`{handle.value}` is declared twice in the same way"
         remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
-        return RULE.at(handle.span, message, remove, severity=Severity.WARNING, related=related)
+        # Two timers of one name are refused, whatever their rates are (spec/01 §7).
+        severity = Severity.ERROR if declaration.kind == "timer" else Severity.WARNING
+        return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
         handle.span,
         f"`{handle.value}` is declared twice; give one of them another `name`",

@@ -6,23 +6,31 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.rules.rule import MachineContext, Rule
+from roaml.model.machine import Handler
+from roaml.rules.rule import MachineContext, Rule, listing
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
+    """The report stands at the transition that always holds: it mostly lacks its event or condition."""
     for chart in context.machine.charts:
         for state in chart.states:
-            always = next((h for h in state.handlers if h.trigger == "" and h.cond is None and h.effective), None)
-            if always is None:
-                continue
-            for handler in state.handlers:
-                if handler.trigger != "" and handler.effective:
-                    yield RULE.at(
-                        handler.element.name_span,
-                        "this state is left at once by a transition without event and condition: it never waits for "
-                        "an event",
-                        related=(Related(always.element.name_span, "always taken"),),
-                    )
+            handlers = [handler for handler in state.handlers if handler.effective]
+            always = next((h for h in handlers if h.trigger == "" and h.cond is None), None)
+            waiting = [handler for handler in handlers if handler.trigger != ""]
+            if always is not None and waiting:
+                names = listing(dict.fromkeys(_awaited(handler) for handler in waiting))
+                yield RULE.at(
+                    always.element.name_span,
+                    f"without event and condition this is taken at once, and the state never waits for {names}; "
+                    "give it an `event` or a `cond`",
+                    related=(Related(handler.element.name_span, "never taken") for handler in waiting),
+                )
+
+
+def _awaited(handler: Handler) -> str:
+    """What a transition waits for: an event, what a handle stands for, or a part of the tree protocol."""
+    name = handler.event or handler.handle
+    return name.value if name else handler.element.name
 
 
 RULE = Rule(

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownName
 from roaml.language import HL_SCXML
 from roaml.model.syntax import Expression
-from roaml.model.typing import Place, TypedValue, Use
+from roaml.model.typing import Place, TypedValue, Use, bound_in
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
 from roaml.text import Span, TextEdit
 
@@ -62,6 +62,9 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if known:
         message = f"`{name}` is not known here; `<{tag}>` knows {listing(known)}"
         return RULE.at(problem.span, message, *_fixes(context, problem, known))
+    if place.handler is not None and place.handler.trigger == "":
+        message = f"`{name}` is not known here: this transition has no event; give it the `event` whose data are meant"
+        return RULE.at(problem.span, message)
     return RULE.at(problem.span, f"`{name}` is not known here: `<{tag}>` carries no data")
 
 
@@ -79,7 +82,7 @@ def known_here(place: Place) -> list[str]:
     """The event variables that are known at a place."""
     if place.handler is None:
         return []
-    return [binding.name for binding in place.handler.type.binds if binding.only in ("", place.part)]
+    return [binding.name for binding in bound_in(place.handler, place.part)]
 
 
 def place_tag(place: Place) -> str:

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
-from roaml.model.machine import Chart
+from roaml.model.machine import Chart, Thread
 from roaml.model.system import builtin_plugins
 from roaml.rules import misspelled
-from roaml.rules.layout import last_in, remove
+from roaml.rules.layout import first_in, last_in, remove
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
@@ -40,6 +40,18 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
         if element.complete and not states and not misspelled.among(element.elements, "state", HL_SCXML):
             message = f"`<{element.name}>` needs at least one `<state>`"
             yield RULE.at(element.name_span, message, *_add_state(context, chart))
+    for thread in context.machine.threads:
+        yield from _thread_data(context, thread)
+
+
+def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
+    """A machine may do without a datamodel, a thread may not (spec/01 §10.3)."""
+    element = thread.element
+    wanted = element.complete and element.find("datamodel") is None
+    if wanted and not misspelled.among(element.elements, "datamodel", HL_SCXML):
+        message = f"`<{element.name}>` needs a `<datamodel>`, even if it holds nothing"
+        edit = first_in(context.document, element, "<datamodel />")
+        yield RULE.at(element.name_span, message, Fix("Add an empty `<datamodel>`", (edit,), safe=True))
 
 
 def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:

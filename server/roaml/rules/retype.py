@@ -31,12 +31,15 @@ def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
 
 
 def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[Fix]:
-    """Declare the variable of a value with another base type."""
+    """Declare the variable of a value with another base type, unless it has bounds of another kind of number."""
     data = declared_for(context, value)
-    if data is not None and data.id is not None and data.type is not None and data.type.name is not None:
-        new = data.type.text.replace(data.type.name.base, type_, 1)
-        edit = TextEdit(data.type.span, new)
-        yield Fix(f"Declare `{data.id.value}` as {new}", (edit,), preferred=False)
+    if data is None or data.id is None or data.type is None or data.type.name is None:
+        return
+    base = data.type.name.base
+    if (data.lower or data.upper) and (base in INTEGER_RANGES) != (type_ in INTEGER_RANGES):
+        return
+    new = data.type.text.replace(base, type_, 1)
+    yield Fix(f"Declare `{data.id.value}` as {new}", (TextEdit(data.type.span, new),), preferred=False)
 
 
 def wide_enough(number: int, type_: str) -> str | None:

@@ -148,9 +148,11 @@ def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iter
     if is_kind(given, "real") and is_kind(wanted, "int"):
         if text.endswith(".0") and text[:-2].isdigit():
             yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
-        elif use is not Use.INITIAL:
+        elif use not in (Use.INITIAL, Use.BOUND):
             edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
             yield Fix(f"Change to `Math.floor({text})`", edits)
+    elif is_kind(given, "int") and is_kind(wanted, "real") and text.removeprefix("-").isdigit():
+        yield Fix(f"Change to `{text}.0`", (TextEdit(span, f"{text}.0"),))
     elif is_kind(given, "int") and is_kind(wanted, "bool") and text in ("0", "1"):
         literal = "true" if text == "1" else "false"
         yield Fix(f"Change to `{literal}`", (TextEdit(span, literal),))

@@ -128,9 +128,7 @@ def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[str, .
         if attribute is not None and attribute.refers:
             yield user.element, user.handle, attribute.refers
     for thread in machine.threads:
-        kinds = HL_SCXML.elements["ros_action_thread"].attributes["name"].refers
-        if thread.server is not None:
-            yield thread.element, thread.server, kinds
+        yield thread.element, thread.server, HL_SCXML.elements["ros_action_thread"].attributes["name"].refers
 
 
 RULE = Rule(

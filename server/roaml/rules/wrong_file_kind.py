@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from roaml.diagnostics import Finding, Fix, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.kinds import FileKind
+from roaml.model.syntax import Name
 from roaml.model.system_file import ListedFile
+from roaml.rules.layout import remove
 from roaml.rules.rule import Rule, SystemContext
 from roaml.text import TextEdit
 
@@ -23,11 +25,31 @@ TYPES = {
 def check(context: SystemContext) -> Iterator[Finding]:
     for listed in context.files:
         src = listed.input.src
-        if src is None or listed.problem or listed.wanted is None or listed.usable:
+        if src is None or listed.problem or listed.wanted is None:
+            continue
+        if listed.usable:
+            yield from _other_machine(context, listed, src)
             continue
         found = "" if listed.found is FileKind.UNKNOWN else f", but {_with_article(listed.found)}"
         message = f"`{src.value}` is not {_with_article(listed.wanted)}{found}"
         yield RULE.at(src.span, message, *_other_type(listed, context.files))
+
+
+def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
+    """A machine that is listed as a plugin and is none, or the other way round: another file is meant."""
+    system, section = context.system, listed.input.section
+    if not system.readable:
+        return
+    plugins = [f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree"]
+    reason = ""
+    if section == "node_models" and listed.path in system.ticked_nodes and plugins:  # else tree-element-in-node tells
+        reason = "a plugin of the behavior tree and is listed as one, so it is no node; name the file of the node"
+    elif section == "behavior_tree" and listed.path in system.idle_plugins:
+        reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"
+    if reason:
+        drop = remove(context.document, listed.input.element)
+        related = [Related(p.input.src.span, "listed as a plugin") for p in plugins if p is not listed and p.input.src]
+        yield RULE.at(src.span, f"`{src.value}` is {reason}", drop, related=related)
 
 
 def _with_article(kind: FileKind) -> str:
