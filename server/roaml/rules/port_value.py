@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, fits, is_kind, is_number
-from roaml.model.expand import Constant
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
+from roaml.model.expand import Constant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.system import ANY_TYPE
 from roaml.model.tree import PortModel, PortSetting, TreeNode, is_variable_name, looks_like_reference, nodes
@@ -106,25 +106,51 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
 
 
 def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """What a `Switch` compares is of one type, that of the first variable in it (spec/02 §7.2)."""
+    """What a `Switch` compares is of one type, that of the first variable in it: string or int (spec/02 §7.2)."""
     for node, automaton in instances(context):
         assert context.system is not None
         wanted = context.system.any_type(automaton)
-        for port in automaton.outline.ports:
-            value = automaton.port(port.key)
-            if port.type != ANY_TYPE or value is None:
-                continue
-            setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
-            assert setting is not None
+        values = [(p, v) for p in automaton.outline.ports if p.type == ANY_TYPE and (v := automaton.port(p.key))]
+        variables = [(port, value) for port, value in values if isinstance(value, Reference)]
+        if wanted != "string" and wanted not in INTEGER_RANGES:
+            port, reference = variables[0]
+            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{wanted}`")
+            continue
+        if values and not variables:
+            yield from _literal_choice(node)
+        for port, value in values:
             if isinstance(value, Constant):
                 problem = problem_of(value.text.strip(), replace(port, type=wanted))
                 if problem is not None and not looks_like_reference(value.text):
-                    yield RULE.at(setting.span, problem.message, severity=problem.severity)
+                    yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
                 continue
             given = context.system.variable_type(value.variable)
             if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
                 message = f"`{port.key}` is compared with values of type `{wanted}`; `{value.variable}` is `{given}`"
-                yield RULE.at(setting.span, message)
+                yield RULE.at(_place(node, port), message)
+
+
+def _literal_choice(node: TreeNode) -> Iterator[Finding]:
+    """Where a `Switch` names no variable, its texts are strings; what is a float or bool elsewhere is hardly meant so.
+
+    A text that a `<SubTree>` hands down may be meant for a string, such as a version.
+    """
+    setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
+    if setting is not None:
+        tree, findings = parse(Decoded(setting.value.strip(), 0))
+        given, problems = infer(tree, lambda _: None)
+        if not findings and not problems and given in (BOOL, REAL):
+            yield RULE.at(setting.span, f"{_COMPARED}; `{setting.value}` is `{given}`")
+
+
+_COMPARED = "a switch compares strings or ints"
+
+
+def _place(node: TreeNode, port: PortOutline) -> Span:
+    """Where a node sets a port; a default of `<TreeNodesModel>` is told at the name of the node."""
+    setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
+    assert setting is not None
+    return setting.span
 
 
 @dataclass(frozen=True, slots=True)
