@@ -103,6 +103,8 @@ def _subtrees(node: NodeOutline | None) -> Iterator[str]:
 def _main(context: TreeContext) -> Iterator[Finding]:
     found, main = main_tree(context.files), context.file.main
     if not isinstance(found, tuple):
+        if main is not None and main.value and found.id and found.id != main.value:
+            yield from _another(context, main, found.id)
         return
     root = context.file.element.name_span
     if main is not None and found:
@@ -122,6 +124,14 @@ def _main(context: TreeContext) -> Iterator[Finding]:
             if context.file.element.get("main_tree_to_execute") is None
         )
         yield RULE.at(root, message, *itertools.islice(fixes, MOST))
+
+
+def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
+    """The only tree is executed whatever it is called (spec/02 §3.1), but hardly on purpose. See `_no_tree`."""
+    known = context.system is not None or close_names(wanted.value, [executed])
+    if known and not context.missing_includes:
+        message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"
+        yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
 
 
 RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)
