@@ -305,14 +305,16 @@ class Analysis:
         trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
         complete = self._is_complete(path, listed) and self._has_whole_tree(path, file, listed, trees)
+        plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
         events: Mapping[str, Struct] = {}
         for _ in range(_ROUNDS):
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
-            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, complete, observed)
-            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, complete, observed)
+            said = (complete, plugins_known, observed)
+            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, said)
+            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, *said)
             system = self.memo.get("system", path, key, make)
             if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
                 break
@@ -328,12 +330,23 @@ class Analysis:
         trees: tuple[TreeFileOutline, ...],
         structs: Structs,
         complete: bool,
+        plugins_known: bool,
         observed: frozenset[str],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
         instances = expand(trees)
         return System(
-            path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, complete, observed
+            path,
+            file.older,
+            file.parameters,
+            nodes,
+            plugins,
+            instances,
+            paths,
+            structs.types,
+            complete,
+            plugins_known,
+            observed,
         )
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
@@ -347,14 +360,28 @@ class Analysis:
         if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
             return False
         paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))
-        for each in (path, *paths):
-            document = self.document(each)
-            if document is None or any(f.code == "xml-syntax" for f in document.findings):
-                return False
+        if not all(self._is_well_formed(each) for each in (path, *paths)):
+            return False
         machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
         if self.has_misfits(path, SYSTEM) or any(self.has_misfits(machine, HL_SCXML) for machine in machines):
             return False
         return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
+
+    def _is_well_formed(self, path: str) -> bool:
+        document = self.document(path)
+        return document is not None and not any(f.code == "xml-syntax" for f in document.findings)
+
+    def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
+        """Whether all plugins are known that the system lists, or would list were it not for a mistake."""
+        if self.has_misfits(path, SYSTEM) or not self._is_well_formed(path):
+            return False
+        for each in listed:
+            if each.input.section == "behavior_tree" and each.wanted is not FileKind.TREE:
+                machine = self.machine(each.path) if each.wanted is FileKind.MACHINE and each.usable else None
+                name = machine.name if machine else None
+                if name is None or not name.value or not self._is_well_formed(each.path):
+                    return False
+        return True
 
     def _has_whole_tree(
         self, path: str, file: SystemFile, listed: tuple[ListedFile, ...], trees: tuple[TreeFileOutline, ...]
