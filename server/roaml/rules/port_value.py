@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -13,17 +12,20 @@ from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
 from roaml.model.expand import Constant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.syntax import Name
 from roaml.model.system import ANY_TYPE
-from roaml.model.tree import PortModel, PortSetting, TreeNode, is_variable_name, looks_like_reference, nodes
+from roaml.model.tree import (
+    RESERVED,
+    PortModel,
+    TreeNode,
+    blackboard_variable,
+    is_variable_name,
+    looks_like_reference,
+    nodes,
+)
 from roaml.rules.instances import instances
 from roaml.rules.rule import Rule, TreeContext, did_you_mean
 from roaml.text import Decoded, Span, TextEdit
-
-RESERVED = re.compile(
-    r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
-    r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"
-)
-"""What ECMAScript does not take for a name."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -33,7 +35,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for node in nodes(tree):
             for setting in node.ports:
-                yield from _name(node, setting)
+                yield from _name(setting.value, is_subtree=node.is_subtree)
             if not node.is_subtree and node.plugin is not None:
                 path, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
@@ -47,9 +49,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
     yield from _of_any_type(context)
 
 
-def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
+def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
     """A reference `{name}` needs a name that is one."""
-    variable, value = setting.variable, setting.value
+    variable = blackboard_variable(value.value)
     if variable is None:
         if looks_like_reference(value.value):
             message = f"`{value.value}` is neither a variable nor a constant: a variable stands alone, as `{{name}}`"
@@ -58,7 +60,7 @@ def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
         yield RULE.at(value.span, "the variable in the braces has no name")
     elif RESERVED.match(variable):
         yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
-    elif not is_variable_name(variable) and not (node.is_subtree and variable == "="):
+    elif not is_variable_name(variable) and not (is_subtree and variable == "="):
         message = f"`{variable}` cannot name a blackboard variable: letters, digits and `_`, not beginning with a digit"
         yield RULE.at(value.span, message)
 
@@ -73,8 +75,10 @@ def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Findi
 def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
     """A default of `<TreeNodesModel>` is the value of every node that does not set the port."""
     port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
-    if port is not None and default is not None and not looks_like_reference(default.value):
-        yield from _constant(default.value, default.value_span, port, path)
+    if port is not None and default is not None:
+        yield from _name(Name(default.value, default.value_span))
+        if not looks_like_reference(default.value):
+            yield from _constant(default.value, default.value_span, port, path)
 
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
