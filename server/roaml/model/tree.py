@@ -15,7 +15,7 @@ EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 SUBTREES = ("SubTree", "SubTreePlus")
 
 _REFERENCE = re.compile(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
-_VARIABLE = re.compile(r"@?[A-Za-z_]\w*\Z", re.ASCII)
+_VARIABLE = re.compile(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
 RESERVED = re.compile(
     r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
     r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"

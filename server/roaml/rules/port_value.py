@@ -61,7 +61,8 @@ def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
     elif RESERVED.match(variable):
         yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
     elif not is_variable_name(variable) and not (is_subtree and variable == "="):
-        message = f"`{variable}` cannot name a blackboard variable: letters, digits and `_`, not beginning with a digit"
+        rule = "letters, digits, `_` and `$`, not beginning with a digit"
+        message = f"`{variable}` cannot name a blackboard variable: {rule}"
         yield RULE.at(value.span, message)
 
 
