@@ -378,8 +378,7 @@ class Analysis:
         for each in listed:
             if each.input.section == "behavior_tree" and each.wanted is not FileKind.TREE:
                 machine = self.machine(each.path) if each.wanted is FileKind.MACHINE and each.usable else None
-                name = machine.name if machine else None
-                if name is None or not name.value or not self._is_well_formed(each.path):
+                if machine is None or machine.name is None or not self._is_well_formed(each.path):
                     return False
         return True
 

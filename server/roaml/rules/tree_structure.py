@@ -108,7 +108,7 @@ def _subtrees(node: NodeOutline | None) -> Iterator[str]:
 def _main(context: TreeContext) -> Iterator[Finding]:
     found, main = main_tree(context.files), context.file.main
     if not isinstance(found, tuple):
-        if main is not None and main.value and found.id and found.id != main.value:
+        if main is not None and found.id and found.id != main.value:
             yield from _another(context, main, found.id)
     elif main is not None and found:
         yield from _no_tree(context, main, found)
