@@ -102,7 +102,6 @@ def cases() -> Iterator[Tree]:
         ("{word}", "a", "ab"),
         ("b", "{word}", "b"),
         ("{n}", "{m}", 2),
-        ("{yes}", "true", "false"),
     ):
         yield node("Switch2", *leaves(3), variable=variable, case_1=one, case_2=other)
 

@@ -71,7 +71,7 @@ class AttributeType:
     Attributes:
         defines: kind of symbol that the value names first, or "".
         refers: kinds of symbols that the value may name.
-        value: what else the value is (expression, constant, location, type, ros-type, path, number, flag, status,
+        value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
             child-index, script), or "".
         value_type: the type wanted of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
         ignored: None, or whether a tool should keep quiet about the attribute having no effect.

@@ -171,6 +171,26 @@ def _walk(node: NodeOutline | None) -> Iterator[NodeOutline]:
             yield from _walk(child)
 
 
+def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
+    """Whether `expand` leaves nothing out: it is clear which tree is executed, and what each subtree stands for."""
+    trees = {tree.id: tree for file in files for tree in file.trees}
+    main = main_tree(files)
+    if isinstance(main, tuple) or len(trees) < sum(len(file.trees) for file in files):
+        return False
+    whole: set[str] = set()
+
+    def check(tree: TreeOutline, around: tuple[str, ...]) -> bool:
+        used = {node.plugin for node in _walk(tree.root) if node.is_subtree} - whole
+        if any(not name or name not in trees or name in around for name in used):
+            return False
+        if not all(check(trees[name], (*around, name)) for name in used):
+            return False
+        whole.add(tree.id)
+        return True
+
+    return check(main, (main.id,))
+
+
 def expand(files: tuple[TreeFileOutline, ...]) -> tuple[Instance, ...]:
     """All instances of the executed tree in pre-order; none if it cannot be told which tree that is."""
     main = main_tree(files)

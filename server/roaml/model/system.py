@@ -149,6 +149,7 @@ class System:
         tree_paths: the tree file and what it includes; empty without a tree.
         structs: by name.
         readable: every listed file could be read and is well-formed.
+        plugins_known: every plugin that the system lists could be read and has a name.
         observed: the names of variables that the properties mention.
     """
 
@@ -161,6 +162,7 @@ class System:
     tree_paths: tuple[str, ...]
     structs: Mapping[str, Type]
     readable: bool
+    plugins_known: bool
     observed: frozenset[str] = frozenset()
 
     @cached_property

@@ -15,7 +15,13 @@ EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 SUBTREES = ("SubTree", "SubTreePlus")
 
 _REFERENCE = re.compile(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
-_VARIABLE = re.compile(r"@?[A-Za-z_]\w*\Z", re.ASCII)
+_VARIABLE = re.compile(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
+RESERVED = re.compile(
+    r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
+    r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"
+)
+"""What ECMAScript does not take for a name."""
+
 _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 
@@ -190,7 +196,7 @@ def blackboard_variable(value: str) -> str | None:
 
 def is_variable_name(name: str) -> bool:
     """Whether `name` can be a blackboard variable; a leading `@` refers to the main tree's blackboard."""
-    return bool(_VARIABLE.match(name))
+    return bool(_VARIABLE.match(name)) and not RESERVED.match(name)
 
 
 def looks_like_reference(value: str) -> bool:

@@ -23,10 +23,10 @@ from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
 from roaml.json import parse as parse_json
-from roaml.language import HL_SCXML, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, SYSTEM, Grammar
 from roaml.language.validate import Violation, has_misfits, validate
 from roaml.model.build_machine import build_machine
-from roaml.model.expand import TreeFileOutline, expand, tree_file_outline
+from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
@@ -138,9 +138,11 @@ class Analysis:
         found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
         return found or ()
 
-    def has_misfits(self, machine: str) -> bool:
-        """Whether a machine has elements that the grammar does not know, or not where they stand."""
-        return bool(self._of_document("misfits", machine, lambda document: has_misfits(document, HL_SCXML)))
+    def has_misfits(self, path: str, grammar: Grammar) -> bool:
+        """Whether a file has elements that the grammar does not know, or not where they stand."""
+        return bool(
+            self._of_document(f"misfits {grammar.schema}", path, lambda document: has_misfits(document, grammar))
+        )
 
     def machine(self, path: str) -> Machine | None:
         return self._of_document("machine", path, build_machine)
@@ -302,15 +304,17 @@ class Analysis:
         structs = self.structs(path)
         trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
-        complete = self._is_complete(path, listed)
+        complete = self._is_complete(path, listed) and self._has_whole_tree(path, file, listed, trees)
+        plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
         events: Mapping[str, Struct] = {}
         for _ in range(_ROUNDS):
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
-            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, complete, observed)
-            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, complete, observed)
+            said = (complete, plugins_known, observed)
+            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, said)
+            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, *said)
             system = self.memo.get("system", path, key, make)
             if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
                 break
@@ -326,12 +330,23 @@ class Analysis:
         trees: tuple[TreeFileOutline, ...],
         structs: Structs,
         complete: bool,
+        plugins_known: bool,
         observed: frozenset[str],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
         instances = expand(trees)
         return System(
-            path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, complete, observed
+            path,
+            file.older,
+            file.parameters,
+            nodes,
+            plugins,
+            instances,
+            paths,
+            structs.types,
+            complete,
+            plugins_known,
+            observed,
         )
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
@@ -345,14 +360,40 @@ class Analysis:
         if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
             return False
         paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))
-        for each in (path, *paths):
-            document = self.document(each)
-            if document is None or any(f.code == "xml-syntax" for f in document.findings):
-                return False
+        if not all(self._is_well_formed(each) for each in (path, *paths)):
+            return False
         machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
-        if any(self.has_misfits(machine) for machine in machines):
+        if self.has_misfits(path, SYSTEM) or any(self.has_misfits(machine, HL_SCXML) for machine in machines):
             return False
         return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
+
+    def _is_well_formed(self, path: str) -> bool:
+        document = self.document(path)
+        return document is not None and not any(f.code == "xml-syntax" for f in document.findings)
+
+    def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
+        """Whether all plugins are known that the system lists, or would list were it not for a mistake."""
+        if self.has_misfits(path, SYSTEM) or not self._is_well_formed(path):
+            return False
+        for each in listed:
+            if each.input.section == "behavior_tree" and each.wanted is not FileKind.TREE:
+                machine = self.machine(each.path) if each.wanted is FileKind.MACHINE and each.usable else None
+                if machine is None or machine.name is None or not self._is_well_formed(each.path):
+                    return False
+        return True
+
+    def _has_whole_tree(
+        self, path: str, file: SystemFile, listed: tuple[ListedFile, ...], trees: tuple[TreeFileOutline, ...]
+    ) -> bool:
+        """Whether all nodes of the tree are known that is executed, if the system is to have one."""
+        if not any(f.wanted is FileKind.TREE for f in listed):
+            return file.element.find("behavior_tree") is None
+        if any(self.has_misfits(tree.path, BEHAVIOR_TREE) for tree in trees):
+            return False
+        written = (tree for outline in trees if (found := self.tree(outline.path)) for tree in found.trees)
+        if any(len(tree.roots) != 1 for tree in written):
+            return False
+        return self.memo.get("whole tree", path, trees, lambda: is_whole(trees))
 
     def tree_outline(self, path: str) -> TreeFileOutline:
         file = self.tree(path)

@@ -8,16 +8,19 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Fix
 from roaml.model.expand import node_at
 from roaml.model.system import BoundPort
+from roaml.model.tree import is_variable_name
 from roaml.rules.rule import TreeContext
 from roaml.text import Span, TextEdit
 
 
-def places(context: TreeContext, ports: Iterable[BoundPort]) -> Iterator[tuple[BoundPort, Span, str]]:
+def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> Iterator[tuple[BoundPort, Span, str]]:
     """Those of `ports` that nodes of this file have: where the port is bound, and the name of the variable there.
 
     That is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node of several
-    instances counts once.
+    instances counts once. There are none where the name cannot be one; port-value says that.
     """
+    if not is_variable_name(variable):
+        return
     seen: set[tuple[str, int, str]] = set()
     for bound in ports:
         source = bound.source
@@ -30,7 +33,9 @@ def places(context: TreeContext, ports: Iterable[BoundPort]) -> Iterator[tuple[B
             continue
         setting = next((s for s in node.ports if s.key.value == bound.port.key), None)
         if setting is not None:
-            yield bound, setting.value.span, setting.variable or ""
+            written = setting.variable or ""
+            if is_variable_name(written):
+                yield bound, setting.value.span, written
         else:
             yield bound, node.plugin.span if node.plugin else node.element.name_span, ""
 

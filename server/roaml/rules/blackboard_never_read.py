@@ -21,7 +21,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if variable in read or not any(bound.port.written for bound in ports):
             continue
         close = close_names(variable, unwritten)
-        for bound, span, written in places(context, ports):
+        for bound, span, written in places(context, variable, ports):
             if bound.port.direction == "in":
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)

@@ -19,7 +19,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if variable in set_:
             continue
         close = close_names(variable, set_)
-        for bound, span, written in places(context, ports):
+        for bound, span, written in places(context, variable, ports):
             if bound.port.direction == "out":
                 yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
             else:

@@ -19,7 +19,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         typed = [bound for bound in ports if bound.port.type != "any"]
         if len({bound.port.type for bound in typed}) < 2:
             continue
-        for bound, span, _ in places(context, ports):
+        for bound, span, _ in places(context, variable, ports):
             other = next((o for o in typed if o.port.type != bound.port.type), None)
             if other is not None and bound.port.type != "any":
                 yield RULE.at(

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.language.grammar import UNBOUNDED
+from roaml.language.grammar import UNBOUNDED, ElementType
 from roaml.model.outline import MachineOutline
 from roaml.model.system import builtin_plugins
-from roaml.model.tree import TreeNode, nodes
+from roaml.model.tree import SUBTREES, TreeNode, nodes
 from roaml.rules.elements import removal
 from roaml.rules.rule import Rule, TreeContext
 
@@ -17,14 +17,28 @@ from roaml.rules.rule import Rule, TreeContext
 def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for node in nodes(tree):
-            if node.plugin is None or node.is_subtree:
+            if node.is_subtree:
+                yield from _subtree(context, node)
+            elif node.plugin is None:
                 continue
-            if node.plugin.value in builtin_plugins():
+            elif node.plugin.value in builtin_plugins():
                 yield from _builtin(context, node)
             elif context.system is not None:
                 _, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
                     yield from _own(context, node, plugin)
+
+
+def tells(type_: ElementType) -> bool:
+    """Whether this rule says what is wrong with the children of an element, so that others keep quiet."""
+    return bool(type_.node) and (type_.name in builtin_plugins() or type_.name in SUBTREES)
+
+
+def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
+    if node.children:
+        where = f"; its nodes stand in the tree `{node.plugin.value}`" if node.plugin else ""
+        message = f"`{node.element.name}` has no children{where}"
+        yield RULE.at(node.children[0].element.name_span, message, _without(context, node, 0))
 
 
 def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, Grammar
+from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
 from roaml.language.validate import MisplacedElement
-from roaml.model.system import builtin_plugins
+from roaml.rules import child_count
 from roaml.rules.branch_order import MARKERS
 from roaml.rules.rule import FileContext, Rule, listing
 from roaml.rules.unknown_element import rename_tag
@@ -24,8 +24,8 @@ def check(context: FileContext) -> Iterator[Finding]:
             assert context.grammar is not None
             if parent in MARKERS and context.grammar in (HL_SCXML, PLAIN_SCXML):
                 continue  # branch-order says more
-            if context.grammar is BEHAVIOR_TREE and parent in builtin_plugins():
-                continue  # child-count says more
+            if child_count.tells(violation.parent):
+                continue
             message = f"`<{name}>` may not stand in `<{parent}>`{_where(context, name, parent)}"
             yield RULE.at(violation.element.name_span, message, *_fixes(violation))
 

@@ -9,8 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
 from roaml.model.machine import Chart, Thread
-from roaml.model.system import builtin_plugins
-from roaml.rules import misspelled
+from roaml.rules import child_count, misspelled
 from roaml.rules.layout import first_in, last_in, remove
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.text import Span, TextEdit
@@ -27,7 +26,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
                 message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
                 yield RULE.at(element.name_span, message, *_leave_out(context, element))
-        elif element.name not in builtin_plugins():  # of these, child-count tells
+        elif not child_count.tells(violation.type):
             children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
 

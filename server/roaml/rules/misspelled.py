@@ -19,6 +19,6 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
 def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
     """Whether one of `elements` that the language does not know was probably meant to be `<name>`."""
     return any(
-        not element.prefix and element.name not in grammar.elements and close_names(element.name, [name])
+        not element.prefix and grammar.find(element.name) is None and close_names(element.name, [name])
         for element in elements
     )

@@ -3,27 +3,29 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, fits, is_kind, is_number
-from roaml.model.expand import Constant
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
+from roaml.model.expand import Constant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.syntax import Name
 from roaml.model.system import ANY_TYPE
-from roaml.model.tree import PortModel, PortSetting, TreeNode, is_variable_name, looks_like_reference, nodes
+from roaml.model.tree import (
+    RESERVED,
+    PortModel,
+    TreeNode,
+    blackboard_variable,
+    is_variable_name,
+    looks_like_reference,
+    nodes,
+)
 from roaml.rules.instances import instances
 from roaml.rules.rule import Rule, TreeContext, did_you_mean
 from roaml.text import Decoded, Span, TextEdit
-
-RESERVED = re.compile(
-    r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
-    r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"
-)
-"""What ECMAScript does not take for a name."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -33,7 +35,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for node in nodes(tree):
             for setting in node.ports:
-                yield from _name(node, setting)
+                yield from _name(setting.value, is_subtree=node.is_subtree)
             if not node.is_subtree and node.plugin is not None:
                 path, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
@@ -47,9 +49,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
     yield from _of_any_type(context)
 
 
-def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
+def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
     """A reference `{name}` needs a name that is one."""
-    variable, value = setting.variable, setting.value
+    variable = blackboard_variable(value.value)
     if variable is None:
         if looks_like_reference(value.value):
             message = f"`{value.value}` is neither a variable nor a constant: a variable stands alone, as `{{name}}`"
@@ -58,8 +60,9 @@ def _name(node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
         yield RULE.at(value.span, "the variable in the braces has no name")
     elif RESERVED.match(variable):
         yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
-    elif not is_variable_name(variable) and not (node.is_subtree and variable == "="):
-        message = f"`{variable}` cannot name a blackboard variable: letters, digits and `_`, not beginning with a digit"
+    elif not is_variable_name(variable) and not (is_subtree and variable == "="):
+        rule = "letters, digits, `_` and `$`, not beginning with a digit"
+        message = f"`{variable}` cannot name a blackboard variable: {rule}"
         yield RULE.at(value.span, message)
 
 
@@ -73,8 +76,10 @@ def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Findi
 def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
     """A default of `<TreeNodesModel>` is the value of every node that does not set the port."""
     port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
-    if port is not None and default is not None and not looks_like_reference(default.value):
-        yield from _constant(default.value, default.value_span, port, path)
+    if port is not None and default is not None:
+        yield from _name(Name(default.value, default.value_span))
+        if not looks_like_reference(default.value):
+            yield from _constant(default.value, default.value_span, port, path)
 
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
@@ -106,25 +111,51 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
 
 
 def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """What a `Switch` compares is of one type, that of the first variable in it (spec/02 §7.2)."""
+    """What a `Switch` compares is of one type, that of the first variable in it: string or int (spec/02 §7.2)."""
     for node, automaton in instances(context):
         assert context.system is not None
         wanted = context.system.any_type(automaton)
-        for port in automaton.outline.ports:
-            value = automaton.port(port.key)
-            if port.type != ANY_TYPE or value is None:
-                continue
-            setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
-            assert setting is not None
+        values = [(p, v) for p in automaton.outline.ports if p.type == ANY_TYPE and (v := automaton.port(p.key))]
+        variables = [(port, value) for port, value in values if isinstance(value, Reference)]
+        if wanted != "string" and wanted not in INTEGER_RANGES:
+            port, reference = variables[0]
+            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{wanted}`")
+            continue
+        if values and not variables:
+            yield from _literal_choice(node)
+        for port, value in values:
             if isinstance(value, Constant):
                 problem = problem_of(value.text.strip(), replace(port, type=wanted))
                 if problem is not None and not looks_like_reference(value.text):
-                    yield RULE.at(setting.span, problem.message, severity=problem.severity)
+                    yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
                 continue
             given = context.system.variable_type(value.variable)
             if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
                 message = f"`{port.key}` is compared with values of type `{wanted}`; `{value.variable}` is `{given}`"
-                yield RULE.at(setting.span, message)
+                yield RULE.at(_place(node, port), message)
+
+
+def _literal_choice(node: TreeNode) -> Iterator[Finding]:
+    """Where a `Switch` names no variable, its texts are strings; what is a float or bool elsewhere is hardly meant so.
+
+    A text that a `<SubTree>` hands down may be meant for a string, such as a version.
+    """
+    setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
+    if setting is not None:
+        tree, findings = parse(Decoded(setting.value.strip(), 0))
+        given, problems = infer(tree, lambda _: None)
+        if not findings and not problems and given in (BOOL, REAL):
+            yield RULE.at(setting.span, f"{_COMPARED}; `{setting.value}` is `{given}`")
+
+
+_COMPARED = "a switch compares strings or ints"
+
+
+def _place(node: TreeNode, port: PortOutline) -> Span:
+    """Where a node sets a port; a default of `<TreeNodesModel>` is told at the name of the node."""
+    setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
+    assert setting is not None
+    return setting.span
 
 
 @dataclass(frozen=True, slots=True)

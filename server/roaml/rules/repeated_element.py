@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.language import BEHAVIOR_TREE
 from roaml.language.validate import TooManyElements, is_foreign
+from roaml.rules import child_count
 from roaml.rules.elements import own_elements
 from roaml.rules.layout import remove
 from roaml.rules.rule import FileContext, MachineContext, Rule
@@ -27,7 +28,7 @@ ONCE: dict[str, tuple[str, ...]] = {
 
 def check(context: FileContext) -> Iterator[Finding]:
     for violation in context.violations:
-        if isinstance(violation, TooManyElements):
+        if isinstance(violation, TooManyElements) and not child_count.tells(violation.parent):
             name, parent = violation.element.name, violation.parent.name
             message = f"`<{parent}>` has only one `<{name}>`"
             if context.grammar is BEHAVIOR_TREE:

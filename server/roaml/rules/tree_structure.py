@@ -7,9 +7,11 @@ import itertools
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import NodeOutline, TreeOutline, main_tree
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
+from roaml.rules import misspelled
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
 from roaml.text import Span, TextEdit
 
@@ -63,8 +65,11 @@ def _subtree(context: TreeContext, tree: Tree, name: Name, known: dict[str, Tree
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
-    """Without a system, or if an include cannot be read, the tree may stand in a file that is not known here."""
-    if context.missing_includes:
+    """Without a system, or if an include cannot be read, the tree may stand in a file that is not known here.
+
+    A `<BehaviorTree>` that is misspelled may be the one.
+    """
+    if context.missing_includes or _has_misspelled_tree(context):
         return
     close = close_names(name.value, known)
     message = f"there is no tree `{name.value}`{did_you_mean(close)}"
@@ -103,25 +108,49 @@ def _subtrees(node: NodeOutline | None) -> Iterator[str]:
 def _main(context: TreeContext) -> Iterator[Finding]:
     found, main = main_tree(context.files), context.file.main
     if not isinstance(found, tuple):
-        return
-    root = context.file.element.name_span
-    if main is not None and found:
+        if main is not None and found.id and found.id != main.value:
+            yield from _another(context, main, found.id)
+    elif main is not None and found:
         yield from _no_tree(context, main, found)
     elif context.system is not None and not context.missing_includes:
-        message = f"which tree is executed? Name one of {listing(found)} in `main_tree_to_execute`"
-        if not found:
-            yield RULE.at(root, "there is no `<BehaviorTree>` that could be executed")
-            return
-        fixes = (
-            Fix(
-                f"Execute `{name}`",
-                (TextEdit(Span(root.end, root.end), f' main_tree_to_execute="{name}"'),),
-                preferred=name == MAIN,
-            )
-            for name in found
-            if context.file.element.get("main_tree_to_execute") is None
+        if found:
+            yield from _ambiguous(context, found)
+        elif not _has_misspelled_tree(context):
+            yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that could be executed")
+
+
+def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Finding]:
+    """Only if it is clear which trees no other refers to: a missing, repeated or unknown name is enough to be told, and
+    so is a tree that contains itself where no tree is left."""
+    trees = [tree for file in context.files for tree in file.trees]
+    names = {tree.id for tree in trees}
+    used = {name for tree in trees for name in _subtrees(tree.root)}
+    if "" in names or len(names) < len(trees) or not used <= names or names == used:
+        return
+    root = context.file.element.name_span
+    fixes = (
+        Fix(
+            f"Execute `{name}`",
+            (TextEdit(Span(root.end, root.end), f' main_tree_to_execute="{name}"'),),
+            preferred=name == MAIN,
         )
-        yield RULE.at(root, message, *itertools.islice(fixes, MOST))
+        for name in candidates
+        if context.file.element.get("main_tree_to_execute") is None
+    )
+    message = f"which tree is executed? Name one of {listing(candidates)} in `main_tree_to_execute`"
+    yield RULE.at(root, message, *itertools.islice(fixes, MOST))
+
+
+def _has_misspelled_tree(context: TreeContext) -> bool:
+    return misspelled.among(context.file.element.elements, "BehaviorTree", BEHAVIOR_TREE)
+
+
+def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
+    """The only tree is executed whatever it is called (spec/02 §3.1), but hardly on purpose. See `_no_tree`."""
+    known = context.system is not None or close_names(wanted.value, [executed])
+    if known and not context.missing_includes:
+        message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"
+        yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
 
 
 RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)

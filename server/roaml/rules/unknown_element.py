@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML, PLAIN_SCXML
 from roaml.language.validate import UnknownElement
+from roaml.rules import child_count
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
@@ -21,6 +22,8 @@ def check(context: FileContext) -> Iterator[Finding]:
         assert context.grammar is not None
         if context.grammar is HL_SCXML and element.name in PLAIN_SCXML.elements:
             continue  # unsupported-scxml-element says more
+        if child_count.tells(parent):
+            continue
         close = close_names(element.name, parent.children) or close_names(element.name, context.grammar.elements)
         fits = [name for name in close if name in parent.children]
         fixes = [rename_tag(element, name, preferred=name in fits[:1]) for name in close]

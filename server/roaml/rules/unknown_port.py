@@ -31,8 +31,8 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
         key = setting.key
         edit = removal(context.source.text, setting.attribute.span)
         if key.value == CHILDREN_COUNT:
-            if CHILDREN_COUNT not in keys:
-                continue  # without the port it is not read
+            if CHILDREN_COUNT not in keys and path:
+                continue  # without the port it is not read; nodes of BehaviorTree.CPP have it
             message = f"`{CHILDREN_COUNT}` is filled in by itself and cannot be set"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
         elif key.value not in keys:

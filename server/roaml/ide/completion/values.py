@@ -70,8 +70,6 @@ def _of_value(request: Request, subject: Subject, name: str, value: str, value_t
             yield from _bounds(request, subject)
         case "constant":
             yield from _constants(request, subject)
-        case "flag":
-            yield from (Item(word, ItemKind.VALUE) for word in ("true", "false"))
         case "status":
             yield from (Item(name, ItemKind.VALUE) for name in STATUSES)
         case "child-index":

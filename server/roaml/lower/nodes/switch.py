@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-_INITIAL = {"string": "''", "bool": "false", "float32": "0.0", "float64": "0.0"}
-
 
 def switch(name: str, cases: int, type_: str) -> str:
-    """The machine of a switch with so many cases, whose ports hold values of the HL-SCXML type `type_`."""
+    """The machine of a switch with so many cases. Its ports hold values of the HL-SCXML type `type_`: string or int."""
     keys = ["variable", *(f"case_{i + 1}" for i in range(cases))]
     ports = "".join(f'<bt_declare_port_in key="{key}" type="{type_}"/>' for key in keys)
-    initial = _INITIAL.get(type_, "0")
+    initial = "''" if type_ == "string" else "0"
     data = "".join(f'<data id="{key}" type="{type_}" expr="{initial}"/>' for key in keys)
     fetch = "".join(f'<assign location="{key}"><expr><bt_get_input key="{key}"/></expr></assign>' for key in keys)
     choices = "".join(_choice(f'cond="variable == case_{i + 1}"', i) for i in range(cases)) + _choice("", cases)
