@@ -218,6 +218,13 @@ class Analysis:
             self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
         return self._listed[path]
 
+    def lists_all(self, system: str, section: str) -> bool:
+        """Whether all files that a system means to list in a section are known and can be used."""
+        file = self.system_file(system)
+        if file is None or section in file.unread:
+            return False
+        return all(listed.usable for listed in self.listed(system) if listed.input.section == section)
+
     def _listed_file(self, base: str, entry: Input) -> ListedFile:
         wanted = wanted_kind(entry)
         if entry.src is None:
@@ -303,14 +310,16 @@ class Analysis:
         trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
         complete = self._is_complete(path, listed)
+        plugins_known = self.lists_all(path, "behavior_tree")
         observed = self._observed(listed)
         events: Mapping[str, Struct] = {}
         for _ in range(_ROUNDS):
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
-            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, complete, observed)
-            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, complete, observed)
+            known = (complete, plugins_known, observed)
+            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
+            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
             system = self.memo.get("system", path, key, make)
             if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
                 break
@@ -325,14 +334,11 @@ class Analysis:
         plugins: tuple[tuple[str, MachineOutline], ...],
         trees: tuple[TreeFileOutline, ...],
         structs: Structs,
-        complete: bool,
-        observed: frozenset[str],
+        known: tuple[bool, bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
         instances = expand(trees)
-        return System(
-            path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, complete, observed
-        )
+        return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The names that the properties of a system mention."""
@@ -342,6 +348,9 @@ class Analysis:
 
     def _is_complete(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
         """Whether everything that the system names is there, well-formed and of known elements."""
+        file = self.system_file(path)
+        if file is None or file.unread - {"properties"}:
+            return False
         if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
             return False
         paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))

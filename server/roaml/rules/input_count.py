@@ -20,8 +20,9 @@ def check(context: SystemContext) -> Iterator[Finding]:
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     section = context.file.element.find("behavior_tree")
     wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
-    # An input of no known type may be meant as the tree; invalid-value says that.
-    if section is not None and wanted and all(kind is FileKind.MACHINE for kind in wanted):
+    # An input of no known type, or a misspelled one, may be meant as the tree; other rules say that.
+    unread = "behavior_tree" in context.file.unread
+    if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
         yield RULE.at(section.name_span, "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing")
     properties = [f for f in context.files if f.input.section == "properties"]
     for extra in properties[1:]:

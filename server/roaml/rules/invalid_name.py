@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Declaration, Send
 from roaml.model.syntax import Name
+from roaml.model.system import is_interface_name
 from roaml.model.typing import STATUSES
 from roaml.rules.event_data_unavailable import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
@@ -62,7 +63,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
     """Names that become parts of event names."""
     what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
     name = declaration.handle if declaration.kind == "timer" else declaration.interface
-    if isinstance(name, Name) and any(character.isspace() for character in name.value):
+    if isinstance(name, Name) and not is_interface_name(name.value):
         yield RULE.at(
             name.span, f"`{name.value}` cannot name {'an' if what == 'action' else 'a'} {what}: it has spaces"
         )
