@@ -68,6 +68,9 @@ def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
                 _check(element, wanted.element, problems)
         case ObjectLiteral(), Unknown():
             pass
+        case ArrayLiteral(), Unknown():
+            for element in expr.elements:
+                _check(element, wanted, problems)
         case ObjectLiteral(), _:
             problems.append(WrongType(expr.span, Struct("object", ()), wanted))
         case _:

@@ -57,13 +57,19 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structs:
-    """The structs of a system. `outlines` is what they are made of: equal outlines, equal structs."""
+    """The structs of a system.
+
+    Attributes:
+        outlines: what they are made of: equal outlines, equal structs.
+        complete: there are no structs whose names cannot be read.
+    """
 
     outlines: tuple[StructOutline, ...]
     types: Mapping[str, Type]
+    complete: bool
 
 
-NO_STRUCTS = Structs((), {})
+NO_STRUCTS = Structs((), {}, complete=True)
 
 
 class _MachineEnvironment:
@@ -290,10 +296,22 @@ class Analysis:
         return self._structs[system]
 
     def _resolve_structs(self, system: str) -> Structs:
-        files = (f.path for f in self.listed(system) if f.usable and f.input.section == "data_declarations")
-        declared = (declaration.outline for path in files for declaration in self.struct_declarations(path))
+        section = "data_declarations"
+        files = [f.path for f in self.listed(system) if f.usable and f.input.section == section]
+        declared = [declaration.outline for path in files for declaration in self.struct_declarations(path)]
         outlines = tuple(found for found in declared if found is not None)
-        return self.memo.get("struct types", system, outlines, lambda: Structs(outlines, resolve_structs(outlines)))
+        complete = self.lists_all(system, section) and None not in declared and all(map(self._is_well_formed, files))
+        make = functools.partial(self._make_structs, outlines, complete)
+        return self.memo.get("struct types", system, (outlines, complete), make)
+
+    def _make_structs(self, outlines: tuple[StructOutline, ...], complete: bool) -> Structs:
+        return Structs(outlines, resolve_structs(outlines), complete)
+
+    def _is_well_formed(self, path: str) -> bool:
+        """Whether a file of structs is read as a whole."""
+        document = self.document(path) if self.kind(path) is FileKind.STRUCTS else self.json(path)
+        findings = document.findings if isinstance(document, Document) else document[1] if document else ()
+        return not any(finding.code in ("xml-syntax", "json-syntax") for finding in findings)
 
     def system(self, path: str) -> System | None:
         """The linked system of a system file, None if the file cannot be read or is none."""
