@@ -18,7 +18,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration, automaton, topic in declared(context, "subscriber"):
         if has_publisher(system, topic) or not receives(automaton, declaration.handle):
             continue
-        close = close_names(topic.name, [t.name for t in system.topics.values() if t.sources])
+        # A topic that is declared on both sides is hardly misspelled.
+        others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]
+        close = close_names(topic.name, others)
         silent = " (declared, but nothing is ever published)" if topic.sources else ""
         message = f"nobody publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
         span = name_span(declaration)
