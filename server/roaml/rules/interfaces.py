@@ -9,7 +9,9 @@ from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import Name
 from roaml.model.system import Automaton, Channel
-from roaml.rules.rule import MachineContext
+from roaml.model.tree import TreeNode
+from roaml.rules.instances import instances
+from roaml.rules.rule import MachineContext, TreeContext
 from roaml.text import Span
 
 _OTHER = {
@@ -39,6 +41,22 @@ def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, 
             channel = context.system.channel(automaton, use) if use else None
             if channel is not None:
                 yield declaration, automaton, channel
+
+
+def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton, InterfaceUse]]:
+    """The nodes of a file whose ports name topics, services or actions, with what they are in the executed tree."""
+    for node, automaton in instances(context):
+        for use in automaton.outline.interfaces:
+            if use.port:
+                yield node, automaton, use
+
+
+def port_span(node: TreeNode, key: str) -> Span:
+    """Where a node says what its port holds; its name if that stands elsewhere, as a default does."""
+    setting = next((setting for setting in node.ports if setting.key.value == key), None)
+    if setting is not None:
+        return setting.value.span
+    return node.plugin.span if node.plugin else node.element.name_span
 
 
 def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
