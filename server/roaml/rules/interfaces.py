@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
+from roaml.diagnostics import Related
 from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import Name
@@ -22,6 +24,42 @@ _OTHER = {
     "action-client": "action-server",
     "action-server": "action-client",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """A place where an automaton says which topic, service or action it means.
+
+    Attributes:
+        span: of the name, or of what stands for it: see `name_span` and `port_span`.
+        literal: the name itself stands there.
+        related: for the port of a node, the declaration in its plugin.
+    """
+
+    span: Span
+    literal: bool
+    use: InterfaceUse
+    channel: Channel
+    related: tuple[Related, ...] = ()
+
+
+def named_here(context: MachineContext | TreeContext, kind: str) -> Iterator[Naming]:
+    """Where a file names topics, services or actions of a kind: in declarations, or as constants for ports."""
+    if context.system is None:
+        return
+    if isinstance(context, MachineContext):
+        for declaration, automaton, channel in declared(context, kind):
+            use = find_use(automaton, declaration)
+            if use is not None and isinstance(declaration.interface, Name):
+                yield Naming(declaration.interface.span, True, use, channel)
+        return
+    for node, automaton, use in named_by_ports(context):
+        channel_meant = context.system.channel(automaton, use)
+        if use.kind == kind and channel_meant is not None:
+            setting = next((setting for setting in node.ports if setting.key.value == use.port), None)
+            literal = setting is not None and setting.variable is None
+            related = (Related(automaton.symbol(use), "it is used here"),)
+            yield Naming(port_span(node, use.port), literal, use, channel_meant, related)
 
 
 def other_kind(kind: str) -> str:
