@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import UNKNOWN, Type
+from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
 from roaml.model.machine import (
     CallChild,
@@ -57,7 +57,8 @@ class InterfaceUse:
     Attributes:
         name: topic, service or action as written; "" if it comes from port `port`.
         sends, receives: the parts, as in the roles of the schema.
-        fields: of each part that is sent, the fields with the types that they are sent with.
+        fields: of each part that is sent, the fields with the types that they are sent with, those that are not set
+            included.
     """
 
     kind: str
@@ -155,7 +156,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
         machine.plain,
         _is_sound(machine, typed),
         _ports(machine, typed),
-        _interfaces(machine, types),
+        _interfaces(machine, typed, types),
         tuple(
             dict.fromkeys(
                 EventSent(
@@ -242,7 +243,7 @@ def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
     )
 
 
-def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
+def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
     sends: defaultdict[Element, set[str]] = defaultdict(set)
     receives: defaultdict[Element, set[str]] = defaultdict(set)
     fields: defaultdict[Element, dict[str, dict[str, Type]]] = defaultdict(dict)
@@ -254,6 +255,8 @@ def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[Interface
             for field in statement.fields:
                 if field.name:
                     known.setdefault(field.name.value, types.get(field.element, UNKNOWN))
+            for path, type_ in typed.unset.get(statement.element, ()):
+                known.setdefault(path, EMPTY_ARRAY if isinstance(type_, Array) else type_)
     for handler in _handlers(machine):
         if declaration := find_handle(machine, handler):
             receives[declaration.element].add(handler.trigger)
