@@ -295,9 +295,9 @@ class _Inference:
             self.problems.append(UnknownFunction(expr.span, f"Math.{expr.name}", called=False))
             return UNKNOWN
         owner = self.type_of(expr.object)
-        if not expr.name or isinstance(owner, Unknown):
-            return UNKNOWN
         inner, bounds = unwrap(owner)
+        if not expr.name or (isinstance(inner, Unknown) and not (bounds and expr.name == "length")):
+            return UNKNOWN
         if expr.name == "length" and (bounds or not (isinstance(inner, Struct) and inner.member("length"))):
             if bounds or is_kind(owner, "string") or isinstance(owner, EmptyArray):
                 return INT

@@ -15,14 +15,14 @@ from roaml.expr.zero import zero
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
 from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
-from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
-from roaml.model.typing import STATUSES
+from roaml.model.typing import STATUSES, unset_fields
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
 from roaml.text import Location
 
@@ -176,14 +176,16 @@ class StatementLowering:
 
     def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:
         fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
+        for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
+            fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
     def arguments(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Param]:
         """What is sent besides the fields (spec/04 §2)."""
-        for parameter, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
+        for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
-                yield Param(parameter, lower_expr(value.tree, scope), origin)
+                yield Param(argument, lower_expr(value.tree, scope), origin)
         if statement.type.code:
             yield Param("code", integer(statement.type.code), origin)
         if statement.type.sends == "thread-free":

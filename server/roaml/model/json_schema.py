@@ -2,7 +2,8 @@
 """Struct declarations given as a JSON Schema (spec/01 §3.2).
 
 The root object is a struct named by its `title`; an inline object is one named after its property; a `$ref` names a
-definition, of which only those that the root reaches exist. What the language has no type for is a finding.
+definition, of which only those that the root reaches exist. What the language has no type for is a finding; then a
+struct that cannot be read, or that is not reached, is declared all the same, as incomplete.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ def structs_in_json(value: JsonValue) -> tuple[tuple[StructDeclaration, ...], tu
     """The structs of a schema, and what of it cannot be a struct."""
     reader = _Reader(value)
     reader.root()
+    reader.unread()
     return tuple(reader.structs), tuple(reader.findings)
 
 
@@ -39,14 +41,29 @@ class _Reader:
         schema = self.value
         if not isinstance(schema, JsonObject):
             self.report(schema, "struct declarations in JSON are a JSON Schema: an object")
+            self.incomplete(schema, None)
             return
         if _text(schema.get("type")) != "object":
             self.report(schema.get("type") or schema, 'the schema of a struct has `"type": "object"`')
         title = schema.get("title")
         if not isinstance(title, JsonString) or not title.value:
             self.report(title or schema, 'the schema has no `"title"`: it is the name of the struct')
+            self.incomplete(schema, None)
             return
         self.object(schema, Name(title.value, title.content_span))
+
+    def unread(self) -> None:
+        """What cannot be read may lead to the definitions that nothing else leads to."""
+        if not self.findings or not isinstance(self.value, JsonObject):
+            return
+        for section in _DEFINITIONS:
+            definitions = self.value.get(section)
+            for member in definitions.members if isinstance(definitions, JsonObject) else ():
+                if member.value is not None and member.key not in self.done:
+                    self.incomplete(member.value, Name(member.key, member.key_content_span))
+
+    def incomplete(self, schema: JsonValue, name: Name | None) -> None:
+        self.structs.append(StructDeclaration(name, (), schema.span, complete=False))
 
     def object(self, schema: JsonObject, name: Name) -> None:
         """Declare the struct that an object schema describes."""
@@ -55,11 +72,13 @@ class _Reader:
         self.done.add(name.value)
         if self.depth >= _MAX_DEPTH:
             self.report(schema, f"structs are nested more than {_MAX_DEPTH} deep")
+            self.incomplete(schema, name)
             return
         self.depth += 1
         properties = schema.get("properties")
         if not isinstance(properties, JsonObject) or not properties.members:
             self.report(properties or schema, f"the struct `{name.value}` has no properties")
+            self.incomplete(schema, name)
             return
         # Its place in the list is before the structs that it contains, as a reader meets them.
         index = len(self.structs)

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import UNKNOWN, Type
+from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
+from roaml.language import HL_SCXML
 from roaml.model.machine import (
     CallChild,
     Communicate,
@@ -56,7 +57,8 @@ class InterfaceUse:
     Attributes:
         name: topic, service or action as written; "" if it comes from port `port`.
         sends, receives: the parts, as in the roles of the schema.
-        fields: of each part that is sent, the fields with the types that they are sent with.
+        fields: of each part that is sent, the fields with the types that they are sent with, those that are not set
+            included.
     """
 
     kind: str
@@ -124,7 +126,11 @@ class PluginOutline:
 
 @dataclass(frozen=True, slots=True)
 class MachineOutline:
-    """`sound` tells that all ROS types, handles and fields in it are known: it says what it means to say."""
+    """
+    Attributes:
+        sound: all ROS types, handles, fields and ports in it are known: it says what it means to say.
+        all_ports: `ports` are all that it means to declare.
+    """
 
     name: str
     root: str
@@ -137,6 +143,7 @@ class MachineOutline:
     timers: tuple[TimerOutline, ...]
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
+    all_ports: bool = True
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -161,7 +168,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
         machine.plain,
         _is_sound(machine, typed),
         _ports(machine, typed),
-        _interfaces(machine, types),
+        _interfaces(machine, typed, types),
         tuple(
             dict.fromkeys(
                 EventSent(
@@ -183,6 +190,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
             ThreadOutline(thread.server.value if thread.server else "", thread.count or 1) for thread in machine.threads
         ),
         _plugin(machine),
+        _declares_all_ports(machine),
     )
 
 
@@ -206,14 +214,33 @@ def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
         d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)
     ):
         return False
+    declared = {port.key.value for port in machine.ports if port.key}
+    if any(key is None or key.value not in declared for key in _port_keys(machine, typed)):
+        return False
     # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
     return all(value.wanted is not None and value.wanted != UNKNOWN for value in typed.values if value.use is Use.FIELD)
 
 
-def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
+def _port_keys(machine: Machine, typed: TypedMachine) -> Iterator[Name | None]:
+    """The keys of all ports that it reads or writes; None where one is missing."""
+    yield from (read.key for read in _reads_of_ports(machine, typed))
+    yield from (s.key for chart in machine.charts for s in chart.statements if isinstance(s, SetOutput))
+
+
+def _reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
     values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
     values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
-    read = {value.key.value for value in values if isinstance(value, PortRead) and value.key}
+    yield from (value for value in values if isinstance(value, PortRead))
+
+
+def _declares_all_ports(machine: Machine) -> bool:
+    """Whether no declaration lacks its key, and none is misspelled."""
+    strange = [e for e in machine.element.elements if e.name not in HL_SCXML.elements and not e.prefix]
+    return all(port.key for port in machine.ports) and not any(e.get("key") for e in strange)
+
+
+def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
+    read = {value.key.value for value in _reads_of_ports(machine, typed) if value.key}
     written = {s.key.value for s in _executed(machine) if isinstance(s, SetOutput) and s.key}
     return tuple(
         PortOutline(
@@ -228,7 +255,7 @@ def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
     )
 
 
-def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
+def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
     sends: defaultdict[Element, set[str]] = defaultdict(set)
     receives: defaultdict[Element, set[str]] = defaultdict(set)
     fields: defaultdict[Element, dict[str, dict[str, Type]]] = defaultdict(dict)
@@ -240,6 +267,8 @@ def _interfaces(machine: Machine, types: dict[Element, Type]) -> tuple[Interface
             for field in statement.fields:
                 if field.name:
                     known.setdefault(field.name.value, types.get(field.element, UNKNOWN))
+            for path, type_ in typed.unset.get(statement.element, ()):
+                known.setdefault(path, EMPTY_ARRAY if isinstance(type_, Array) else type_)
     for handler in _handlers(machine):
         if declaration := find_handle(machine, handler):
             receives[declaration.element].add(handler.trigger)

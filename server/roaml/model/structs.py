@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
 from roaml.text import Span
-from roaml.xml import Document
+from roaml.xml import Document, Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,50 +23,55 @@ class MemberDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class StructDeclaration:
+    """`complete` tells that it says no more than could be read."""
+
     name: Name | None
     members: tuple[MemberDeclaration, ...]
     span: Span
+    complete: bool = True
 
     @property
     def outline(self) -> StructOutline | None:
         """The declaration without places; None if it has no name."""
         if self.name is None:
             return None
-        members = tuple((m.name.value, m.type.name) for m in self.members if m.name and m.type and m.type.name)
-        return StructOutline(self.name.value, members)
+        members = tuple((m.name.value, m.type.name if m.type else None) for m in self.members if m.name)
+        return StructOutline(self.name.value, members, self.complete and all(m.name for m in self.members))
 
 
 @dataclass(frozen=True, slots=True)
 class StructOutline:
-    """Name and members of a struct; members whose declaration is incomplete are left out."""
+    """Name and members of a struct. `complete` tells that there are no members whose declaration cannot be read; the
+    type of a member is None if that cannot be read."""
 
     name: str
-    members: tuple[tuple[str, TypeName], ...]
+    members: tuple[tuple[str, TypeName | None], ...]
+    complete: bool = True
 
 
 def structs_in_xml(document: Document) -> tuple[StructDeclaration, ...]:
-    """The declarations in a `<types>` file."""
+    """The declarations in a `<types>` file. An element in place of a `<struct>` declares a struct, too."""
     if document.root is None:
         return ()
-    return tuple(
-        StructDeclaration(
-            name_of(struct.get("id")),
-            tuple(
-                MemberDeclaration(name_of(member.get("id")), type_of(member.get("type")), member.span)
-                for member in struct.elements
-                if member.name == "member"
-            ),
-            struct.span,
-        )
-        for struct in document.root.elements
-        if struct.name == "struct"
+    return tuple(_struct(each) for each in document.root.elements if each.name == "struct" or not each.prefix)
+
+
+def _struct(element: Element) -> StructDeclaration:
+    members = tuple(
+        MemberDeclaration(name_of(member.get("id")), type_of(member.get("type")), member.span)
+        for member in element.elements
+        if member.name == "member"
     )
+    strange = any(child.name != "member" and not child.prefix for child in element.elements)
+    complete = element.name == "struct" and not strange
+    return StructDeclaration(name_of(element.get("id")), members, element.span, complete)
 
 
 def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
     """All structs by name, their members resolved. Of equal names the last counts.
 
-    A member whose type is not known, or that would contain the struct itself, has an unknown type.
+    A member whose type is not known, or that would contain the struct itself, has an unknown type, and so has a struct
+    whose declaration is not complete.
     """
     by_name = {outline.name: outline for outline in outlines}
     resolved: dict[str, Type] = {}
@@ -80,7 +85,8 @@ def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
         if outline is None or name in inside:
             return UNKNOWN
         path = (*inside, name)
-        struct = Struct(name, tuple((m, wrap(resolve(t.base, path), t.dimensions)) for m, t in outline.members))
+        members = tuple((m, wrap(resolve(t.base, path), t.dimensions) if t else UNKNOWN) for m, t in outline.members)
+        struct = Struct(name, members) if outline.complete else UNKNOWN
         if not inside:
             resolved[name] = struct
         return struct
@@ -98,6 +104,8 @@ def struct_cycle(name: str, outlines: Mapping[str, StructOutline]) -> tuple[str,
         path = stack.pop()
         outline = outlines.get(path[-1])
         for _, type_ in outline.members if outline else ():
+            if type_ is None:
+                continue
             if type_.base == name:
                 return (*path, name)
             if type_.base in outlines and type_.base not in seen:

@@ -40,6 +40,11 @@ def sanitise(name: str) -> str:
     return name.removeprefix("/").replace("/", "__")
 
 
+def is_interface_name(name: str) -> bool:
+    """Whether `name` can name a topic, service or action: it becomes a part of event names (spec/01 §8)."""
+    return bool(name) and not any(character.isspace() for character in name)
+
+
 def safe_name(automaton: str) -> str:
     """An automaton name as part of an event name: what is no letter, digit, `_`, `.` or `-` becomes `_`."""
     return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
@@ -70,11 +75,16 @@ class Automaton:
         return self.instance.port(key)
 
     def interface_name(self, use: InterfaceUse) -> str | None:
-        """The topic, service or action of a declaration; None if its port gives no constant."""
-        if not use.port:
-            return use.name or None
-        value = self.port(use.port)
-        return value.text.strip() if isinstance(value, Constant) else None
+        """The topic, service or action of a declaration; None if nothing, or no name, is given."""
+        value = self.port(use.port) if use.port else Constant(use.name)
+        name = value.text.strip() if isinstance(value, Constant) else ""
+        return name if is_interface_name(name) else None
+
+    @property
+    def sound(self) -> bool:
+        """Whether all that it says to others is known: it says what it means to say, and to whom."""
+        uses = self.outline.interfaces
+        return self.outline.sound and all(self.interface_name(use) is not None for use in uses)
 
     def symbol(self, use: InterfaceUse) -> Symbol:
         return Symbol(self.path, use.kind, use.handle)
@@ -180,7 +190,7 @@ class System:
         """Whether everything is known that is said between the files. Only then does a missing side mean something."""
         known = all(self.plugin(instance.plugin)[1] is not None for instance in self.instances)
         placed = not self.ticked_nodes and not self.idle_plugins
-        return self.readable and known and placed and all(automaton.outline.sound for automaton in self.automata)
+        return self.readable and known and placed and all(automaton.sound for automaton in self.automata)
 
     @cached_property
     def ticked_nodes(self) -> frozenset[str]:

@@ -108,12 +108,18 @@ def duration(text: str) -> int | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SystemFile:
-    """One system file. `older` tells that it has the older root (spec/08, dialect B)."""
+    """One system file.
+
+    Attributes:
+        older: it has the older root (spec/08, dialect B).
+        unread: the sections that may list more than `inputs` says, because an element there is misspelled.
+    """
 
     element: Element
     older: bool
     parameters: Parameters
     inputs: tuple[Input, ...]
+    unread: frozenset[str]
 
 
 def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -> SystemFile | None:
@@ -128,7 +134,19 @@ def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -
         for child in section.elements
         if child.name == "input"
     ]
-    return SystemFile(root, root.name == "convince_mc_tc", overrides.applied(_parameters(root)), tuple(inputs))
+    older = root.name == "convince_mc_tc"
+    return SystemFile(root, older, overrides.applied(_parameters(root)), tuple(inputs), _unread(root))
+
+
+def _unread(root: Element) -> frozenset[str]:
+    found: set[str] = set()
+    for child in root.elements:
+        if child.name in SECTIONS:
+            if any(each.name != "input" and not each.prefix for each in child.elements):
+                found.add(child.name)
+        elif any(each.get("src") for each in (child, *child.elements)):
+            return frozenset(SECTIONS)  # whatever section it is meant to be, or to stand in
+    return frozenset(found)
 
 
 def _parameters(root: Element) -> Parameters:

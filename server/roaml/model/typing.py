@@ -14,7 +14,7 @@ from typing import Protocol
 
 from roaml.expr.infer import Problem, RandomUsed, infer
 from roaml.expr.tree import Number, walk
-from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, resolve_type, unwrap, wrap
+from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, leaves, resolve_type, unwrap, wrap
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_bound, check_initial
@@ -109,10 +109,12 @@ class TypedMachine:
     """Attributes:
     values: in document order within each chart.
     variables: per chart scope, the types of its data; of equal ids the first counts.
+    unset: of each sending element, the fields that it should set and does not: see `unset_fields`.
     """
 
     values: tuple[TypedValue, ...]
     variables: Mapping[str, Mapping[str, Type]]
+    unset: Mapping[Element, tuple[tuple[str, Type], ...]]
 
 
 def type_machine(
@@ -130,7 +132,9 @@ def type_machine(
             typer.taken_over.setdefault(handler, []).append(value)
     for chart in machine.charts:
         typer.chart(chart)
-    return TypedMachine(tuple(typer.values), typer.variables)
+    sent = (s for chart in machine.charts for s in chart.statements if isinstance(s, Communicate))
+    unset = {each.element: fields for each in sent if (fields := unset_fields(each, machine, environment))}
+    return TypedMachine(tuple(typer.values), typer.variables, unset)
 
 
 # ------------------------------------------------------------- event variables
@@ -207,6 +211,23 @@ def interface_part(part: str, declaration: Declaration | None, environment: Envi
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     section = SECTIONS.get(part, part)
     return dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+
+
+def unset_fields(statement: Communicate, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
+    """The dotted paths and types of the fields that a sending element should set and does not. They are sent as well,
+    with the defaults of ROS: 0, false, empty (spec/08); in the current dialect a rule forbids that."""
+    declaration = find_handle(machine, statement)
+    if declaration is None or declaration.type is None or "field" not in statement.type.children:
+        return ()
+    if declaration.kind not in statement.type.attributes["name"].refers:
+        return ()
+    interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    if interface is None:
+        return ()
+    part = SECTIONS.get(statement.type.sends, statement.type.sends)
+    given = {field.name.value for field in statement.fields if field.name}
+    types = {".".join(path): type_ for path, type_ in leaves(interface.part(part))}
+    return tuple((path, types[path]) for path in interface.required(part) if path not in given)
 
 
 # -------------------------------------------------------------------- the walk

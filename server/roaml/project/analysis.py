@@ -23,7 +23,7 @@ from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
 from roaml.json import parse as parse_json
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, SYSTEM, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, Grammar
 from roaml.language.validate import Violation, has_misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
@@ -57,13 +57,19 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structs:
-    """The structs of a system. `outlines` is what they are made of: equal outlines, equal structs."""
+    """The structs of a system.
+
+    Attributes:
+        outlines: what they are made of: equal outlines, equal structs.
+        complete: there are no structs whose names cannot be read.
+    """
 
     outlines: tuple[StructOutline, ...]
     types: Mapping[str, Type]
+    complete: bool
 
 
-NO_STRUCTS = Structs((), {})
+NO_STRUCTS = Structs((), {}, complete=True)
 
 
 class _MachineEnvironment:
@@ -220,6 +226,13 @@ class Analysis:
             self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
         return self._listed[path]
 
+    def lists_all(self, system: str, section: str) -> bool:
+        """Whether all files that a system means to list in a section are known and can be used."""
+        file = self.system_file(system)
+        if file is None or section in file.unread:
+            return False
+        return all(listed.usable for listed in self.listed(system) if listed.input.section == section)
+
     def _listed_file(self, base: str, entry: Input) -> ListedFile:
         wanted = wanted_kind(entry)
         if entry.src is None:
@@ -285,10 +298,16 @@ class Analysis:
         return self._structs[system]
 
     def _resolve_structs(self, system: str) -> Structs:
-        files = (f.path for f in self.listed(system) if f.usable and f.input.section == "data_declarations")
-        declared = (declaration.outline for path in files for declaration in self.struct_declarations(path))
+        section = "data_declarations"
+        files = [f.path for f in self.listed(system) if f.usable and f.input.section == section]
+        declared = [declaration.outline for path in files for declaration in self.struct_declarations(path)]
         outlines = tuple(found for found in declared if found is not None)
-        return self.memo.get("struct types", system, outlines, lambda: Structs(outlines, resolve_structs(outlines)))
+        complete = self.lists_all(system, section) and None not in declared and all(map(self._is_well_formed, files))
+        make = functools.partial(self._make_structs, outlines, complete)
+        return self.memo.get("struct types", system, (outlines, complete), make)
+
+    def _make_structs(self, outlines: tuple[StructOutline, ...], complete: bool) -> Structs:
+        return Structs(outlines, resolve_structs(outlines), complete)
 
     def system(self, path: str) -> System | None:
         """The linked system of a system file, None if the file cannot be read or is none."""
@@ -312,9 +331,9 @@ class Analysis:
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
-            said = (complete, plugins_known, observed)
-            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, said)
-            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, *said)
+            known = (complete, plugins_known, observed)
+            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
+            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
             system = self.memo.get("system", path, key, make)
             if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
                 break
@@ -329,25 +348,11 @@ class Analysis:
         plugins: tuple[tuple[str, MachineOutline], ...],
         trees: tuple[TreeFileOutline, ...],
         structs: Structs,
-        complete: bool,
-        plugins_known: bool,
-        observed: frozenset[str],
+        known: tuple[bool, bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
         instances = expand(trees)
-        return System(
-            path,
-            file.older,
-            file.parameters,
-            nodes,
-            plugins,
-            instances,
-            paths,
-            structs.types,
-            complete,
-            plugins_known,
-            observed,
-        )
+        return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The names that the properties of a system mention."""
@@ -357,23 +362,32 @@ class Analysis:
 
     def _is_complete(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
         """Whether everything that the system names is there, well-formed and of known elements."""
+        file = self.system_file(path)
+        if file is None or file.unread - {"properties"}:
+            return False
         if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
             return False
         paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))
         if not all(self._is_well_formed(each) for each in (path, *paths)):
             return False
         machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
-        if self.has_misfits(path, SYSTEM) or any(self.has_misfits(machine, HL_SCXML) for machine in machines):
+        if any(self.has_misfits(machine, HL_SCXML) for machine in machines):
             return False
         return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
 
     def _is_well_formed(self, path: str) -> bool:
-        document = self.document(path)
-        return document is not None and not any(f.code == "xml-syntax" for f in document.findings)
+        """Whether a file is read as a whole."""
+        if self.kind(path) is FileKind.JSON_STRUCTS:
+            _, findings = self.json(path) or (None, None)
+        else:
+            document = self.document(path)
+            findings = document.findings if document else None
+        return findings is not None and not any(f.code in ("xml-syntax", "json-syntax") for f in findings)
 
     def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
         """Whether all plugins are known that the system lists, or would list were it not for a mistake."""
-        if self.has_misfits(path, SYSTEM) or not self._is_well_formed(path):
+        file = self.system_file(path)
+        if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
             return False
         for each in listed:
             if each.input.section == "behavior_tree" and each.wanted is not FileKind.TREE:

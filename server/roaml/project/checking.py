@@ -203,14 +203,15 @@ class _Run:
                 assert machine is not None
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
-                return (*parts, typed, lookups)
+                return (*parts, typed, lookups, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path))
             case FileKind.TREE:
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
-                return (*parts, self.analysis.structs(self.system_path).outlines)
+                structs = self.analysis.structs(self.system_path)
+                return (*parts, structs.outlines, structs.complete)
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
@@ -331,6 +332,7 @@ class _Run:
             frozenset(f.input.section for f in listed if f.path == self.path),
             structs.types.get,
             tuple(structs.types),
+            structs.complete,
             self.analysis.interface,
             events.get,
         )
@@ -381,8 +383,8 @@ class _Run:
         structs = self.analysis.structs(self.system_path)
         if structs is NO_STRUCTS:
             own = tuple(outline for d in declarations if (outline := d.outline) is not None)
-            return StructsContext(self.source, declarations, own)
-        return StructsContext(self.source, declarations, structs.outlines)
+            return StructsContext(self.source, declarations, own, len(own) == len(declarations))
+        return StructsContext(self.source, declarations, structs.outlines, structs.complete)
 
     def _properties_context(self) -> PropertiesContext | None:
         found = self.analysis.json(self.path)

@@ -6,10 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import ListedFile
-from roaml.rules import misspelled
 from roaml.rules.layout import remove
 from roaml.rules.rule import Rule, SystemContext
 
@@ -22,13 +20,9 @@ def check(context: SystemContext) -> Iterator[Finding]:
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     section = context.file.element.find("behavior_tree")
     wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
-    # What is misspelled or of no known type may be meant as the tree: unknown-element and invalid-value say that.
-    if (
-        section is not None
-        and wanted
-        and all(kind is FileKind.MACHINE for kind in wanted)
-        and not misspelled.among(section.elements, "input", SYSTEM)
-    ):
+    # An input of no known type, or a misspelled one, may be meant as the tree; other rules say that.
+    unread = "behavior_tree" in context.file.unread
+    if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
         yield RULE.at(section.name_span, "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing")
     properties = [f for f in context.files if f.input.section == "properties"]
     for extra in properties[1:]:

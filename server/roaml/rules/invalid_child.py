@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import Unknown, is_kind
 from roaml.model.machine import CallChild, Chart
 from roaml.model.syntax import Name
+from roaml.rules import misspelled
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 
@@ -41,6 +42,8 @@ def _variable(context: MachineContext, chart: Chart, name: Name) -> Iterator[Fin
     variables = context.typed.variables.get(chart.scope, {})
     type_ = variables.get(name.value)
     if type_ is None:
+        if misspelled.data(context.machine, name.value):
+            return
         close = close_names(name.value, variables)
         hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an int variable"
         yield RULE.at(name.span, f"`{name.value}` is no child{hint}", *replacements(name.span, close))

@@ -6,12 +6,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.expand import Constant
 from roaml.model.machine import Declaration, Send
 from roaml.model.syntax import Name
+from roaml.model.system import is_interface_name
 from roaml.model.typing import STATUSES
 from roaml.rules.event_data_unavailable import EVENT_VARIABLES
-from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.interfaces import named_by_ports, port_span
+from roaml.rules.rule import MachineContext, Rule, TreeContext
 
 VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
 EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
@@ -62,10 +65,31 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
     """Names that become parts of event names."""
     what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
     name = declaration.handle if declaration.kind == "timer" else declaration.interface
-    if isinstance(name, Name) and any(character.isspace() for character in name.value):
-        yield RULE.at(
-            name.span, f"`{name.value}` cannot name {'an' if what == 'action' else 'a'} {what}: it has spaces"
-        )
+    if isinstance(name, Name) and not is_interface_name(name.value):
+        yield RULE.at(name.span, _with_spaces(name.value, what))
+
+
+def check_tree(context: TreeContext) -> Iterator[Finding]:
+    """Ports give such names, too. An error in a node of several instances is one error."""
+    found: dict[Finding, None] = {}
+    for node, automaton, use in named_by_ports(context):
+        value = automaton.port(use.port)
+        text = value.text.strip() if isinstance(value, Constant) else None
+        if text is not None and not is_interface_name(text):
+            what = KINDS.get(use.kind, "action")
+            empty = f"`{use.port}` names {_a(what)} and cannot be empty"
+            message = _with_spaces(text, what) if text else empty
+            related = (Related(automaton.symbol(use), "it is used here"),)
+            found[RULE.at(port_span(node, use.port), message, related=related)] = None
+    yield from found
+
+
+def _with_spaces(name: str, what: str) -> str:
+    return f"`{name}` cannot name {_a(what)}: it has spaces"
+
+
+def _a(what: str) -> str:
+    return f"{'an' if what == 'action' else 'a'} {what}"
 
 
 def variable_problem(name: str) -> str:
@@ -83,4 +107,4 @@ def variable_problem(name: str) -> str:
     return ""
 
 
-RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check)
+RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check, tree=check_tree)

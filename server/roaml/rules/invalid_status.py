@@ -10,6 +10,7 @@ from roaml.expr.types import Unknown, is_kind
 from roaml.model.machine import Chart, ReturnStatus
 from roaml.model.syntax import Name
 from roaml.model.typing import STATUSES
+from roaml.rules import misspelled
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 NUMBERS = {str(number): status for status, number in STATUSES.items()}
@@ -26,6 +27,8 @@ def _check(context: MachineContext, chart: Chart, status: Name) -> Iterator[Find
     variables = context.typed.variables.get(chart.scope, {})
     type_ = variables.get(status.value)
     if type_ is None:
+        if misspelled.data(context.machine, status.value):
+            return
         ints = [name for name, type_ in variables.items() if is_kind(type_, "int")]
         known = (NUMBERS[status.value],) if status.value in NUMBERS else close_names(status.value, (*STATUSES, *ints))
         hint = did_you_mean(known) or "; write `SUCCESS`, `FAILURE`, `RUNNING` or the name of an int variable"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import LengthOfStruct
-from roaml.expr.types import Array, leaves
+from roaml.expr.types import Array, Unknown, leaves
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 
@@ -22,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     message = f"`{problem.struct}` is no array; this is the length of its `{first}`"
                     fix = Fix(f"Write `.{first}.length`", (TextEdit(problem.span, f"{first}.length"),))
                     yield RULE.at(problem.span, message, fix)
-                else:
+                elif not isinstance(type_, Unknown):
                     message = f"`{problem.struct}` is no array and has no length"
                     yield RULE.at(problem.span, message, severity=Severity.ERROR)
 

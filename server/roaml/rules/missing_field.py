@@ -9,8 +9,6 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Struct, Type, leaves
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Communicate
-from roaml.model.ros import InterfaceType
-from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule, close_names, listing
 from roaml.rules.unknown_field import sent_part
@@ -22,33 +20,28 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Communicate):
-                missing = missing_fields(context, statement)
+                missing = _missing(context, statement)
                 if missing:
                     yield _finding(context, statement, missing)
 
 
-def missing_fields(context: MachineContext, statement: Communicate) -> list[tuple[str, Type]]:
+def _missing(context: MachineContext, statement: Communicate) -> list[tuple[str, Type]]:
     """The fields that must be set and are not, with their types."""
-    part = sent_part(context, statement)
-    declaration = find_handle(context.machine, statement)
-    if part is None or declaration is None or declaration.type is None or not part.members:
+    unset = context.typed.unset.get(statement.element, ())
+    part = sent_part(context, statement) if unset else None
+    if part is None:
         return []
-    if declaration.kind not in statement.type.attributes["name"].refers:
-        return []  # undeclared-handle says more
-    interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-    assert isinstance(interface, InterfaceType)
-    required = interface.required(SECTIONS.get(statement.type.sends, statement.type.sends))
-    given = {field.name.value for field in statement.fields if field.name}
-    types = {".".join(path): type_ for path, type_ in leaves(part)}
     # What is only misspelled, or set as a whole, is reported as an unknown field.
-    meant = {path for name in given - types.keys() for path in _meant(name, required)}
-    return [(path, types[path]) for path in required if path not in given and path not in meant]
+    names = {field.name.value for field in statement.fields if field.name}
+    known = [".".join(path) for path, _ in leaves(part)]
+    meant = {path for name in names.difference(known) for path in _meant(name, known)}
+    return [(path, type_) for path, type_ in unset if path not in meant]
 
 
-def _meant(name: str, required: Iterable[str]) -> tuple[str, ...]:
+def _meant(name: str, known: Iterable[str]) -> tuple[str, ...]:
     """The fields that something that is no field was probably meant to set."""
-    inside = tuple(path for path in required if path.startswith(f"{name}."))
-    return inside or close_names(name, required, 1)
+    inside = tuple(path for path in known if path.startswith(f"{name}."))
+    return inside or close_names(name, known, 1)
 
 
 def _finding(context: MachineContext, statement: Communicate, missing: list[tuple[str, Type]]) -> Finding:

@@ -7,47 +7,47 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
-from roaml.model.syntax import Name
-from roaml.model.system import Channel, System
+from roaml.model.system import System
 from roaml.model.typing import find_handle
-from roaml.rules.interfaces import declared, name_span
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean
+from roaml.rules.interfaces import Naming, named_here
+from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
 from roaml.text import Span, TextEdit
 
 
-def check(context: MachineContext) -> Iterator[Finding]:
+def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None or not system.complete:
         return
     for kind, what in (("service-client", "service"), ("action-client", "action")):
-        for declaration, _, channel in declared(context, kind):
-            if not channel.sources:
-                yield _finding(context.machine, system, declaration, channel, what)
+        for naming in named_here(context, kind):
+            if not naming.channel.sources:
+                yield _finding(context, system, naming, what)
 
 
-def _finding(machine: Machine, system: System, declaration: Declaration, channel: Channel, what: str) -> Finding:
+def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, what: str) -> Finding:
     channels = system.services if what == "service" else system.actions
     served = [c for c in channels.values() if c.sources]
-    span = name_span(declaration)
+    span, channel = naming.span, naming.channel
     for other in served:
         if other.name.lstrip("/") == channel.name.lstrip("/"):
             message = (
                 f"nobody serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference for {what}s"
             )
-            related: list[Related] = [Related(other.sources[0].symbol, "the server")]
-            return RULE.at(span, message, *_rename(machine, declaration, (other.name,)), related=related)
+            related = (Related(other.sources[0].symbol, "the server"), *naming.related)
+            return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
     message = f"nobody serves the {what} `{channel.name}`{did_you_mean(close)}"
-    return RULE.at(span, message, *_rename(machine, declaration, close))
+    return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 
-def _rename(machine: Machine, declaration: Declaration, names: Iterable[str]) -> Iterator[Fix]:
-    """Another interface for a declaration, unless its name comes from a port."""
-    if not isinstance(declaration.interface, Name):
+def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
+    """Another interface, where its name stands, and where it serves as the handle."""
+    if not naming.literal:
         return
-    spans = [declaration.interface.span]
-    if declaration.handle is declaration.interface:
-        spans += _handle_spans(machine, declaration)
+    spans = [naming.span]
+    if isinstance(context, MachineContext):
+        declared = [d for d in context.machine.declarations if d.interface and d.interface.span == naming.span]
+        spans += [s for d in declared if d.handle is d.interface for s in _handle_spans(context.machine, d)]
     for number, name in enumerate(names):
         edits = tuple(TextEdit(span, name) for span in spans)
         yield Fix(f"Change to `{name}`", edits, preferred=number == 0)
@@ -63,4 +63,6 @@ def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
                 yield user.handle.span
 
 
-RULE = Rule("missing-server", Severity.ERROR, "A service or action is used that nobody serves.", machine=check)
+RULE = Rule(
+    "missing-server", Severity.ERROR, "A service or action is used that nobody serves.", machine=check, tree=check
+)

@@ -49,7 +49,8 @@ class FileContext:
 class MachineContext:
     """A machine. `automata` is what it is in `system`; both are empty for a machine that belongs to no system.
 
-    `interface` looks up ROS types by kind and name as written; `older` tells that the older dialect is checked.
+    `all_structs` tells that the system has no other structs than those in `struct_names`; `interface` looks up ROS
+    types by kind and name as written; `older` tells that the older dialect is checked.
     """
 
     source: SourceFile
@@ -62,6 +63,7 @@ class MachineContext:
     listed_as: frozenset[str]
     struct: Callable[[str], Type | None]
     struct_names: tuple[str, ...]
+    all_structs: bool
     interface: Callable[[str, str], InterfaceType | NotFound]
     event_data: Callable[[str], Struct | None]
 
@@ -94,11 +96,13 @@ class SystemContext:
 
 @dataclass(frozen=True, slots=True)
 class StructsContext:
-    """A file of struct declarations, XML or JSON. `outlines` are all structs of the system."""
+    """A file of struct declarations, XML or JSON. `outlines` are the structs of the system; `complete` tells that they
+    are all whose names can be read."""
 
     source: SourceFile
     declarations: tuple[StructDeclaration, ...]
     outlines: tuple[StructOutline, ...]
+    complete: bool
 
 
 @dataclass(frozen=True, slots=True)

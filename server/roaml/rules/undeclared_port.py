@@ -82,9 +82,8 @@ def writes(machine: Machine) -> Iterator[Name]:
 
 
 def _is_misspelled_declaration(machine: Machine, key: str) -> bool:
-    """Whether an element that the language does not know declares the port: unknown-element says so."""
-    named = [e for e in machine.element.elements if (known := e.get("key")) and known.value == key]
-    return any(misspelled.among(named, name, HL_SCXML) for name in ("bt_declare_port_in", "bt_declare_port_out"))
+    tags = ("bt_declare_port_in", "bt_declare_port_out")
+    return any(misspelled.declaration(machine.element, tag, "key", key, HL_SCXML) for tag in tags)
 
 
 RULE = Rule("undeclared-port", Severity.ERROR, "A port is used that is not declared.", machine=check)

@@ -14,6 +14,7 @@ from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
 from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.rules import misspelled
 from roaml.rules.layout import first_in, last_in
 from roaml.rules.missing_type import DEFAULTS
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -26,10 +27,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, UnknownName) and not problem.name.startswith("_"):
-                yield _finding(context, value, problem)
+                finding = _finding(context, value, problem)
+                if finding is not None:
+                    yield finding
 
 
-def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -> Finding:
+def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -> Finding | None:
     name = problem.name
     if name in LITERALS:
         literal = LITERALS[name]
@@ -44,6 +47,8 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         number = str(STATUSES[name])
         message = f"`{name}` is known only in the condition of `<bt_child_status>`; write `{number}`"
         return RULE.at(problem.span, message, *replacements(problem.span, (number,)))
+    if misspelled.data(context.machine, name):
+        return None
     close = close_names(name, [*variables, *_answers(value)])
     message = f"there is no variable `{name}`{did_you_mean(close)}"
     if not close and any(name in known for known in context.typed.variables.values()):

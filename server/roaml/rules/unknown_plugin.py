@@ -34,11 +34,12 @@ def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
     if name in [tree.id for file in context.files for tree in file.trees]:
         yield RULE.at(node.plugin.span, f'`{name}` is a tree: write `<SubTree ID="{name}"/>`', *_subtree(node, name))
         return
-    if not system.plugins_known:
+    misplaced = name in [outline.name for _, outline in system.nodes]
+    if not misplaced and not system.plugins_known:
         return  # what is wrong with the listed file that may be the plugin's says enough
     close = close_names(name, [*(outline.name for _, outline in system.plugins), *builtin_plugins()])
     hint = did_you_mean(close) or "; list its file in `<behavior_tree>` of the system"
-    if name in [outline.name for _, outline in system.nodes]:
+    if misplaced:
         hint = "; its file is listed in `<node_models>`, plugins are listed in `<behavior_tree>`"
         close = ()
     fixes = _compact_fixes(node, close) if node.compact else replacements(node.plugin.span, close)

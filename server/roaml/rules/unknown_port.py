@@ -35,7 +35,7 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
                 continue  # without the port it is not read; nodes of BehaviorTree.CPP have it
             message = f"`{CHILDREN_COUNT}` is filled in by itself and cannot be set"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
-        elif key.value not in keys:
+        elif key.value not in keys and plugin.all_ports:
             free = [k for k in keys if node.element.get(k) is None]
             close = close_names(key.value, free)
             # What is only misspelled would be missing then.

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Severity
+from roaml.expr.types import Unknown, unwrap
 from roaml.jani.properties import identifiers
 from roaml.model.globals import GlobalVariable
 from roaml.rules.rule import PropertiesContext, Rule, close_names, did_you_mean, replacements
@@ -16,10 +17,16 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
         return
     for property_ in context.properties:
         for name, span in identifiers(property_.expression):
-            if name not in context.variables:
+            if name not in context.variables and not _is_part_of_unknown(name, context.variables):
                 close = close_names(name, context.variables) or _same_event(name, context.variables)
                 hint = did_you_mean(close) or _explanation(name, context.variables)
                 yield RULE.at(span, f"the system has no variable `{name}`{hint}", *replacements(span, close))
+
+
+def _is_part_of_unknown(name: str, variables: Mapping[str, GlobalVariable]) -> bool:
+    """Whether a variable would be one of those of a parameter whose type is not known: that is told elsewhere."""
+    unknown = (v.name for v in variables.values() if isinstance(unwrap(v.type)[0], Unknown))
+    return any(name.startswith((f"{whole}__", f"{whole}.")) for whole in unknown)
 
 
 def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:

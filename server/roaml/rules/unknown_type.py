@@ -23,7 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for data in chart.data:
             if data.type is not None:
-                yield from unknown(data.type, context.struct_names, alone=context.system is None)
+                alone = context.system is None
+                yield from unknown(data.type, context.struct_names, complete=context.all_structs, alone=alone)
 
 
 def check_structs(context: StructsContext) -> Iterator[Finding]:
@@ -31,17 +32,18 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
     for declaration in context.declarations:
         for member in declaration.members:
             if member.type is not None:
-                yield from unknown(member.type, names)
+                yield from unknown(member.type, names, complete=context.complete)
 
 
-def unknown(type_: TypeRef, structs: Iterable[str], *, alone: bool = False) -> Iterator[Finding]:
-    """What is wrong with a type. A machine that is checked `alone` cannot know the structs of its system."""
+def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
+    """What is wrong with a type. `complete` tells that there are no other structs, whose declarations cannot be read.
+    A machine that is checked `alone` cannot know the structs of its system."""
     if type_.name is None:
         yield _no_type(type_)
         return
     known = [*BASE_TYPES, *structs]
     base = type_.name.base
-    if base not in known:
+    if base not in known and (complete or base in SPELLINGS):
         close = (SPELLINGS[base],) if base in SPELLINGS else close_names(base, known)
         brackets = type_.text[len(base) :]
         fixes = replacements(type_.span, [name + brackets for name in close])
