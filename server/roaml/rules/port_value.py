@@ -24,7 +24,7 @@ from roaml.model.tree import (
     nodes,
 )
 from roaml.rules.instances import instances
-from roaml.rules.rule import Rule, TreeContext, did_you_mean
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.text import Decoded, Span, TextEdit
 
 
@@ -64,6 +64,13 @@ def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
         rule = "letters, digits, `_` and `$`, not beginning with a digit"
         message = f"`{variable}` cannot name a blackboard variable: {rule}"
         yield RULE.at(value.span, message)
+    elif (plain := f"{{{variable}}}") != value.value.strip():
+        # What is meant is clear here, but for BehaviorTree.CPP and the reference the spaces belong to the name.
+        yield RULE.at(
+            value.span,
+            f"a variable stands in its braces without spaces: `{plain}`",
+            *replacements(value.span, (plain,)),
+        )
 
 
 def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
