@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -10,12 +11,13 @@ from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
 from roaml.language.grammar import ElementType
 from roaml.rules.elements import known_elements, removal
-from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext
 from roaml.rules.unknown_element import rename_tag
 from roaml.text import Span, TextEdit
 from roaml.xml import Attribute, Element
 
 ROOT = "ascxml"
+EXTENSION = ".ascxml"
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -38,6 +40,21 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
         message = f"the machines of a `<roaml>` system have the root `<{ROOT}>`, not `<{machine.root}>`"
         rename = replace(rename_tag(machine.element, ROOT), safe=True)
         yield RULE.at(machine.element.name_span, message, rename, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
+
+
+def check_system(context: SystemContext) -> Iterator[Finding]:
+    """The reference translator tells by its name, too, whether a file is a machine (spec/01 §1.1)."""
+    roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
+    for listed in context.files:
+        src = listed.input.src
+        # Where the root is the older one, too, it is reported there.
+        if src is not None and not context.file.older and roots.get(listed.path) == ROOT:
+            stem, extension = os.path.splitext(os.path.basename(src.value))
+            if extension != EXTENSION:
+                message = (
+                    f"the file of a machine in a `<roaml>` system is called `{stem}{EXTENSION}`: rename `{src.value}`"
+                )
+                yield RULE.at(src.span, message, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
 
 
 def _is_newer_tree(root: Element | None) -> bool:
@@ -80,4 +97,11 @@ def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -
     return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
 
 
-RULE = Rule("deprecated-spelling", Severity.HINT, "An older spelling is used.", file=check, machine=check_machine)
+RULE = Rule(
+    "deprecated-spelling",
+    Severity.HINT,
+    "An older spelling is used.",
+    file=check,
+    machine=check_machine,
+    system=check_system,
+)
