@@ -5,7 +5,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from hypothesis import settings
+
 import conformance
+
+# How long an example takes says more about what else the machine does than about the code.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
 
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:

@@ -29,7 +29,7 @@ def test_a_seed_makes_one_case() -> None:
 
 def test_cases_damage_something() -> None:
     cases = [make(seed) for seed in range(100)]
-    assert sum(case.texts != case.model.texts for case in cases) > 90
+    assert sum(case.texts != case.model.texts for case in cases) > 80
     assert len({case.model.name for case in cases}) > 30
 
 

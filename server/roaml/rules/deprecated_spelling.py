@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import os
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -49,11 +49,10 @@ def check_system(context: SystemContext) -> Iterator[Finding]:
         src = listed.input.src
         # Where the root is the older one, too, it is reported there.
         if src is not None and not context.file.older and roots.get(listed.path) == ROOT:
-            stem, extension = os.path.splitext(os.path.basename(src.value))
-            if extension != EXTENSION:
-                message = (
-                    f"the file of a machine in a `<roaml>` system is called `{stem}{EXTENSION}`: rename `{src.value}`"
-                )
+            name = re.split(r"[/\\]", src.value)[-1]
+            if not name.endswith(EXTENSION):
+                new = (name.rpartition(".")[0] or name) + EXTENSION
+                message = f"the machines of a `<roaml>` system are `{EXTENSION}` files: call it `{new}`"
                 yield RULE.at(src.span, message, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
 
 
