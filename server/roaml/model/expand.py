@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
 from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes
@@ -177,18 +178,20 @@ def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
     main = main_tree(files)
     if isinstance(main, tuple) or len(trees) < sum(len(file.trees) for file in files):
         return False
-    whole: set[str] = set()
-
-    def check(tree: TreeOutline, around: tuple[str, ...]) -> bool:
-        used = {node.plugin for node in _walk(tree.root) if node.is_subtree} - whole
-        if any(not name or name not in trees or name in around for name in used):
+    uses: dict[str, set[str]] = {}
+    pending = [main.id]
+    while pending:
+        name = pending.pop()
+        if name not in trees:
             return False
-        if not all(check(trees[name], (*around, name)) for name in used):
-            return False
-        whole.add(tree.id)
-        return True
-
-    return check(main, (main.id,))
+        if name not in uses:
+            uses[name] = {node.plugin for node in _walk(trees[name].root) if node.is_subtree}
+            pending += uses[name]
+    try:
+        TopologicalSorter(uses).prepare()
+    except CycleError:
+        return False
+    return True
 
 
 def expand(files: tuple[TreeFileOutline, ...]) -> tuple[Instance, ...]:

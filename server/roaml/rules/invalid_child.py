@@ -42,7 +42,7 @@ def _variable(context: MachineContext, chart: Chart, name: Name) -> Iterator[Fin
     variables = context.typed.variables.get(chart.scope, {})
     type_ = variables.get(name.value)
     if type_ is None:
-        if misspelled.data(context.machine, name.value):
+        if misspelled.declaration(context.machine, "data", name.value):
             return
         close = close_names(name.value, variables)
         hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an int variable"

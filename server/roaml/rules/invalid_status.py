@@ -27,7 +27,7 @@ def _check(context: MachineContext, chart: Chart, status: Name) -> Iterator[Find
     variables = context.typed.variables.get(chart.scope, {})
     type_ = variables.get(status.value)
     if type_ is None:
-        if misspelled.data(context.machine, status.value):
+        if misspelled.declaration(context.machine, "data", status.value):
             return
         ints = [name for name, type_ in variables.items() if is_kind(type_, "int")]
         known = (NUMBERS[status.value],) if status.value in NUMBERS else close_names(status.value, (*STATUSES, *ints))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from functools import lru_cache
 
 from roaml.language import HL_SCXML, Grammar
 from roaml.model.machine import Machine
@@ -17,41 +18,46 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
     return any(a.name not in names and close_names(a.name, [name]) for a in element.attributes)
 
 
-def declaration(root: Element, tag: str, key: str, name: str, grammar: Grammar, read: Collection[Element] = ()) -> bool:
-    """Whether something below `root` is probably meant to be `<tag key="name">`, but cannot be read as that.
+def declaration(machine: Machine, tag: str, name: str) -> bool:
+    """Whether something in a machine is probably meant to declare `name` with a `<tag>`, but cannot be read as that.
 
-    It is a `<tag>` whose `key` is missing or misspelled, one that stands where it does not count, or another element in
-    place of a `<tag>`. Those in `read` are what they say.
+    It is a `<tag>` whose name is missing or misspelled, one that stands where it does not count, or another element in
+    place of a `<tag>`.
     """
-    return any(
-        _is_meant(element, parent, tag, key, name, grammar)
-        for parent in root.walk()
+    meant = _meant(machine, tag)
+    return "" in meant or name in meant
+
+
+@lru_cache(maxsize=16)  # a declaration that cannot be read is missed at each of its uses
+def _meant(machine: Machine, tag: str) -> frozenset[str]:
+    """The names that may be meant; "" among them is any name."""
+    read = {data.element for chart in machine.charts for data in chart.data if data.id}
+    read |= {state.element for chart in machine.charts for state in chart.states if state.id}
+    key = "key" if tag.startswith("bt_") else "id"
+    return frozenset(
+        name
+        for parent in machine.element.walk()
         for element in parent.elements
         if not element.prefix and element not in read
+        for name in _names(element, parent, tag, key)
     )
 
 
-def _is_meant(element: Element, parent: Element, tag: str, key: str, name: str, grammar: Grammar) -> bool:
+def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[str]:
+    """What `<tag key="…">` an element is probably meant to be."""
     values = {attribute.name: attribute.value.strip() for attribute in element.attributes}
+    said = values.get(key, "")
     if element.name == tag:
-        type_ = grammar.find(tag)
-        known = type_.attributes if type_ else ()
-        strange = [value for attribute, value in values.items() if attribute not in known]
-        said = [values[key]] if values.get(key) else strange
-        return name in said or not said
-    place = grammar.find(parent.name)
+        known = HL_SCXML.elements[tag].attributes
+        return [said] if said else [value for name, value in values.items() if name not in known] or [""]
+    place = HL_SCXML.find(parent.name)
     allowed = place.children if place else ()
     if element.name in allowed:
-        return False
-    if element.name in grammar.elements:
-        return tag in allowed and values.get(key) == name
-    return name in values.values() and (tag in allowed or among((element,), tag, grammar))
-
-
-def data(machine: Machine, name: str) -> bool:
-    """Whether a machine probably means to declare the variable `name`, but in a way that cannot be read."""
-    read = {data.element for chart in machine.charts for data in chart.data if data.id}
-    return declaration(machine.element, "data", "id", name, HL_SCXML, read)
+        return ()
+    if element.name in HL_SCXML.elements:
+        return [said] if said and tag in allowed else ()
+    in_place = tag in allowed or among((element,), tag, HL_SCXML)
+    return [value for value in values.values() if value] if in_place else ()
 
 
 def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:

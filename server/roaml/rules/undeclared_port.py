@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Scalar
-from roaml.language import HL_SCXML
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
 from roaml.model.typing import TypedMachine
@@ -83,7 +82,7 @@ def writes(machine: Machine) -> Iterator[Name]:
 
 def _is_misspelled_declaration(machine: Machine, key: str) -> bool:
     tags = ("bt_declare_port_in", "bt_declare_port_out")
-    return any(misspelled.declaration(machine.element, tag, "key", key, HL_SCXML) for tag in tags)
+    return any(misspelled.declaration(machine, tag, key) for tag in tags)
 
 
 RULE = Rule("undeclared-port", Severity.ERROR, "A port is used that is not declared.", machine=check)

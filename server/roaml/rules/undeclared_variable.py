@@ -47,7 +47,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         number = str(STATUSES[name])
         message = f"`{name}` is known only in the condition of `<bt_child_status>`; write `{number}`"
         return RULE.at(problem.span, message, *replacements(problem.span, (number,)))
-    if misspelled.data(context.machine, name):
+    if misspelled.declaration(context.machine, "data", name):
         return None
     close = close_names(name, [*variables, *_answers(value)])
     message = f"there is no variable `{name}`{did_you_mean(close)}"

@@ -7,7 +7,6 @@ import re
 from collections.abc import Collection, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.language import HL_SCXML
 from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
 from roaml.rules import misspelled
@@ -32,13 +31,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         states = [state.id.value for state in chart.states if state.id]
         for name in _references(chart) if chart.states else ():
             # A state that stands where it may not stand is the business of misplaced-element.
-            if name.value not in states and name.value not in elsewhere and not _is_misspelled(context, name.value):
+            if name.value in states or name.value in elsewhere:
+                continue
+            if not misspelled.declaration(context.machine, "state", name.value):
                 yield _finding(name, states, *_add(context, chart, name.value, states))
-
-
-def _is_misspelled(context: MachineContext, name: str) -> bool:
-    read = {state.element for chart in context.machine.charts for state in chart.states if state.id}
-    return misspelled.declaration(context.machine.element, "state", "id", name, HL_SCXML, read)
 
 
 def _finding(name: Name, states: Collection[str], *more: Fix) -> Finding:
