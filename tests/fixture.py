@@ -25,6 +25,7 @@ from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings
 
 _FILE = re.compile(r"^-- (\S+) --[ \t]*\n", re.MULTILINE)
+_TITLE = re.compile(r"^## (.+)\n", re.MULTILINE)
 _MARK = re.compile(r"^([ \t]*)(\^+)[ \t]+([a-z][a-z0-9-]*)[ \t]*$")
 
 _NAMES = {
@@ -52,6 +53,12 @@ def split_files(text: str) -> dict[str, str]:
     if parts[0].strip():
         files = {guess_name(parts[0]): parts[0], **files}
     return files
+
+
+def split_cases(path: Path) -> tuple[str, list[tuple[str, str]]]:
+    """What stands before the first line `## title`; title and text of each case."""
+    start, *parts = _TITLE.split(path.read_text(encoding="utf-8"))
+    return start, list(zip(parts[::2], parts[1::2], strict=True))
 
 
 def guess_name(text: str) -> str:

@@ -32,7 +32,7 @@ def model(number: int) -> Model:
 
 
 @given(MODELS, st.integers(), LAYOUTS)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: Layout) -> None:
     chance = random.Random(seed)
     each = model(number)

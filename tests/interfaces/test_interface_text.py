@@ -6,7 +6,7 @@ from __future__ import annotations
 import time
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from roaml.interfaces import KINDS, SECTION_NAMES, Kind, Value, parse
@@ -55,7 +55,6 @@ SNIPPETS = [
 TEXTS = st.one_of(st.text(), st.lists(st.sampled_from(SNIPPETS), max_size=40).map("".join))
 
 
-@settings(deadline=None)
 @given(TEXTS, st.sampled_from(KINDS))
 def test_any_text(text: str, kind: Kind) -> None:
     definition, findings = parse(text, "p", "N", kind)
@@ -76,7 +75,6 @@ def test_any_text(text: str, kind: Kind) -> None:
     assert all(0 <= start <= end <= len(text) for start, end in spans)
 
 
-@settings(deadline=None)
 @given(TEXTS, st.sampled_from(KINDS))
 def test_comments_and_white_space_have_no_meaning(text: str, kind: Kind) -> None:
     definition, findings = parse(text, "p", "N", kind)
@@ -85,7 +83,6 @@ def test_comments_and_white_space_have_no_meaning(text: str, kind: Kind) -> None
         assert parse(moved, "p", "N", kind)[0] == definition
 
 
-@settings(deadline=None)
 @given(st.lists(st.one_of(st.integers(-128, 127), st.sampled_from([True, "a", "", 'q"', "it's", "a, b]", "# \\"]))))
 def test_written_values_are_read_again(values: list[Value]) -> None:
     for value in values:

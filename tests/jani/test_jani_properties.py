@@ -191,7 +191,7 @@ def test_identifiers_in_a_half_typed_file() -> None:
     assert list(identifiers(property_.expression)) == [("topic_al", (64, 72))]
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(FORMULAS)
 def test_walking(formula: Formula) -> None:
     """Every node is visited once, before what is in it."""

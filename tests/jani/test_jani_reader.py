@@ -505,7 +505,7 @@ SCRAPS = st.sampled_from(
 )
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(MODELS, st.data())
 def test_damaged_models(model: object, data: st.DataObject) -> None:
     """Whatever is cut out of a model or put into it: no exception, and all places in the text."""

@@ -112,7 +112,7 @@ def places(value: Any) -> Iterator[tuple[Any, Any]]:
                 stack.append(container[key])
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(FORMULAS, st.data())
 def test_schema_and_reader_agree(formula: Formula, data: st.DataObject) -> None:
     """On a random file, and on the same with one thing removed, renamed or replaced."""

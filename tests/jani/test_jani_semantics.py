@@ -254,7 +254,7 @@ CONDITIONS: st.SearchStrategy[Expression] = st.deferred(
 )
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(NUMBERS | CONDITIONS, st.integers(-3, 3), st.integers(-3, 3))
 def test_python_agrees(node: Expression, n: int, k: int) -> None:
     try:
@@ -319,7 +319,7 @@ def has_value_of(node: Expression, type_: Type) -> bool:
         return True
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(EXPRESSIONS)
 def test_types_foresee_errors(node: Expression) -> None:
     type_, findings = expression_type(node, SCOPE)
@@ -374,7 +374,7 @@ ARRAYS: st.SearchStrategy[Expression] = st.deferred(
 )
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.one_of(
         st.tuples(WHOLES, st.just(INT)),

@@ -196,7 +196,7 @@ def test_the_synchronisation_table_is_streamed() -> None:
 # ---------------------------------------------------------------- round trips
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(MODELS)
 def test_models_are_read_back(model: Model) -> None:
     text = written(model)
@@ -208,7 +208,7 @@ def test_models_are_read_back(model: Model) -> None:
     assert read("".join(write(model, indent=2))) == again
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(PROPERTIES)
 def test_properties_are_read_back(property_: Property) -> None:
     text = f'{{"properties":{write_properties([property_])}}}'
@@ -216,7 +216,6 @@ def test_properties_are_read_back(property_: Property) -> None:
     assert again == property_
 
 
-@settings(deadline=None)
 @given(EXPRESSIONS)
 def test_expressions_are_json(expression: Expression) -> None:
     json.loads(FormulaWriter().text(expression))

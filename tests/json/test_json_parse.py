@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from roaml.json import (
@@ -442,7 +442,6 @@ def refuse(text: str) -> Any:
     raise ValueError(text)
 
 
-@settings(deadline=None)
 @given(TEXTS)
 @example("\ufeff{}")
 @example("-")
@@ -472,7 +471,6 @@ DOCUMENTS = st.recursive(
 )
 
 
-@settings(deadline=None)
 @given(DOCUMENTS, st.sampled_from([None, 1, 2]), st.booleans())
 def test_agrees_with_the_standard_library(document: Any, indent: int | None, ascii_only: bool) -> None:
     text = json.dumps(document, indent=indent, ensure_ascii=ascii_only)
@@ -481,7 +479,6 @@ def test_agrees_with_the_standard_library(document: Any, indent: int | None, asc
     assert plain(value) == document
 
 
-@settings(deadline=None)
 @given(DOCUMENTS, st.data())
 def test_half_typed_documents(document: Any, data: st.DataObject) -> None:
     """A document that is cut off, or lacks a character, still has its spans in order."""

@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from roaml.json import indented, parse, quote
@@ -29,7 +29,6 @@ def test_quote(text: str, quoted: str) -> None:
     assert json.loads(quoted) == text
 
 
-@settings(deadline=None)
 @given(st.text())
 def test_quoted_text_is_read_back(text: str) -> None:
     assert parse(quote(text)) == (JsonString(0, len(quote(text)), text), ())
@@ -41,7 +40,6 @@ DOCUMENTS = st.recursive(
 )
 
 
-@settings(deadline=None)
 @given(DOCUMENTS, st.integers(0, 4))
 def test_layout_is_that_of_the_standard_library(document: Any, indent: int) -> None:
     compact = json.dumps(document, separators=(",", ":"), ensure_ascii=False)

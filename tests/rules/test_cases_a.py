@@ -9,25 +9,23 @@ for rules that give hints. Other rules do not matter, except that none may crash
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 
-from fixture import check_text
+from fixture import check_text, split_cases
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.rules import BY_CODE
 
 FOLDER = Path(__file__).parent / "cases_a"
-_TITLE = re.compile(r"^## (.+)\n", re.MULTILINE)
 
 
 def cases() -> list[tuple[str, str, str]]:
     """Rule, title and text of every case."""
     found = []
     for path in sorted(FOLDER.glob("*.txt")):
-        common, *parts = _TITLE.split(path.read_text(encoding="utf-8"))
-        for title, text in zip(parts[::2], parts[1::2], strict=True):
+        common, titled = split_cases(path)
+        for title, text in titled:
             found.append((path.stem, title, common + text if text.startswith("-- ") else text))
     return found
 

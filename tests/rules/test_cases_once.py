@@ -7,24 +7,22 @@ one of that name itself. The carets show all that is said about the system, but 
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 
-from fixture import check_text, split_files
+from fixture import check_text, split_cases, split_files
 from roaml.diagnostics import Severity
 
 FOLDER = Path(__file__).parent / "cases_once"
-_TITLE = re.compile(r"^## (.+)\n", re.MULTILINE)
 
 
 def cases() -> list[tuple[str, str, str]]:
     """Subject, title and text of every case."""
     found = []
     for path in sorted(FOLDER.glob("*.txt")):
-        common, *parts = _TITLE.split(path.read_text(encoding="utf-8"))
-        for title, text in zip(parts[::2], parts[1::2], strict=True):
+        common, titled = split_cases(path)
+        for title, text in titled:
             files = split_files(common) | split_files(text)
             found.append((path.stem, title, "".join(f"-- {name} --\n{content}" for name, content in files.items())))
     return found

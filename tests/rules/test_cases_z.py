@@ -7,12 +7,11 @@ it is silent. Other rules do not matter, except that none may crash.
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 
-from fixture import check_text, read_marks, split_files
+from fixture import check_text, read_marks, split_cases, split_files
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.language import HL_SCXML, SYSTEM
@@ -24,14 +23,13 @@ from roaml.text import SourceFile
 from roaml.xml import parse
 
 FILES = sorted((Path(__file__).parent / "cases_z").glob("*.txt"))
-_TITLE = re.compile(r"^## (.+)\n", re.MULTILINE)
 
 
 def cases(path: Path) -> list[tuple[str, str]]:
     """Title and text of each case in a file."""
-    start, *parts = _TITLE.split(path.read_text(encoding="utf-8"))
+    start, titled = split_cases(path)
     assert not start.strip(), f"{path.name} has text before its first case"
-    return list(zip(parts[::2], parts[1::2], strict=True))
+    return titled
 
 
 CASES = [pytest.param(path.stem, text, id=f"{path.stem}: {title}") for path in FILES for title, text in cases(path)]

@@ -70,7 +70,7 @@ def test_same_traces_of_the_example() -> None:
     same_traces(api.checker(api.to_jani(loaded)), traces=3, steps=400)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60, suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_same_traces_of_random_models(written: dict[str, Any]) -> None:
     same_traces(Checker(model(written)), traces=4, steps=40)

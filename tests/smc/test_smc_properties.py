@@ -84,7 +84,7 @@ def formulas() -> st.SearchStrategy[Json]:
     return st.one_of(single, both, st.builds(lambda f: op("¬", f), single | both))
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(formulas(), st.lists(st.integers(0, 3), min_size=1, max_size=6), st.booleans())
 def test_path_formulas(formula: Json, labels: list[int], loop: bool) -> None:
     expected = holds(formula, labels, loop)

@@ -124,7 +124,7 @@ def bools(depth: int) -> st.SearchStrategy[Any]:
     )
 
 
-@settings(max_examples=250, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=250, suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(["int", "real", "bool"]).flatmap(
     lambda type_: st.tuples(st.just(type_), {"int": ints, "real": reals, "bool": bools}[type_](2))
 ))  # fmt: skip
@@ -192,7 +192,7 @@ def never(found: Json) -> Json:
     return found
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=80, suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_networks_reach_the_states_that_are_defined(written: Json) -> None:
     found = model(never(written))

@@ -63,7 +63,7 @@ def visible(variables: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=120, suppress_health_check=list(HealthCheck))
 @given(systems())
 def test_same_outcomes(files: dict[str, str]) -> None:
     try:

@@ -20,12 +20,12 @@ from roaml.lower.interfaces import topic_event
 from roaml.lower.machine import copies
 from roaml.lower.program import NOWHERE, Program
 from roaml.lower.tree import tick_timer
-from roaml.model.expand import ROOT_NUMBER, Constant
+from roaml.model.expand import ROOT_NUMBER
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
-from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period
+from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
 from roaml.model.translated import CLOCK, CLOCK_STEP, TIMER_PREFIX
 from roaml.scxml.model import (
     Assign,
@@ -106,13 +106,11 @@ def _awaited(chart: Chart) -> set[str]:
 
 
 def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
-    text = ""
-    if isinstance(declaration.rate, Name):
-        text = declaration.rate.value
-    elif isinstance(declaration.rate, PortRead) and declaration.rate.key:
-        held = automaton.port(declaration.rate.key.value)
-        text = held.text if isinstance(held, Constant) else ""
-    return Fraction(text.strip())
+    text = declaration.rate.value if isinstance(declaration.rate, Name) else ""
+    port = declaration.rate.key.value if isinstance(declaration.rate, PortRead) and declaration.rate.key else ""
+    found = rate(automaton, text, port)
+    assert found is not None, "a rule reports what is no rate"
+    return found
 
 
 # ------------------------------------------------------------------- the clock

@@ -121,6 +121,15 @@ class SystemFile:
     inputs: tuple[Input, ...]
     unread: frozenset[str]
 
+    def parameter(self, name: str) -> Element | None:
+        """The element that sets a parameter: of several the last counts (spec/02 §2.3)."""
+        section = _parameter_section(self.element)
+        return next((each for each in reversed(section.elements) if each.name == name), None) if section else None
+
+
+def _parameter_section(root: Element) -> Element | None:
+    return root.find("parameters") or root.find("mc_parameters")
+
 
 def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -> SystemFile | None:
     """The system file in `document`, or None if its root is not one."""
@@ -150,7 +159,7 @@ def _unread(root: Element) -> frozenset[str]:
 
 
 def _parameters(root: Element) -> Parameters:
-    section = root.find("parameters") or root.find("mc_parameters")
+    section = _parameter_section(root)
     max_time = None
     size, rate, keep_ticking = DEFAULT_MAX_ARRAY_SIZE, DEFAULT_TICK_RATE, False
     for element in section.elements if section else ():

@@ -43,17 +43,18 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
         yield period(Fraction(str(parameters.tick_rate)))
     for automaton in system.automata:
         for timer in automaton.outline.timers:
-            rate = _rate(automaton, timer.rate, timer.port)
-            if rate is not None:
-                yield period(rate)
+            found = rate(automaton, timer.rate, timer.port)
+            if found is not None:
+                yield period(found)
 
 
-def _rate(automaton: Automaton, text: str, port: str) -> Fraction | None:
+def rate(automaton: Automaton, text: str, port: str) -> Fraction | None:
+    """A rate in Hz, as written or as `port` of the automaton holds it; None if that is none."""
     value = automaton.port(port) if port else Constant(text)
     if not isinstance(value, Constant):
         return None
     try:
-        rate = Fraction(value.text.strip())
+        found = Fraction(value.text.strip())
     except (ValueError, ZeroDivisionError):
         return None
-    return rate if 0 < rate <= NANOSECONDS_PER_SECOND else None
+    return found if 0 < found <= NANOSECONDS_PER_SECOND else None

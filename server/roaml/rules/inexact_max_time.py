@@ -19,11 +19,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
     unit = min((each.unit for each in periods(context.system, context.file.parameters)), default=1)
     if end is None or end % unit == 0:
         return
-    section = context.file.element.find("parameters") or context.file.element.find("mc_parameters")
-    given = [element for element in section.elements if element.name == "max_time"] if section else []
-    if not given:
-        return
-    value, written = given[-1].get("value"), given[-1].get("unit")
+    given = context.file.parameter("max_time")
+    value, written = (given.get("value"), given.get("unit")) if given else (None, None)
     if value is None or written is None:
         return
     name, count = NAMES[unit], -(-end // unit)

@@ -13,9 +13,8 @@ LARGE = 10_000
 
 def check(context: SystemContext) -> Iterator[Finding]:
     size = context.file.parameters.max_array_size
-    section = context.file.element.find("parameters") or context.file.element.find("mc_parameters")
-    given = [e.get("value") for e in section.elements if e.name == "max_array_size"] if section else []
-    last = given[-1] if given else None
+    given = context.file.parameter("max_array_size")
+    last = given.get("value") if given else None
     if last is not None and size > LARGE:
         message = f"every array without a bound gets {size} elements; translation and verification grow with it"
         yield RULE.at(last.value_span, message)
