@@ -8,7 +8,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType
+from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
@@ -149,13 +149,6 @@ class Rule:
 
 
 # --------------------------------------------------------------- did you mean?
-
-
-def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
-    """Those of `candidates` that look like `name`, the nearest first."""
-    by_lower = {candidate.lower(): candidate for candidate in candidates}
-    matches = difflib.get_close_matches(name.lower()[:80], list(by_lower), most, 0.6)
-    return tuple(by_lower[match] for match in matches)
 
 
 def did_you_mean(close: tuple[str, ...]) -> str:
