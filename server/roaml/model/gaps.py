@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 from roaml.expr.types import UNKNOWN
 from roaml.language import HL_SCXML, ElementType
-from roaml.language.validate import is_foreign
+from roaml.language.validate import misfits
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
-from roaml.model.spelling import close_names
+from roaml.model.spelling import close_names, meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.typing import INTERFACE_KINDS, TypedMachine, Use, find_handle
 from roaml.text import Span
@@ -80,15 +80,7 @@ def machine_gaps(
         namespaces: the prefixes of the document with their namespaces.
         has_type: whether there is a ROS type of a kind (msg, srv, action) and name as written.
     """
-    return tuple(_Search(machine, typed, dict(namespaces), has_type).all())
-
-
-def meant(element: Element, name: str, known: Mapping[str, object]) -> Name | None:
-    """The value of the attribute `name`, also if the attribute is misspelled as one that the element does not have."""
-    if element.get(name) is not None:
-        return name_of(element.get(name))
-    strange = [a for a in element.attributes if a.name not in known and close_names(a.name, [name])]
-    return name_of(strange[0]) if strange else None
+    return tuple(_Search(machine, typed, namespaces, has_type).all())
 
 
 class _Search:
@@ -96,27 +88,27 @@ class _Search:
         self,
         machine: Machine,
         typed: TypedMachine,
-        namespaces: dict[str, str],
+        namespaces: Mapping[str, str],
         has_type: Callable[[str, str], bool],
     ) -> None:
         self.machine = machine
         self.typed = typed
-        self.namespaces = namespaces
         self.has_type = has_type
-        self.misfits = list(self._misfits())
+        self.misfits = list(misfits(machine.element, namespaces, HL_SCXML))
         self.hidden = {
             (kind, attribute.value.strip())
-            for top, _, parent in self.misfits
-            for kind in (self._kind_of(top, parent), "")
-            for attribute in top.attributes
+            for misfit in self.misfits
+            for kind in (self._kind_of(misfit.element, misfit.parent_type),)
+            for attribute in misfit.element.attributes
             if kind
         }
         """The declarations that cannot be read: kind, and each name that may be the handle."""
 
     def all(self) -> Iterator[PlacedGap]:
-        for top, outer, parent in self.misfits:
-            yield from (PlacedGap(gap, top.name_span) for gap in self._unread(top, parent))
-            yield from (PlacedGap(gap, top.name_span) for gap in self._datum(top, outer))
+        for misfit in self.misfits:
+            span = misfit.element.name_span
+            yield from (PlacedGap(gap, span) for gap in self._unread(misfit.element, misfit.parent_type))
+            yield from (PlacedGap(gap, span) for gap in self._datum(misfit.element, misfit.parent))
         if self.machine.name is None:
             yield PlacedGap(Gap(NAME), self.machine.element.name_span)
         for declaration in self.machine.declarations:
@@ -126,22 +118,6 @@ class _Search:
         yield from self._ports()
 
     # ---------------------------------------------------- elements out of place
-
-    def _misfits(self) -> Iterator[tuple[Element, Element, ElementType]]:
-        """The topmost elements that the grammar does not know where they stand, with their parents and the types of
-        these."""
-        root = self.machine.element
-        stack = [(root, HL_SCXML.elements[root.name])]
-        while stack:
-            element, type_ = stack.pop()
-            for child in element.elements:
-                if is_foreign(self.namespaces, child):
-                    continue
-                child_type = HL_SCXML.child(type_, child.name)
-                if child_type is not None:
-                    stack.append((child, child_type))
-                elif type_.any_child is None:
-                    yield child, element, type_
 
     def _kind_of(self, element: Element, parent: ElementType) -> str:
         """The kind of declaration that a misfit may be, or ""."""

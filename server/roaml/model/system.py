@@ -223,7 +223,7 @@ class System:
 
     def may_have_variable(self, name: str) -> bool:
         """Whether the translated system may have a variable of this name, once all of it can be read."""
-        return any(_may_give_variable(act, other, name) for act, other in self.possible)
+        return any(may_give_variable(act, other, name) for act, other in self.possible)
 
     def facts(self, gap: Gap, automaton: Automaton | None = None) -> set[Fact]:
         """What a gap may say, in an automaton or in the files around the automata."""
@@ -439,7 +439,7 @@ _PREFIXES |= {"action-client": "action", "action-server": "action"}
 _OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
 
 
-def _may_give_variable(act: str, name: str | None, variable: str) -> bool:
+def may_give_variable(act: str, name: str | None, variable: str) -> bool:
     """Whether who does `act` may give the translation a variable of this name (see `roaml.model.globals`)."""
     first = act.partition(" ")[0]
     if first in _PREFIXES:

@@ -24,7 +24,7 @@ from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
 from roaml.json import parse as parse_json
 from roaml.language import BEHAVIOR_TREE, Grammar
-from roaml.language.validate import Violation, has_misfits, validate
+from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
 from roaml.model.gaps import ANYTHING, NODE, Gap, PlacedGap, machine_gaps
@@ -49,7 +49,7 @@ from roaml.model.tree import TreeFile, build_tree_file
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
 from roaml.project.memo import Memo
-from roaml.text import SourceFile
+from roaml.text import SourceFile, Span
 from roaml.xml import Document
 from roaml.xml import parse as parse_xml
 
@@ -117,6 +117,7 @@ class Analysis:
         self._systems: dict[str, System | None] = {}
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
         self._structs: dict[str, Structs] = {}
+        self._gaps: dict[str, tuple[tuple[str, PlacedGap], ...]] = {}
 
     # ---------------------------------------------------------- single files
 
@@ -148,11 +149,13 @@ class Analysis:
         found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
         return found or ()
 
-    def has_misfits(self, path: str, grammar: Grammar) -> bool:
-        """Whether a file has elements that the grammar does not know, or not where they stand."""
-        return bool(
-            self._of_document(f"misfits {grammar.schema}", path, lambda document: has_misfits(document, grammar))
-        )
+    def misfits(self, path: str, grammar: Grammar) -> tuple[Misfit, ...]:
+        """The elements of a file that the grammar does not know, or not where they stand."""
+
+        def find(document: Document) -> tuple[Misfit, ...]:
+            return tuple(misfits(document.root, document.namespaces, grammar))
+
+        return self._of_document(f"misfits {grammar.schema}", path, find) or ()
 
     def machine(self, path: str) -> Machine | None:
         return self._of_document("machine", path, build_machine)
@@ -327,7 +330,7 @@ class Analysis:
         structs = self.structs(path)
         trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
-        gaps = frozenset(self._gaps(path, file, listed, trees))
+        gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
         events: Mapping[str, Struct] = {}
@@ -364,19 +367,63 @@ class Analysis:
         properties = [each for path in paths for each in self.properties(path)[0]]
         return frozenset(name for each in properties for name, _ in identifiers(each.expression))
 
-    def _gaps(
-        self, path: str, file: SystemFile, listed: tuple[ListedFile, ...], trees: tuple[TreeFileOutline, ...]
-    ) -> Iterator[Gap]:
-        """What the system file, the trees and the files that cannot be read may say."""
-        if not self._is_well_formed(path) or "node_models" in file.unread:
-            yield Gap(ANYTHING)
+    def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
+        """What a system file, its trees and the files that cannot be read may say: file, gap and place."""
+        if path not in self._gaps:
+            file = self.system_file(path)
+            self._gaps[path] = tuple(self._find_gaps(path, file, self.listed(path))) if file else ()
+        return self._gaps[path]
+
+    def _find_gaps(
+        self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]
+    ) -> Iterator[tuple[str, PlacedGap]]:
+        root = file.element.name_span
+        broken = self._broken(path)
+        if broken is not None:
+            yield path, PlacedGap(Gap(ANYTHING), broken)
+        if "node_models" in file.unread:
+            yield path, PlacedGap(Gap(ANYTHING), root)
         if "behavior_tree" in file.unread:
-            yield Gap(NODE)
+            yield path, PlacedGap(Gap(NODE), root)
         for each in listed:
             if each.input.section == "node_models" and not each.usable:
-                yield Gap(ANYTHING)
-        if not self._has_whole_tree(file, listed, trees):
-            yield Gap(NODE)
+                yield path, PlacedGap(Gap(ANYTHING), each.span)
+        yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
+
+    def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
+        """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
+        listed_trees = [f for f in listed if f.wanted is FileKind.TREE]
+        section = file.element.find("behavior_tree")
+        if not listed_trees:
+            if section is not None:
+                yield path, section.name_span
+            return
+        yield from ((path, each.span) for each in listed_trees if not each.usable)
+        paths = self.tree_paths(path)
+        clear = True
+        for tree_path in paths:
+            tree, broken = self.tree(tree_path), self._broken(tree_path)
+            assert tree is not None
+            spans = [] if broken is None else [broken]
+            spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
+            spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
+            for include in tree.includes:
+                if include.path and self.tree(self.include_path(tree_path, include.path.value)) is None:
+                    spans.append(include.path.span)
+            clear = clear and not spans
+            yield from ((tree_path, span) for span in spans)
+        if clear and paths:
+            outlines = tuple(self.tree_outline(each) for each in paths)
+            if not self.memo.get("whole tree", path, outlines, lambda: is_whole(outlines)):
+                first = self.tree(paths[0])
+                assert first is not None
+                yield paths[0], first.element.name_span
+
+    def _broken(self, path: str) -> Span | None:
+        """Where a file stops being well-formed; None if it is."""
+        document = self.document(path)
+        findings = document.findings if document else ()
+        return next((finding.span for finding in findings if finding.code in BROKEN), None)
 
     def _is_well_formed(self, path: str) -> bool:
         """Whether a file is read as a whole."""
@@ -398,26 +445,6 @@ class Analysis:
                 if machine is None or machine.name is None or not self._is_well_formed(each.path):
                     return False
         return True
-
-    def _has_whole_tree(
-        self, file: SystemFile, listed: tuple[ListedFile, ...], trees: tuple[TreeFileOutline, ...]
-    ) -> bool:
-        """Whether all nodes of the tree are known that is executed, if the system is to have one."""
-        listed_trees = [f for f in listed if f.wanted is FileKind.TREE]
-        if not listed_trees:
-            return file.element.find("behavior_tree") is None
-        if not all(f.usable for f in listed_trees):
-            return False
-        if any(self.tree(p) is None for tree in trees for p in self.includes(tree.path)):
-            return False
-        if any(not self._is_well_formed(tree.path) for tree in trees):
-            return False
-        if any(self.has_misfits(tree.path, BEHAVIOR_TREE) for tree in trees):
-            return False
-        written = (tree for outline in trees if (found := self.tree(outline.path)) for tree in found.trees)
-        if any(len(tree.roots) != 1 for tree in written):
-            return False
-        return self.memo.get("whole tree", trees[0].path, trees, lambda: is_whole(trees))
 
     def tree_outline(self, path: str) -> TreeFileOutline:
         file = self.tree(path)
@@ -442,7 +469,7 @@ class Analysis:
         document = self.document(path)
         assert document is not None
         found = machine_gaps(machine, typed, document.namespaces, self._has_type)
-        broken = next((finding.span for finding in document.findings if finding.code in BROKEN), None)
+        broken = self._broken(path)
         return found if broken is None else (*found, PlacedGap(Gap(ANYTHING), broken))
 
     def _has_type(self, kind: str, name: str) -> bool:
