@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from roaml.diagnostics import Finding, Severity
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import node_at
-from roaml.model.gaps import ANYTHING, SENDS, VARIABLE, answers
+from roaml.model.gaps import ANYTHING, RECEIVES, SENDS, VARIABLE, answers
 from roaml.model.globals import global_variables
+from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
 from roaml.rules.interfaces import named_by_ports, port_span
@@ -18,12 +19,16 @@ from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.topic_without_publisher import has_publisher
 from roaml.text import Span
 
+_PLUGIN = "plugin"
+"""What a file does that may be the plugin of a node."""
+_ANY_PLUGIN: set[Fact] = {(_PLUGIN, None)}
+_ANY_FACT: set[Fact] = {(ANYTHING, None)}
 _MOST = 3
 """How much of what is not checked a message names."""
 
 
 def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
-    if context.system is None or context.system.complete:
+    if context.system is None:
         return
     causes = list(_causes(context, context.system))
     wants = list(_wants(context.system, context.interface)) if causes else []
@@ -56,13 +61,16 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
         for placed in context.gaps:
             for automaton in context.automata:
                 yield placed.span, system.facts(placed.gap, automaton)
+        if context.machine.name is None and "behavior_tree" in context.listed_as:
+            yield context.machine.element.name_span, _ANY_PLUGIN
         return
     for placed in context.gaps:
         yield placed.span, system.facts(placed.gap)
     if isinstance(context, SystemContext):
+        plugins = [f for f in context.files if f.input.section == "behavior_tree" and f.wanted is not FileKind.TREE]
+        yield from ((listed.span, _ANY_PLUGIN) for listed in plugins if not listed.usable)
         strange = system.ticked_nodes | system.idle_plugins
-        anything: set[Fact] = {(ANYTHING, None)}
-        yield from ((listed.span, anything) for listed in context.files if listed.path in strange)
+        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in strange)
         return
     for instance in system.instances:
         if instance.source.path == context.source.path and system.plugin(instance.plugin)[1] is None:
@@ -75,7 +83,12 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
 
 
 def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Want]:
+    for name in sorted({instance.plugin for instance in system.instances}):
+        if system.plugin(name)[1] is None:
+            yield _Want(_PLUGIN, name, f"whether there is the plugin `{name}`")
     for topic in system.topics.values():
+        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
+            yield _Want("subscriber", topic.name, f"who subscribes to the topic `{topic.name}`")
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
             yield _Want("publisher message", topic.name, f"who publishes on the topic `{topic.name}`")
     for what, channels in (("service", system.services), ("action", system.actions)):
@@ -87,6 +100,8 @@ def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFo
     for event in system.events.values():
         if not event.senders:
             yield _Want(SENDS, event.name, f"who sends the event `{event.name}`")
+        elif not event.receivers and not system.is_observed(event.name):
+            yield _Want(RECEIVES, event.name, f"who has a transition for the event `{event.name}`")
     for variable, ports in system.blackboard.items():
         if not any(bound.port.written for bound in ports):
             yield _Want(VARIABLE, variable, f"who writes the blackboard variable `{variable}`")
