@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
@@ -96,19 +96,24 @@ def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
     return resolved
 
 
-def struct_cycle(name: str, outlines: Mapping[str, StructOutline]) -> tuple[str, ...]:
-    """The names on a path of members from struct `name` back to itself, both ends included; empty if there is none."""
-    stack: list[tuple[str, ...]] = [(name,)]
-    seen: set[str] = set()
-    while stack:
-        path = stack.pop()
-        outline = outlines.get(path[-1])
-        for _, type_ in outline.members if outline else ():
-            if type_ is None:
-                continue
-            if type_.base == name:
-                return (*path, name)
-            if type_.base in outlines and type_.base not in seen:
-                seen.add(type_.base)
-                stack.append((*path, type_.base))
-    return ()
+def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """The members by which structs contain themselves: struct and member -> the names on the way round, both ends the
+    same. Of each cycle it is the member that leads back to the struct that was declared first."""
+    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    done: set[str] = set()
+    for start in outlines:
+        path = [] if start in done else [start]
+        places = dict.fromkeys(path, 0)
+        stack: list[Iterator[tuple[str, TypeName | None]]] = [iter(outlines[name].members) for name in path]
+        while stack:
+            member, type_ = next(stack[-1], ("", None))
+            if not member and type_ is None:
+                stack.pop()
+                done.add(path.pop())
+            elif type_ is not None and type_.base in places and type_.base not in done:
+                found[path[-1], member] = (*path[places[type_.base] :], type_.base)
+            elif type_ is not None and type_.base in outlines and type_.base not in done:
+                places[type_.base] = len(path)
+                path.append(type_.base)
+                stack.append(iter(outlines[type_.base].members))
+    return found

@@ -35,7 +35,8 @@ from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
-from roaml.model.system import System
+from roaml.model.syntax import Name
+from roaml.model.system import System, sanitise
 from roaml.model.system_file import (
     NO_OVERRIDES,
     Input,
@@ -79,10 +80,20 @@ NO_STRUCTS = Structs((), {}, complete=True)
 class _MachineEnvironment:
     """`roaml.model.typing.Environment` for one machine."""
 
-    def __init__(self, analysis: Analysis, structs: Structs, events: Mapping[str, Struct]) -> None:
+    def __init__(
+        self,
+        analysis: Analysis,
+        structs: Structs,
+        events: Mapping[str, Struct],
+        published: Mapping[str, tuple[InterfaceType, ...]],
+    ) -> None:
         self.struct = structs.types.get
         self.event_data = events.get
         self._analysis = analysis
+        self._published = published
+
+    def published(self, topic: str) -> tuple[InterfaceType, ...]:
+        return self._published.get(sanitise(topic), ())
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
         found = self._analysis.interface(kind, name)
@@ -117,6 +128,7 @@ class Analysis:
         self._systems: dict[str, System | None] = {}
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
         self._structs: dict[str, Structs] = {}
+        self._published_types: dict[str, Mapping[str, tuple[str, ...]]] = {}
         self._gaps: dict[str, tuple[tuple[str, PlacedGap], ...]] = {}
 
     # ---------------------------------------------------------- single files
@@ -481,14 +493,46 @@ class Analysis:
         assert machine is not None
         known = {name: events[name] for name in _received(machine) if name in events}
         # The machine itself, not its text: what was typed refers to its parts.
-        key = (machine, structs.outlines, self.interfaces_of(machine), known)
-        environment = _MachineEnvironment(self, structs, known)
+        published = self._published_for(machine, system)
+        key = (machine, structs.outlines, self.interfaces_of(machine), published, known)
+        environment = _MachineEnvironment(self, structs, known, published)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))
         # What is known without the events is needed to link the system, and must outlive what is known with them.
         before = self.typed(path, system, structs, {})
         compute = functools.partial(type_machine, machine, environment, before)
         return self.memo.get("typed with events", (path, system), key, compute)
+
+    def _published(self, system: str) -> Mapping[str, tuple[str, ...]]:
+        """The types, as written, with which the machines of a system publish on each topic that they name."""
+        if system not in self._published_types:
+            found: dict[str, dict[str, None]] = {}
+            for listed in self.listed(system):
+                machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
+                for declaration in machine.declarations if machine else ():
+                    topic, type_ = declaration.interface, declaration.type
+                    if declaration.kind == "publisher" and isinstance(topic, Name) and type_ is not None:
+                        found.setdefault(sanitise(topic.value), {})[type_.value] = None
+            self._published_types[system] = {topic: tuple(types) for topic, types in found.items()}
+        return self._published_types[system]
+
+    def _published_for(self, machine: Machine, system: str | None) -> dict[str, tuple[InterfaceType, ...]]:
+        """The topics that a machine subscribes to, with the types that they are published with, if these are others."""
+        if system is None:
+            return {}
+        found: dict[str, tuple[InterfaceType, ...]] = {}
+        for declaration in machine.declarations:
+            if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and declaration.type:
+                topic = sanitise(declaration.interface.value)
+                types = self._published(system).get(topic, ())
+                if others := self._messages(t for t in types if t != declaration.type.value):
+                    found[topic] = others
+        return found
+
+    def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
+        """Those of the message types that there are."""
+        found = (self.interface("msg", name) for name in names)
+        return tuple(type_ for type_ in found if isinstance(type_, InterfaceType))
 
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
         """The ROS types that a machine declares, in order."""
@@ -506,14 +550,15 @@ class Analysis:
     def environment(self, system: str | None) -> Environment:
         """What the machines of a system can name; a machine alone can name ROS types."""
         linked = self.system(system) if system else None
-        return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {})
+        published = {topic: self._messages(types) for topic, types in self._published(system).items()} if system else {}
+        return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {}, published)
 
     def globals(self, system: str) -> Mapping[str, GlobalVariable]:
         """The global variables of the translated system, by name."""
         linked = self.system(system)
         if linked is None:
             return {}
-        environment = _MachineEnvironment(self, NO_STRUCTS, {})
+        environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
         return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
 
 

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.types import BASE_TYPES
-from roaml.model.structs import StructDeclaration, struct_cycle
+from roaml.model.structs import StructDeclaration, struct_cycles
 from roaml.model.syntax import Name
 from roaml.rules.invalid_name import VARIABLE
 from roaml.rules.rule import Rule, StructsContext
@@ -16,6 +16,7 @@ from roaml.rules.rule import Rule, StructsContext
 def check(context: StructsContext) -> Iterator[Finding]:
     first: dict[str, Name] = {}
     outlines = {outline.name: outline for outline in context.outlines}
+    cycles = struct_cycles(outlines)
     for declaration in context.declarations:
         name = declaration.name
         if name is None:
@@ -26,10 +27,9 @@ def check(context: StructsContext) -> Iterator[Finding]:
             yield RULE.at(name.span, f"`{name.value}` cannot name a struct: letters, digits and `_`")
         else:
             yield from _other(context, declaration, first.setdefault(name.value, name))
-        cycle = struct_cycle(name.value, outlines)
-        if cycle:
-            yield RULE.at(name.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
-        yield from _members(declaration, outlines)
+        if outlines.get(name.value) == declaration.outline:
+            yield from _cycles(declaration, name.value, cycles)
+        yield from _members(declaration)
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
@@ -47,7 +47,17 @@ def _other(context: StructsContext, declaration: StructDeclaration, first: Name)
         yield RULE.at(name.span, message, severity=Severity.WARNING)
 
 
-def _members(declaration: StructDeclaration, structs: object) -> Iterator[Finding]:
+def _cycles(
+    declaration: StructDeclaration, name: str, cycles: Mapping[tuple[str, str], tuple[str, ...]]
+) -> Iterator[Finding]:
+    """Once for each cycle, at the member that closes it."""
+    for member in declaration.members:
+        cycle = cycles.get((name, member.name.value)) if member.name else None
+        if cycle is not None and member.type is not None:
+            yield RULE.at(member.type.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
+
+
+def _members(declaration: StructDeclaration) -> Iterator[Finding]:
     first: dict[str, Name] = {}
     for member in declaration.members:
         name, type_ = member.name, member.type
