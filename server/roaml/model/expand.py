@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
+from roaml.model.spelling import close_names
 from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes
 
 ROOT_NUMBER = 1000
@@ -39,12 +40,14 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`."""
+    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`, `declared` all its
+    (plugin, port)."""
 
     path: str
     main: str
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
+    declared: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +116,9 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
             for model in file.models
             for port in model.ports
             if model.id and port.name and port.default is not None
+        ),
+        tuple(
+            (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
         ),
     )
 
@@ -304,3 +310,78 @@ def _names(tree: TreeOutline) -> frozenset[str]:
         for _, text in node.attributes
         if (variable := blackboard_variable(text)) is not None
     )
+
+
+# ------------------------------------------------------------------- remappings
+
+
+@dataclass(frozen=True, slots=True)
+class StrayRemap:
+    """An attribute of a `<SubTree>` that names no variable of the subtree.
+
+    Attributes:
+        source: the node of the `<SubTree>`.
+        key: the attribute; `outer` is its value.
+        meant: the variables of the subtree that look like it and are not given, the nearest first.
+        names: the variables of the subtree.
+    """
+
+    source: Source
+    key: str
+    outer: str
+    meant: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+def stray_remaps(files: tuple[TreeFileOutline, ...]) -> tuple[StrayRemap, ...]:
+    """All attributes of subtrees, in all trees of a system, that name nothing in their subtree."""
+    trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
+    declared = {pair for file in files for pair in file.declared}
+    words = {name: _words(tree) for name, tree in trees.items()}
+    return tuple(
+        stray
+        for file in files
+        for tree in file.trees
+        for node in _walk(tree.root)
+        if node.is_subtree and node.plugin in trees
+        for stray in _strays(tree, node, _known_inside(node.plugin, trees, words), declared)
+    )
+
+
+def _strays(
+    tree: TreeOutline, node: NodeOutline, known: frozenset[str], declared: set[tuple[str, str]]
+) -> Iterator[StrayRemap]:
+    given = {key: text for key, text in node.attributes if key not in _NO_REMAPS and not key.startswith("_")}
+    for key, text in given.items():
+        if key not in known and (node.plugin, key) not in declared and ":" not in key:
+            free = sorted(known - given.keys())
+            source = Source(tree.path, tree.id, node.position)
+            yield StrayRemap(source, key, text, close_names(key, free), tuple(free))
+
+
+def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[str, frozenset[str]]) -> frozenset[str]:
+    """The names that a tree uses, with those of subtrees that take all names from it."""
+    found, pending, seen = set(words[name]), [name], {name}
+    while pending:
+        for node in _walk(trees[pending.pop()].root):
+            takes_all = any(dict(node.attributes).get(auto) in ("true", "1") for auto in _AUTOREMAP)
+            if node.is_subtree and takes_all and node.plugin in trees and node.plugin not in seen:
+                seen.add(node.plugin)
+                pending.append(node.plugin)
+                found |= words[node.plugin]
+    return frozenset(found)
+
+
+def _words(tree: TreeOutline) -> frozenset[str]:
+    """Every name in the values of a tree's attributes: variables, and what scripts may name; `{=}` is the attribute's
+    own name."""
+    found: set[str] = set()
+    for node in _walk(tree.root):
+        for key, text in node.attributes:
+            if key not in _OWN_ATTRIBUTES:
+                found |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
+    return frozenset(found)
+
+
+_NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)

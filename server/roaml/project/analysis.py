@@ -26,8 +26,8 @@ from roaml.json import parse as parse_json
 from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
-from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
-from roaml.model.gaps import ANYTHING, NODE, Gap, PlacedGap, machine_gaps
+from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
+from roaml.model.gaps import ANYTHING, NODE, REMAP, Gap, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
@@ -46,7 +46,7 @@ from roaml.model.system_file import (
     build_system_file,
     wanted_kind,
 )
-from roaml.model.tree import TreeFile, build_tree_file
+from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
 from roaml.project.memo import Memo
@@ -401,6 +401,15 @@ class Analysis:
             if each.input.section == "node_models" and not each.usable:
                 yield path, PlacedGap(Gap(ANYTHING), each.span)
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
+        outlines = tuple(self.tree_outline(each) for each in self.tree_paths(path))
+        for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
+            tree = self.tree(stray.source.path)
+            node = node_at(tree, stray.source) if tree else None
+            key = next((s.key.span for s in node.ports if s.key.value == stray.key), None) if node else None
+            outer = blackboard_variable(stray.outer)
+            for name in (*stray.meant[:1], *((outer,) if outer and stray.meant else ())):
+                if key is not None:
+                    yield stray.source.path, PlacedGap(Gap(REMAP, name), key)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
