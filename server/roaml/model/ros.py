@@ -24,6 +24,22 @@ _REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
 
 
 @dataclass(frozen=True, slots=True)
+class RepeatedType:
+    """A ROS type that two files define, not in the same way.
+
+    Attributes:
+        used_by: the declared type that it is, or is a part of, as written.
+        path: of the file that counts; `other` is the one that does not.
+    """
+
+    used_by: str
+    package: str
+    name: str
+    path: str
+    other: str
+
+
+@dataclass(frozen=True, slots=True)
 class InterfaceType:
     """A ROS type as HL-SCXML sees it.
 

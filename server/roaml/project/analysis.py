@@ -33,7 +33,7 @@ from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
 from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline, outline
-from roaml.model.ros import InterfaceType, interface_type
+from roaml.model.ros import InterfaceType, RepeatedType, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
@@ -221,6 +221,21 @@ class Analysis:
             parts,
             lambda: interface_type(definition, lambda n: self.registry.resolve("msg", n)),
         )
+
+    def repeated_types(self, machine: Machine) -> tuple[RepeatedType, ...]:
+        """The ROS types of a machine, those of their fields included, that other files define otherwise."""
+        found: dict[tuple[str, str], RepeatedType] = {}
+        for declaration in machine.declarations:
+            if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+                continue
+            written = declaration.type.value
+            definition = self.registry.resolve(INTERFACE_KINDS[declaration.kind], written)
+            for part in () if isinstance(definition, NotFound) else self._closure(definition):
+                other = self.registry.other_definition(part.kind, part.package, part.name)
+                if other is not None:
+                    repeated = RepeatedType(written, part.package, part.name, part.path, other.path)
+                    found.setdefault((written, part.full_name), repeated)
+        return tuple(found.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
         """The definition and all messages in it."""

@@ -204,7 +204,8 @@ class _Run:
                 assert machine is not None
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
-                return (*parts, typed, lookups, self.analysis.structs(self.system_path).complete)
+                repeated = self.analysis.repeated_types(machine)
+                return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path))
@@ -337,6 +338,7 @@ class _Run:
             self.analysis.interface,
             events.get,
             self._machine_gaps(machine),
+            self.analysis.repeated_types(machine),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
