@@ -30,7 +30,7 @@ from as2fm_lsp.session import Session
 from as2fm_lsp.tcp import accepted
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
-from roaml.model.kinds import EXTENSIONS
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
 from roaml.project.settings import CONFIG_FILE
 
 log = logging.getLogger(__name__)
@@ -296,7 +296,10 @@ async def _watch(server: Server) -> None:
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
         return
-    patterns = [f"**/*{extension}" for extension in EXTENSIONS] + [f"**/{CONFIG_FILE}", "**/pyproject.toml"]
+    patterns = [f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)] + [
+        f"**/{CONFIG_FILE}",
+        "**/pyproject.toml",
+    ]
     options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
     registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:

@@ -40,14 +40,19 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`, `declared` all its
-    (plugin, port)."""
+    """A file of trees without places.
+
+    Attributes:
+        defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
+        from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+    """
 
     path: str
     main: str
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
     declared: tuple[tuple[str, str], ...] = ()
+    from_project: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +169,7 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
                 return tree
         # A file of one tree needs no names: its only tree is meant whatever it is called (spec/02 §3.1).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
+    trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:
         return trees[0]
     used = {node.plugin for tree in trees for node in _walk(tree.root) if node.is_subtree}

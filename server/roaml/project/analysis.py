@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -30,7 +30,7 @@ from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray
 from roaml.model.gaps import ANYTHING, NODE, REMAP, Gap, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, RepeatedType, interface_type
@@ -46,7 +46,7 @@ from roaml.model.system_file import (
     build_system_file,
     wanted_kind,
 )
-from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file
+from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
 from roaml.project.memo import Memo
@@ -129,6 +129,7 @@ class Analysis:
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
         self._structs: dict[str, Structs] = {}
         self._published_types: dict[str, Mapping[str, tuple[str, ...]]] = {}
+        self._trees: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {}
         self._gaps: dict[str, tuple[tuple[str, PlacedGap], ...]] = {}
 
     # ---------------------------------------------------------- single files
@@ -290,12 +291,62 @@ class Analysis:
         return self.trees_from(first) if first else ()
 
     def trees_from(self, path: str) -> tuple[str, ...]:
-        """A tree file and what it includes, directly or not, each once."""
-        found = [path] if self.tree(path) is not None else []
+        """A tree file and what it includes, directly or not, then the projects beside it that list it and what of them
+        it needs, each once."""
+        if path not in self._trees:
+            own = self._with_included([path])
+            self._trees[path] = (own, self._from_projects(path, own))
+        own, more = self._trees[path]
+        return (*own, *more)
+
+    def outlines_from(self, path: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of `trees_from`. Of equal names in projects the first counts."""
+        paths = self.trees_from(path)
+        own = len(self._trees[path][0])
+        found = [self.tree_outline(each) for each in paths[:own]]
+        for each in paths[own:]:
+            known = {tree.id for outline in found for tree in outline.trees}
+            outline = self.tree_outline(each)
+            trees = tuple(tree for tree in outline.trees if tree.id not in known)
+            found.append(replace(outline, trees=trees, from_project=True))
+        return tuple(found)
+
+    def tree_outlines(self, system: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the tree files of a system."""
+        first = next(iter(self.tree_paths(system)), None)
+        return self.outlines_from(first) if first else ()
+
+    def _with_included(self, paths: list[str]) -> tuple[str, ...]:
+        found = [path for path in paths if self.tree(path) is not None]
         for each in found:
             included = dict.fromkeys(self.includes(each))
             found += [p for p in included if p not in found and self.tree(p) is not None]
         return tuple(found)
+
+    def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
+        """The projects of Groot2 that list a tree file, and those of their files that hold missing subtrees."""
+        if not own or path.endswith(PROJECT_EXTENSION):
+            return ()
+        projects = [p for p in self.files.beside(path, PROJECT_EXTENSION) if path in self.includes(p)]
+        listed = dict.fromkeys(p for project in projects for p in self.includes(project))
+        found: list[str] = list(projects)
+        while True:
+            known = {name for each in (*own, *found) for name in self._tree_names(each)}
+            wanted = {name for each in (*own, *found) for name in self._subtrees(each)} - known
+            new = next((p for p in listed if p not in (*own, *found) and wanted & self._tree_names(p)), None)
+            if new is None:
+                return tuple(found)
+            found += [p for p in self._with_included([new]) if p not in (*own, *found)]
+
+    def _tree_names(self, path: str) -> set[str]:
+        tree = self.tree(path)
+        return {each.id.value for each in tree.trees if each.id} if tree else set()
+
+    def _subtrees(self, path: str) -> set[str]:
+        """The names of the trees that a file uses as subtrees."""
+        tree = self.tree(path)
+        used = (node for each in tree.trees for node in nodes(each)) if tree else ()
+        return {node.plugin.value for node in used if node.is_subtree and node.plugin}
 
     def includes(self, path: str) -> tuple[str, ...]:
         """The paths that a tree file includes."""
@@ -355,7 +406,7 @@ class Analysis:
             return None
         listed = self.listed(path)
         structs = self.structs(path)
-        trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
+        trees = self.tree_outlines(path)
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
         gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
@@ -416,7 +467,7 @@ class Analysis:
             if each.input.section == "node_models" and not each.usable:
                 yield path, PlacedGap(Gap(ANYTHING), each.span)
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
-        outlines = tuple(self.tree_outline(each) for each in self.tree_paths(path))
+        outlines = self.tree_outlines(path)
         for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
             tree = self.tree(stray.source.path)
             node = node_at(tree, stray.source) if tree else None
@@ -443,13 +494,13 @@ class Analysis:
             spans = [] if broken is None else [broken]
             spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
             spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
-            for include in tree.includes:
+            for include in () if tree_path.endswith(PROJECT_EXTENSION) else tree.includes:
                 if include.path and self.tree(self.include_path(tree_path, include.path.value)) is None:
                     spans.append(include.path.span)
             clear = clear and not spans
             yield from ((tree_path, span) for span in spans)
         if clear and paths:
-            outlines = tuple(self.tree_outline(each) for each in paths)
+            outlines = self.tree_outlines(path)
             if not self.memo.get("whole tree", path, outlines, lambda: is_whole(outlines)):
                 first = self.tree(paths[0])
                 assert first is not None

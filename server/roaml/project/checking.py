@@ -22,7 +22,7 @@ from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import PROJECT_EXTENSION, FileKind
 from roaml.model.machine import Dialect, Machine
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
@@ -365,8 +365,9 @@ class _Run:
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
-        paths = self.analysis.tree_paths(self.system_path) if self.system_path else self.analysis.trees_from(self.path)
-        return tuple(self.analysis.tree_outline(path) for path in paths)
+        if self.system_path:
+            return self.analysis.tree_outlines(self.system_path)
+        return self.analysis.outlines_from(self.path)
 
     def _missing_includes(self) -> dict[str, str]:
         """What cannot be included, and why."""
@@ -381,7 +382,7 @@ class _Run:
                 found[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
                 found[include.path.value] = "it is no file of behavior trees"
-            elif self.path in self.analysis.trees_from(target):
+            elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
                 found[include.path.value] = (
                     "it includes this file in turn" if target != self.path else "it is this file"
                 )

@@ -61,6 +61,14 @@ class DiskFiles:
         self._known[path] = (stamp, source)
         return source
 
+    def listing(self, folder: str) -> tuple[str, ...]:
+        """The names of the files in a folder, sorted; none if it cannot be read."""
+        try:
+            with os.scandir(folder) as entries:
+                return tuple(sorted(entry.name for entry in entries if entry.is_file()))
+        except (OSError, ValueError):
+            return ()
+
 
 class Files:
     """One moment's view: `open_files` lie above the disk. Each path is looked up once."""
@@ -69,6 +77,7 @@ class Files:
         self._disk = disk
         self.open_files = open_files
         self._seen: dict[str, SourceFile | Problem] = {}
+        self._folders: dict[str, tuple[str, ...]] = {}
 
     def read(self, path: str) -> SourceFile | Problem:
         if path in self.open_files:
@@ -76,6 +85,15 @@ class Files:
         if path not in self._seen:
             self._seen[path] = self._disk.read(path)
         return self._seen[path]
+
+    def beside(self, path: str, extension: str) -> tuple[str, ...]:
+        """The other files with this extension in the folder of a file, sorted."""
+        folder = os.path.dirname(path)
+        if folder not in self._folders:
+            self._folders[folder] = self._disk.listing(folder)
+        found = {os.path.join(folder, name) for name in self._folders[folder] if name.endswith(extension)}
+        found |= {p for p in self.open_files if os.path.dirname(p) == folder and p.endswith(extension)}
+        return tuple(sorted(found - {path}))
 
     def text(self, path: str) -> SourceFile | None:
         source = self.read(path)
