@@ -288,6 +288,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
         FaultError: the model or a property is of a kind that cannot be run; see `roaml.smc.fault`.
     """
     from roaml.smc.model import Checker  # noqa: PLC0415 - checking and translating start faster without it
+    from roaml.views.ends import marks  # noqa: PLC0415
 
     found = model.properties
     if properties is not None:
@@ -297,7 +298,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
                 known = ", ".join(by_name) or "none"
                 raise PropertyError(f"there is no property {name}; the model has: {known}")
         found = tuple(by_name[name] for name in properties)
-    return Checker(model, found)
+    return Checker(model, found, marks(model))
 
 
 def verify(

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from as2fm_lsp.verification import ends
 from as2fm_lsp.verification.expectations import Verdict
 from roaml.smc.lss import Extremes
 from roaml.smc.run import Answer
@@ -96,7 +97,7 @@ def _estimate(answer: Answer) -> str:
 def _remarks(result: Result) -> list[str]:
     answer = result.answer
     assert answer is not None
-    lines = []
+    lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach what the reward is counted to")
     if answer.tally.undecided:
@@ -153,6 +154,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "passed": tally.successes,
         "failed": answer.failures,
         "undecided": tally.undecided,
+        "ends": ends.as_row(tally),
         "steps": tally.steps,
         "complete": answer.is_complete,
         "confidence": answer.options.confidence,
