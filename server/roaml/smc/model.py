@@ -29,6 +29,7 @@ class Checker:
 
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
         asked: a question for each property.
@@ -39,7 +40,12 @@ class Checker:
     """
 
     def __init__(
-        self, model: Model, properties: Iterable[Property] | None = None, marks: Marks = MappingProxyType({})
+        self,
+        model: Model,
+        properties: Iterable[Property] | None = None,
+        marks: Marks = MappingProxyType({}),
+        *,
+        asks_stuck: bool = False,
     ) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
@@ -49,6 +55,8 @@ class Checker:
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
             self.asked: tuple[Asked, ...] = tuple(ask(self._compilation, property_) for property_ in chosen)
             self.stuck: Asked = ask_stuck(self._compilation)
+            if asks_stuck:
+                self.asked += (self.stuck,)
             self.program: Program = self._compilation.program(marks)
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
