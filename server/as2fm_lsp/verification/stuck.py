@@ -90,14 +90,19 @@ def stuck_in(
         return None
     recorder = Recorder(checker, asked, options.seed, options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
-    time = None
-    if subject.clock is not None:
-        by_name = {storage.name: storage for storage in recorder.shared}
-        seconds, nanoseconds = recorder.values([by_name[name] for name in subject.clock])
-        assert not isinstance(seconds, list)
-        assert not isinstance(nanoseconds, list)
-        time = seconds + nanoseconds / 1e9
+    time = time_of(subject, recorder)
     return Stuck(ended.count, ended.shortest, time, waits(recorder.standstill(), time))
+
+
+def time_of(subject: Subject, recorder: Recorder) -> float | None:
+    """The time of the model in the state that is reached, in s; None without a clock."""
+    if subject.clock is None:
+        return None
+    by_name = {storage.name: storage for storage in recorder.shared}
+    seconds, nanoseconds = recorder.values([by_name[name] for name in subject.clock])
+    assert not isinstance(seconds, list)
+    assert not isinstance(nanoseconds, list)
+    return seconds + nanoseconds / 1e9
 
 
 def shortest(found: Sequence[Stuck | None]) -> Stuck | None:

@@ -94,7 +94,9 @@ def heading(story: Story) -> str:
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"
-    if story.recording.end not in (End.DECIDED, End.CUT):
+    if story.recording.end is End.STUCK:
+        text = f"{story.property}: trace {story.recording.trace} gets stuck after {steps}"
+    elif story.recording.end not in (End.DECIDED, End.CUT):
         text += f" ({story.recording.end.text})"
     text += f", of which {len(story.relevant):,} matter"
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
