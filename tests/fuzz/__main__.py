@@ -10,6 +10,7 @@ from pathlib import Path
 
 from fuzz.cases import Case, Failure, make, run
 from fuzz.corpus import snippets, systems
+from fuzz.pairs import Outcome, choose, outcome
 
 
 def main() -> int:
@@ -18,10 +19,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="the seed of the first; the others follow (0)")
     parser.add_argument("--case", type=int, metavar="SEED", help="only this one, with all that is known about it")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="with --case: write its files there")
+    parser.add_argument("--pairs", type=int, metavar="N", help="this many pairs of mistakes instead, from --seed on")
     parser.add_argument("--slowest", type=int, default=3, metavar="N", help="name the slowest cases (3)")
     arguments = parser.parse_args()
     if arguments.case is not None:
         return one(make(arguments.case), arguments.keep)
+    if arguments.pairs is not None:
+        return pairs(range(arguments.seed, arguments.seed + arguments.pairs))
     return many(range(arguments.seed, arguments.seed + arguments.cases), arguments.slowest)
 
 
@@ -50,6 +54,23 @@ def many(seeds: range, slowest: int) -> int:
         smallest = min(found, key=lambda f: sum(map(len, f[0].texts.values())))[0].seed
         print(f"{len(found)} cases, the smallest with seed {smallest}: {kind}")
     return 1 if kinds else 0
+
+
+def pairs(seeds: range) -> int:
+    """How many pairs of mistakes are reported as each is alone; those that are not, in words."""
+    counts = dict.fromkeys(Outcome, 0)
+    for number, seed in enumerate(seeds, 1):
+        mistakes = choose(seed)
+        found, details = outcome(*mistakes)
+        counts[found] += 1
+        if found is not Outcome.BOTH:
+            shown = " and ".join(f"{mistake.file}, {mistake.what}" for mistake in mistakes)
+            print(f"seed {seed}: {found.value}: {details}\n    {shown}", flush=True)
+        if number % 500 == 0 or number == len(seeds):
+            print(
+                f"{number} pairs: " + ", ".join(f"{count} {each.value}" for each, count in counts.items()), flush=True
+            )
+    return 1 if counts[Outcome.LOST] else 0
 
 
 def one(case: Case, folder: Path | None) -> int:

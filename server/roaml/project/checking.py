@@ -20,9 +20,10 @@ from roaml.interfaces.types import Kind
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
+from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import FileKind
-from roaml.model.machine import Dialect
+from roaml.model.machine import Dialect, Machine
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.edits import laid_out
@@ -335,9 +336,21 @@ class _Run:
             structs.complete,
             self.analysis.interface,
             events.get,
+            self._machine_gaps(machine),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
+
+    def _machine_gaps(self, machine: Machine) -> tuple[PlacedGap, ...]:
+        automata = self.system.automata_of(self.path) if self.system else ()
+        if not any(automaton.outline.gaps for automaton in automata):
+            return ()
+        return self.analysis.machine_gaps(self.path, machine, self.analysis.typed_in(self.path, self.system_path))
+
+    def _gaps(self) -> tuple[PlacedGap, ...]:
+        """The gaps of the system that have their cause in this file."""
+        gaps = self.analysis.gaps(self.system_path) if self.system_path else ()
+        return tuple(placed for path, placed in gaps if path == self.path)
 
     def _tree_context(self) -> TreeContext | None:
         file, document = self.analysis.tree(self.path), self.analysis.document(self.path)
@@ -345,7 +358,8 @@ class _Run:
             return None
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
-        return TreeContext(self.source, document, file, self.system, outlines, self._missing_includes(), older)
+        missing, interface = self._missing_includes(), self.analysis.interface
+        return TreeContext(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
@@ -376,7 +390,8 @@ class _Run:
         system = self.analysis.system(self.path)
         if file is None or document is None or system is None:
             return None
-        return SystemContext(self.source, document, file, self.analysis.listed(self.path), system)
+        listed = self.analysis.listed(self.path)
+        return SystemContext(self.source, document, file, listed, system, self.analysis.interface, self._gaps())
 
     def _structs_context(self) -> StructsContext:
         declarations = self.analysis.struct_declarations(self.path)
