@@ -23,6 +23,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
+from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.edits import laid_out
@@ -30,6 +31,7 @@ from roaml.project.files import MAX_CHARACTERS, Problem
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, suppressions
+from roaml.project.translation import size_of_translation
 from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
 from roaml.rules.rule import (
@@ -116,7 +118,7 @@ class Checker:
         if len(source.text) > MAX_CHARACTERS:
             return (_too_large(source),)
         try:
-            run = _Run(self.analysis, path, source, self._kind(path, system), system)
+            run = _Run(self.analysis, path, source, self._kind(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # a crash of ours in one file must not keep the others from being checked
             log.exception("%s cannot be analysed", path)
@@ -186,12 +188,15 @@ def _too_large(source: SourceFile) -> Finding:
 class _Run:
     """The check of one file in one system."""
 
-    def __init__(self, analysis: Analysis, path: str, source: SourceFile, kind: FileKind, system: str | None) -> None:
+    def __init__(
+        self, analysis: Analysis, path: str, source: SourceFile, kind: FileKind, system: str | None, limits: Limits
+    ) -> None:
         self.analysis = analysis
         self.path = path
         self.source = source
         self.kind = kind
         self.system_path = system
+        self.limits = limits
         self.system: System | None = analysis.system(system) if system else None
 
     def key(self) -> object:
@@ -206,7 +211,7 @@ class _Run:
                 return (*parts, typed, lookups, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
-                return (*parts, listed, self.analysis.system(self.path))
+                return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
@@ -376,7 +381,10 @@ class _Run:
         system = self.analysis.system(self.path)
         if file is None or document is None or system is None:
             return None
-        return SystemContext(self.source, document, file, self.analysis.listed(self.path), system)
+        size = size_of_translation(self.analysis, self.path)
+        assert size is not None
+        files = self.analysis.listed(self.path)
+        return SystemContext(self.source, document, file, files, system, size, self.limits)
 
     def _structs_context(self) -> StructsContext:
         declarations = self.analysis.struct_declarations(self.path)

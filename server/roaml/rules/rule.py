@@ -24,6 +24,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType
+from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
@@ -87,11 +88,15 @@ class TreeContext:
 
 @dataclass(frozen=True, slots=True)
 class SystemContext:
+    """A system file. `size` is that of its translation, `limits` what is translated at most."""
+
     source: SourceFile
     document: Document
     file: SystemFile
     files: tuple[ListedFile, ...]
     system: System
+    size: Size
+    limits: Limits
 
 
 @dataclass(frozen=True, slots=True)
