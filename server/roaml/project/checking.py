@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import logging
 from collections.abc import Callable, Iterable, Iterator
 
@@ -30,7 +31,7 @@ from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS, Problem
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
-from roaml.project.suppress import Suppression, suppressions
+from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
 from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
@@ -46,6 +47,9 @@ from roaml.rules.rule import (
 from roaml.text import Location, SourceFile, Span
 
 log = logging.getLogger(__name__)
+
+MAX_FINDINGS = 1000
+"""Of one rule in one file. Nobody reads more, and each takes time: what is close to a name, how it would be fixed."""
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
@@ -80,10 +84,11 @@ class Checker:
         hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
         if hidden:
             found.update(dict.fromkeys(each for each in self._unused(source, systems, hidden) if self._wanted(each)))
+        around = covering(hidden)
         diagnostics = [
             self._publish(path, finding)
             for finding in _without_repetition(found)
-            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in hidden)
+            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in around(finding.span.start))
         ]
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
 
@@ -94,11 +99,19 @@ class Checker:
         known = linked and all(system is not None and system.complete for system in linked)
         if not known or any(finding.code in _FORM for finding in found):
             return
-        for each in hidden:
+        around = covering(hidden)
+        used: dict[object, set[str]] = {}
+        for finding in found:
+            for each in around(finding.span.start):
+                if each.hides(finding):
+                    used.setdefault((each.span, each.codes), set()).add(finding.code)
+        for each in itertools.islice(hidden, MAX_FINDINGS):
+            key = (each.span, each.codes)
             if each.codes is None or unused_suppression.RULE.code not in each.codes:
-                used = {finding.code for finding in found if each.hides(finding)}
                 codes = None if each.codes is None else sorted(each.codes)
-                yield from unused_suppression.finding(source.text, each.comment, codes, used)
+                yield from unused_suppression.finding(
+                    source.text, each.comment, codes, used.get(key, ())
+                )
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting
@@ -151,6 +164,15 @@ class Checker:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
+    """The findings of one rule in one file: of very many, the first."""
+    found = list(itertools.islice(findings, MAX_FINDINGS + 1))
+    if len(found) > MAX_FINDINGS:
+        message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
+        found[-1] = rule.at(found[-1].span, message, severity=found[-1].severity)
+    return found
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
@@ -236,7 +258,7 @@ class _Run:
         for rule, check in checks:
             self.analysis.memo.checkpoint()
             try:
-                yield from list(check())
+                yield from _some(rule, check())
             except Exception as error:  # a crash of ours must not stop the other rules
                 log.exception("rule %s failed on %s", rule.code, self.path)
                 yield internal_error(rule.code, error)
