@@ -9,6 +9,7 @@ nobody waits for it any more.
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 import os
 import sys
@@ -29,7 +30,7 @@ from as2fm_lsp.protocol import Protocol, error_response, is_answered
 from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
-from as2fm_lsp.tcp import accepted
+from as2fm_lsp.sockets import Client
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
 from roaml.model.kinds import EXTENSIONS
@@ -80,14 +81,11 @@ class Server(LanguageServer):
         source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
         self.serve(source, stdout or sys.stdout.buffer)
 
-    def start_tcp(self, host: str, port: int) -> None:
-        """Serve the first client that connects.
-
-        Raises:
-            OSError: nobody can be listened for there.
-        """
-        with accepted(host, port) as connection:
-            self.serve(connection.makefile("rb"), connection.makefile("wb"))
+    def serve_client(self, client: Client) -> None:
+        """Serve a client that has connected to a socket."""
+        self.inbox.put(json.dumps(client.first).encode())
+        with client.connection:
+            self.serve(client.source, client.target)
 
     def serve(self, source: BinaryIO, target: BinaryIO) -> None:
         """Serve one client, until it tells the server to exit or has no more to say."""
