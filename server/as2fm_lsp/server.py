@@ -9,6 +9,7 @@ nobody waits for it any more.
 from __future__ import annotations
 
 import asyncio
+import functools
 import json
 import logging
 import os
@@ -31,6 +32,7 @@ from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
 from as2fm_lsp.sockets import Client
+from as2fm_lsp.trust import DID_CHANGE, Trust
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
 from roaml.model.kinds import EXTENSIONS
@@ -48,7 +50,7 @@ class Server(LanguageServer):
     `is_shut_down` tells whether the client has asked it to shut down. `has_parent` tells whether the client has started
     this process, so that the server ends with it. `show_references` is the command of the
     client that shows places, `show_counterexample` the one that shows why a property fails; "" if it has none.
-    `verified` is what is known of properties.
+    `verified` is what is known of properties. `trust` says whether the user trusts the workspace.
     """
 
     protocol: Protocol
@@ -61,6 +63,7 @@ class Server(LanguageServer):
         self.show_counterexample = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
+        self.trust = Trust()
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
         self.verified = Verified()
@@ -72,8 +75,27 @@ class Server(LanguageServer):
         return lambda handler: register(self.requests.guarded(feature_name, handler))
 
     def command(self, command_name: str) -> Callable[[Any], Any]:
+        """Commands write files or work for long: they need a workspace that is trusted."""
         register = super().command(command_name)
-        return lambda handler: register(self.requests.guarded(command_name, handler))
+        return lambda handler: register(self.requests.guarded(command_name, self.trusted_only(command_name, handler)))
+
+    def trusted_only(self, name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
+        """A handler that refuses its work in a workspace that is not trusted."""
+        if asyncio.iscoroutinefunction(handler):
+
+            @functools.wraps(handler)
+            async def answer_later(*arguments: Any) -> Any:
+                self.trust.require(name)
+                return await handler(*arguments)
+
+            return answer_later
+
+        @functools.wraps(handler)
+        def answer(*arguments: Any) -> Any:
+            self.trust.require(name)
+            return handler(*arguments)
+
+        return answer
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         self.has_parent = True
@@ -159,6 +181,7 @@ def create() -> Server:
     server = Server()
     _documents(server)
     _workspace(server)
+    _trust(server)
     register(server)
     return server
 
@@ -211,6 +234,7 @@ def _workspace(server: Server) -> None:
         if server.has_parent and params.process_id is not None:
             parent.watch(params.process_id, server.inbox.end)
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
+        server.trust.set(options.get("trusted", True))
         session.configure(options.get("settings") or {})
         server.show_references = str(options.get("showReferences") or "")
         server.show_counterexample = str(options.get("showCounterexample") or "")
@@ -266,6 +290,12 @@ def _workspace(server: Server) -> None:
         if any(change.type is not types.FileChangeType.Changed for change in params.changes):
             session.refresh()
         diagnostics.schedule()
+
+
+def _trust(server: Server) -> None:
+    @server.feature(DID_CHANGE)
+    def did_change_trust(params: Any) -> None:
+        server.trust.set(getattr(params, "trusted", None))
 
 
 def _pull(server: Server) -> None:

@@ -41,6 +41,7 @@ def register(server: Server) -> None:
 
     @server.feature(METHOD)
     def migrate(params: Any) -> Migrated:
+        server.trust.require(METHOD)
         path = session.convert.path(document_uri(params))
         try:
             migrations = api.migrate([path], settings=session.settings_of(path))
