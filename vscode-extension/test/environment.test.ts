@@ -32,7 +32,7 @@ test("an environment is made, the wheel installed and the mark written last", as
     const found = await install(on, [], (step) => steps.push(step));
     assert.ok("origin" in found && found.origin === "private" && found.version === "0.1.0");
     assert.deepEqual(steps, ["python", "venv", "packages"]);
-    assert.ok(on.ran.includes(`/bin/python3 -m venv ${HOME}`));
+    assert.ok(on.ran.includes(`/bin/python3 -I -m venv ${HOME}`));
     assert.ok(on.ran.some((line) => line.startsWith(`${INSIDE} -I -m pip install`) && line.endsWith("/server.whl")));
     // The environment of an earlier version is gone.
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
@@ -53,7 +53,14 @@ test("the preferred interpreter comes first", async () => {
         [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
     });
     await install(on, ["/conda/python"]);
-    assert.ok(on.ran.includes(`/conda/python -m venv ${HOME}`));
+    assert.ok(on.ran.includes(`/conda/python -I -m venv ${HOME}`));
+});
+
+test("no Python of a folder that is not trusted is started", async () => {
+    const on = machine();
+    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "2");
+    assert.deepEqual(await environment.install(["/bin/python3"], { avoid: ["/bin"] }), { kind: "no-python" });
+    assert.deepEqual(on.ran, []);
 });
 
 test("no Python, or an old one only", async () => {

@@ -76,7 +76,8 @@ export class LanguageServer implements vscode.Disposable {
 
     /** With the window: the server that ran last is started before it is looked for. */
     open(): Promise<void> {
-        const expected = this.recall.server(this.wishes());
+        const recalled = this.recall.server(this.wishes());
+        const expected = vscode.workspace.isTrusted || recalled?.origin === "private" ? recalled : undefined;
         return expected ? this.supervisor.expect(expected) : this.supervisor.start();
     }
 
@@ -169,6 +170,7 @@ export class LanguageServer implements vscode.Disposable {
             return this.environment.install(preferred, {
                 signal: abort.signal,
                 onOutput,
+                avoid: untrustedFolders(),
                 onStep: (step) => {
                     progress.report({ message: tellStep(step) });
                     onStep(step);
@@ -179,6 +181,12 @@ export class LanguageServer implements vscode.Disposable {
         if (!isFailure(installed)) void this.environment.compile(onOutput);
         return installed;
     }
+}
+
+/** From where nothing is started. */
+export function untrustedFolders(): string[] {
+    if (vscode.workspace.isTrusted) return [];
+    return (vscode.workspace.workspaceFolders ?? []).map(({ uri }) => uri.fsPath);
 }
 
 /** A setting that names a program; empty if it is not set. */

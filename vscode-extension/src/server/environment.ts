@@ -21,6 +21,8 @@ export interface InstallOptions {
     readonly signal?: AbortSignal;
     readonly onStep?: (step: Step) => void;
     readonly onOutput?: (text: string) => void;
+    /** Folders whose programs are not started: those of a workspace that is not trusted. */
+    readonly avoid?: readonly string[];
 }
 
 export class PrivateEnvironment {
@@ -56,14 +58,14 @@ export class PrivateEnvironment {
      * @param preferred interpreters to try before those on PATH.
      */
     async install(preferred: readonly string[], options: InstallOptions = {}): Promise<Server | Failure> {
-        const { signal, onOutput, onStep } = options;
+        const { signal, onOutput, onStep, avoid } = options;
         const limits = { ...(signal && { signal }), ...(onOutput && { onOutput }) };
         onStep?.("python");
         let failure: Failure = { kind: "no-python" };
-        for await (const python of pythons(this.machine, preferred)) {
+        for await (const python of pythons(this.machine, preferred, avoid)) {
             onStep?.("venv");
             await this.machine.remove(this.home);
-            const made = await this.machine.run(python.executable, ["-m", "venv", this.home], limits);
+            const made = await this.machine.run(python.executable, ["-I", "-m", "venv", this.home], limits);
             if (made.status !== 0) {
                 failure = { kind: "no-venv", python: python.version, detail: words(made.err, made.out) };
                 continue; // another Python may have what this one lacks
