@@ -9,7 +9,7 @@ const NOTHING: Wishes = { server: "", interpreter: "", active: [], trusted: true
 const MARK = "/storage/1/ready.json";
 
 function find(machine: FakeMachine, wishes: Partial<Wishes> = {}) {
-    const environment = new PrivateEnvironment(machine, "/storage", "/server.whl", "1");
+    const environment = new PrivateEnvironment(machine, "/storage", "/server.whl", "/requirements.txt", "1");
     return findServer(machine, { ...NOTHING, ...wishes }, environment);
 }
 

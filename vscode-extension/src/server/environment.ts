@@ -4,7 +4,8 @@
  *
  * - An environment is named by its wheel, so a new version of the extension makes a new one and the old one goes.
  * - It counts only when its mark has been written, as the last step: one that was interrupted is made anew.
- * - The packages that the server needs come from the index that the user's pip is configured for.
+ * - The packages that the server needs come from the index that the user's pip is configured for. Whatever that index
+ *   answers, only files whose hashes are known are installed, and none of them has code that runs while it is installed.
  */
 
 import * as path from "node:path";
@@ -29,12 +30,14 @@ export class PrivateEnvironment {
     /**
      * @param folder where environments are kept.
      * @param wheel of the server.
-     * @param id tells this wheel from others.
+     * @param requirements the packages that the server needs, with their hashes.
+     * @param id tells this wheel with these packages from others.
      */
     constructor(
         private readonly machine: Machine,
         private readonly folder: string,
         private readonly wheel: string,
+        private readonly requirements: string,
         private readonly id: string,
     ) {}
 
@@ -71,11 +74,13 @@ export class PrivateEnvironment {
                 continue; // another Python may have what this one lacks
             }
             onStep?.("packages");
-            const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", this.wheel];
-            const installed = await this.machine.run(this.python, pip, limits);
-            if (installed.status !== 0) {
-                await this.machine.remove(this.home);
-                return { kind: "no-packages", python: python.version, detail: words(installed.err, installed.out) };
+            for (const what of this.installed()) {
+                const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", ...what];
+                const ended = await this.machine.run(this.python, pip, limits);
+                if (ended.status !== 0) {
+                    await this.machine.remove(this.home);
+                    return { kind: "no-packages", python: python.version, detail: words(ended.err, ended.out) };
+                }
             }
             return this.finish(python);
         }
@@ -88,6 +93,12 @@ export class PrivateEnvironment {
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
         await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
+    }
+
+    /** What pip is told to install, one after the other. */
+    private installed(): string[][] {
+        const packages = ["--require-hashes", "--only-binary", ":all:", "-r", this.requirements];
+        return [packages, ["--no-index", "--no-deps", this.wheel]];
     }
 
     private async finish(python: Python): Promise<Server | Failure> {
