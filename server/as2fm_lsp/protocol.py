@@ -7,7 +7,9 @@ changes while it applies them; and it keeps a future for every notification. Nei
 
 from __future__ import annotations
 
+import asyncio
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any
 
 from lsprotocol import types
@@ -115,7 +117,8 @@ class Protocol(LanguageServerProtocol):
     def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: Any = None) -> None:
         def done(future: Future[Any]) -> None:
             self._request_futures.pop(msg_id, None)
-            callback(future)
+            with suppress(asyncio.CancelledError):  # as when the session ends: nobody waits
+                callback(future)
 
         super()._execute_handler(msg_id, handler, done, args, kwargs)
 
