@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 from collections.abc import Container, Iterable
 
 from roaml.model.syntax import Name, name_of
@@ -12,8 +13,14 @@ from roaml.xml import Element
 
 def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
     """Those of `candidates` that look like `name`, the nearest first."""
+    return _close_names(name[:80], tuple(candidates), most)
+
+
+@functools.lru_cache(maxsize=256)
+def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str, ...]:
+    """Remembered, as one mistake is often made many times."""
     by_lower = {candidate.lower(): candidate for candidate in candidates}
-    matches = difflib.get_close_matches(name.lower()[:80], list(by_lower), most, 0.6)
+    matches = difflib.get_close_matches(name.lower(), list(by_lower), most, 0.6)
     return tuple(by_lower[match] for match in matches)
 
 

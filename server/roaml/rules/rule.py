@@ -24,6 +24,7 @@ from roaml.model.gaps import PlacedGap
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType, RepeatedType
+from roaml.model.size import Limits, Size
 from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
@@ -94,6 +95,8 @@ class TreeContext:
 
 @dataclass(frozen=True, slots=True)
 class SystemContext:
+    """A system file. `size` is that of its translation, `limits` what is translated at most."""
+
     source: SourceFile
     document: Document
     file: SystemFile
@@ -101,6 +104,8 @@ class SystemContext:
     system: System
     interface: Callable[[str, str], InterfaceType | NotFound]
     gaps: tuple[PlacedGap, ...]
+    size: Size
+    limits: Limits
 
 
 @dataclass(frozen=True, slots=True)
