@@ -127,6 +127,8 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
     (frame({"jsonrpc": "2.0", "id": 14, "method": "no/such"}), 14, METHOD_NOT_FOUND),
     (frame({"jsonrpc": "2.0", "id": 15, "error": {"code": 1, "message": "?"}}), "-", None),
     (frame({"jsonrpc": "2.0", "id": [], "result": 5}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "window/workDoneProgress/cancel", "params": {"token": []}}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": {}}}), "-", None),
     (frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"wrong": 1}}), "-", None),
 ]
 
