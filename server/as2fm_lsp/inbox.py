@@ -16,7 +16,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeGuard
 
 from lsprotocol import types
 
@@ -31,7 +31,7 @@ LONGEST_MESSAGE = 1 << 28
 _LONGEST_LINE = 1 << 16
 _PIECE = 1 << 20
 _CHANGES = (types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
-_CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
+CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
 
 
 class Inbox:
@@ -159,11 +159,16 @@ def _params(message: object, *methods: str) -> dict[str, Any] | None:
 
 def _cancelled(message: object) -> str | int | None:
     """The id or token of what a message cancels."""
-    params = _params(message, *_CANCELLATIONS)
+    params = _params(message, *CANCELLATIONS)
     if params is None or not isinstance(message, dict):
         return None
-    found = params.get(_CANCELLATIONS[message["method"]])
-    return found if isinstance(found, (str, int)) and not isinstance(found, bool) else None
+    found = params.get(CANCELLATIONS[message["method"]])
+    return found if is_id(found) else None
+
+
+def is_id(value: object) -> TypeGuard[int | str]:
+    """Whether a request can have this id, or work this token."""
+    return isinstance(value, (int, str)) and not isinstance(value, bool)
 
 
 def _changes(message: object, uri: str) -> bool:

@@ -156,7 +156,8 @@ class Server(LanguageServer):
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
         """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
         if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
-            log.error("%s", source.__name__, exc_info=error)
+            known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
+            log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)
 
     def ask_to_pull(self) -> None:
         """Diagnostics have changed that the client fetches by itself."""
