@@ -18,6 +18,7 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.handlers.asked import Asked as Document
+from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.verification import background, stuck
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
@@ -104,8 +105,8 @@ def register(server: Server) -> None:
     @server.feature(COUNTEREXAMPLE)
     async def why(params: Any) -> Json | None:
         """The shortest trace that speaks against a property; null if none is known."""
-        path = session.convert.path(params.textDocument.uri)
-        known = server.verified.get(path, params.property)
+        path = session.convert.path(document_uri(params))
+        known = server.verified.get(path, string(params, "property"))
         seen = speaking_against(known.result) if known else None
         if known is None or seen is None:
             return None

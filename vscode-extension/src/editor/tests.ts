@@ -8,6 +8,7 @@ import { outcomeOf, type Outcome } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE } from "./client";
 import type { LanguageServer } from "./server";
+import { isTrusted } from "./trust";
 
 const PAUSE = 300;
 
@@ -130,6 +131,7 @@ export class PropertyTests implements vscode.Disposable {
     // ------------------------------------------------------------------- running
 
     private async run(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {
+        if (!isTrusted()) return;
         const items = chosen(this.controller.items, request.include, request.exclude);
         const run = this.controller.createTestRun(request);
         const cancel = new vscode.CancellationTokenSource();
