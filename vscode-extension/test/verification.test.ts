@@ -26,6 +26,28 @@ test("expectations decide", () => {
     assert.ok(without.kind === "failed" && !without.hasCounterexample);
 });
 
+const STUCK = { level: "warning", text: "who waits for whom", example: { trace: 3 } } as const;
+
+test("a system that gets stuck is told, and fails its properties if that is an error", () => {
+    const passed = { kind: "passed", short: "0.71 [0.66, 0.76]", milliseconds: 1250 };
+    assert.deepEqual(outcomeOf(ROW, STUCK), { ...passed, stuck: "who waits for whom" });
+    assert.deepEqual(outcomeOf(ROW, { ...STUCK, level: "error" }), {
+        ...passed,
+        kind: "failed",
+        missed: [],
+        hasCounterexample: true,
+        stuck: "who waits for whom",
+    });
+    const missed = outcomeOf({ ...ROW, expectations: [MISSED] }, STUCK);
+    assert.ok(missed.kind === "failed" && missed.stuck === "who waits for whom");
+});
+
+test("a system of which no trace got stuck is told nothing of", () => {
+    for (const level of ["warning", "error"] as const)
+        assert.deepEqual(outcomeOf(ROW, { ...STUCK, level, example: null }), outcomeOf(ROW));
+    assert.deepEqual(outcomeOf(ROW, null), outcomeOf(ROW));
+});
+
 test("what goes wrong is an error, not a failure", () => {
     const message = "a division by zero";
     assert.deepEqual(outcomeOf({ property: "alarm", error: { message } }), { kind: "errored", message });

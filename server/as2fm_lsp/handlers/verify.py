@@ -241,7 +241,7 @@ class _Run:
                 continue
             verdicts = tuple(judge(expected, answer) for expected in self.expected(asked))
             options = self.wanted.options
-            gets_stuck = stuck.stuck_in(subject, checker, asked, options, answer)
+            gets_stuck = stuck.stuck_in(subject, checker, asked, answer)
             result = Result(each, answer, verdicts, time.monotonic() - began, stuck=gets_stuck)
             results.append(result)
             server.verified.put(path, Known(result, subject, system.analysis, checker, asked, options, texts))
@@ -258,18 +258,22 @@ class _Run:
         """What is known of getting stuck, by traces that are made for it if it was not asked."""
         if not stuck.can_be_stuck(checker):
             return None
-        answer, found = None, [result.stuck for result in results]
+        known = stuck.Look(None, None, self.wanted.stuck)
         if not any(result.answer and result.answer.question.is_stuck for result in results):
-            options, asked = stuck.look_options(self.wanted.options), checker.stuck
+            options, asked = self.wanted.options, checker.stuck
             await self.shown.step(asked.question.name)
             began = time.monotonic()
-            answer = await background.answer(checker, asked, options, self.server.requests.checkpoint, lambda _: None)
-            found.append(stuck.stuck_in(subject, checker, asked, options, answer))
-            result = Result(asked.question.name, answer, (), time.monotonic() - began, stuck=found[-1])
-            if all(each.name != asked.question.name for each in subject.model.properties):
-                self.server.verified.put(self.path, Known(result, subject, analysis, checker, asked, options, texts))
+            known = await background.in_thread(
+                lambda checked: stuck.look(subject, checker, options, self.wanted.stuck, lambda _, __: checked()),
+                self.server.requests.checkpoint,
+            )
+            is_free = all(each.name != asked.question.name for each in subject.model.properties)
+            if known.answer is not None and is_free:
+                result = Result(asked.question.name, known.answer, (), time.monotonic() - began, stuck=known.stuck)
+                made = Known(result, subject, analysis, checker, asked, known.answer.options, texts)
+                self.server.verified.put(self.path, made)
             self.server.refresh.look()
-        known = stuck.Look(answer, stuck.shortest(found), self.wanted.stuck)
+        known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
         text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
         if known.stuck is not None and not self.wanted.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
