@@ -27,13 +27,14 @@ from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
-from roaml.model.gaps import ANYTHING, NODE, REMAP, Gap, PlacedGap, machine_gaps
+from roaml.model.gaps import ANYTHING, NODE, RECEIVES, REMAP, SENDS, Gap, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
+from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, RepeatedType, interface_type
+from roaml.model.spelling import close_names
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
@@ -465,7 +466,7 @@ class Analysis:
             yield path, PlacedGap(Gap(NODE), root)
         for each in listed:
             if each.input.section == "node_models" and not each.usable:
-                yield path, PlacedGap(Gap(ANYTHING), each.span)
+                yield from ((path, PlacedGap(gap, each.span)) for gap in self._of_missing_node(path, each, listed))
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         outlines = self.tree_outlines(path)
         for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
@@ -476,6 +477,23 @@ class Analysis:
             for name in (*stray.meant[:1], *((outer,) if outer and stray.meant else ())):
                 if key is not None:
                     yield stray.source.path, PlacedGap(Gap(REMAP, name), key)
+
+    def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
+        """What a node may say whose file cannot be used: what the file beside it says that is probably meant."""
+        folder, _, name = missing.path.replace("\\", "/").rpartition("/")
+        taken = {each.path for each in listed}
+        beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
+        by_name = {p.replace("\\", "/").rpartition("/")[2]: p for p in beside}
+        close = close_names(name, by_name, 1) if folder else ()
+        meant = by_name[close[0]] if close else ""
+        if not meant or self.machine(meant) is None:
+            yield Gap(ANYTHING)
+            return
+        found = self.outline(meant, system, self.structs(system), {})
+        yield from found.gaps
+        yield from (Gap(use.kind, use.name or None) for use in found.interfaces)
+        yield from (Gap(SENDS, sent.event) for sent in found.sent)
+        yield from (Gap(RECEIVES, received.event) for received in found.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
