@@ -25,6 +25,9 @@ log = logging.getLogger(__name__)
 _LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
 """Also behind the rest of what is no message, so that the message after it is found."""
 
+_FIELD = re.compile(rb"[A-Za-z-]+:")
+"""How a line of a header begins."""
+
 LONGEST_MESSAGE = 1 << 28
 """Bytes of one message. What claims to be longer is no message."""
 
@@ -133,7 +136,9 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
         match = _LENGTH.fullmatch(line)
         if match:
             length = int(match[1])
-        elif length and not line.strip():
+        elif line.strip():
+            length = length if _FIELD.match(line) else 0  # the header has ended without an end
+        elif length:
             if length <= LONGEST_MESSAGE:
                 body = b"".join(_pieces(stream, length))
                 if len(body) < length:

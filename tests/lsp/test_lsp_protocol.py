@@ -345,3 +345,9 @@ def test_a_client_that_never_answers() -> None:
     assert len(protocol._request_futures) == len(protocol._result_types) == 1000
     assert futures[-1] in protocol._request_futures.values()
     assert futures[0] not in protocol._request_futures.values()
+
+
+def test_a_header_without_an_end() -> None:
+    """What comes between it and the next message is passed over, and the next message is found."""
+    data = b"Content-Length: 100\r\n{no header}\r\n\r\nContent-Length: 2\r\nContent-Type: x\r\n\r\n{}"
+    assert list(bodies(BytesIO(data))) == [b"{}"]
