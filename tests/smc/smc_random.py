@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
@@ -70,32 +69,3 @@ def networks(draw: st.DrawFn) -> Json:
     variables = [*(variable(name) for name in SHARED), variable("v", three, values)]
     goal = probability(op("F", draw(conditions(SHARED))))
     return document(*parts, variables=variables, syncs=syncs, properties={"p": goal})
-
-
-@st.composite
-def wide_networks(draw: st.DrawFn) -> Json:
-    """Networks in which actions have up to 4^120 combinations of edges, some of them with guards and chances."""
-    return wide_network(draw(st.integers(2, 120)), draw(st.randoms(use_true_random=False)))
-
-
-def wide_network(count: int, random: Random) -> Json:
-    """One of them, of so many automata."""
-    kinds = [random.randint(1, 4) for _ in range(4)]
-    parts = []
-    for number in range(count):
-        edges = []
-        for action in ACTIONS:
-            for pick in range(kinds[number % len(kinds)]):
-                guard = op("<", "x", pick + 2) if random.random() < 0.1 else None
-                target = "s" if random.random() < 0.5 else "t"
-                assignment = [(f"own{number}", op("%", op("+", f"own{number}", pick), 5), 0)]
-                found = [ways(target, assignment)]
-                if pick == 1:
-                    found = [ways("s", assignment, 0.25), ways("t", [], 0.75)]
-                edges.append(edge("s", *found, action=action, guard=guard))
-                edges.append(edge("t", *found, action=action))
-        parts.append(automaton(f"m{number}", "s t", edges, [variable(f"own{number}")]))
-    parts.append(automaton("counts", "l", [edge("l", ways("l", [("x", op("%", op("+", "x", 1), 4), 0)]))]))
-    goal = {"p": probability(op("F", op("=", "x", 9)))}
-    full = [[action] * count + [None] for action in ACTIONS]
-    return document(*parts, variables=[variable("x"), variable("y")], syncs=full, properties=goal)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from smc_models import Json, automaton, document, edge, model, op, plain_kernel, probability, variable, way
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 import clock
 from roaml import api
@@ -18,6 +18,7 @@ from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Answer, Options, Tally
 from stuck_models import hospital, system
+from twin import plain_kernel
 
 FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
 GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
