@@ -22,7 +22,7 @@ from roaml.rules.rule import Rule
 SECTIONS = ["What it does", "Why", "Bad", "Good"]
 # No small text file shows them: two are found outside the rules' own checks, one needs bytes that are no text, and for
 # one no file is known. The last two are tested in test_cases_z.
-WITHOUT_EXAMPLE = {"file-too-large", "internal-error", "undecodable-text", "schema-violation"}
+WITHOUT_EXAMPLE = {"file-too-large", "internal-error", "model-fault", "undecodable-text", "schema-violation"}
 _BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
