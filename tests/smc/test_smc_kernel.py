@@ -18,6 +18,7 @@ from smc_random import networks
 import roaml.smc
 from roaml import api
 from roaml.smc import kernel, program
+from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import Checker
 from roaml.smc.opcodes import Op
 
@@ -55,7 +56,7 @@ def same_traces(checker: Checker, traces: int, steps: int) -> None:
         compiled = checker.compiled(asked)
         first, second = (m.Kernel(compiled.program, compiled.goal) for m in (kernel, plain_kernel()))
         for trace in range(traces):
-            for scheduler in (0, 5):
+            for scheduler in (0, 5, MEMORY | 3, STARVE | 2, FAVOUR | 1):
                 found: list[Any] = []
                 for each in (first, second):
                     verdict = each.begin(11, trace, scheduler)
