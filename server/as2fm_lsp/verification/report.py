@@ -14,6 +14,7 @@ from typing import Any
 from as2fm_lsp.verification import choices, ends
 from as2fm_lsp.verification.expectations import Verdict
 from as2fm_lsp.verification.refusal import Refusal
+from as2fm_lsp.verification.stuck import NOT_STUCK, Look, Stuck
 from roaml.smc.choices import Choices
 from roaml.smc.lss import Extremes
 from roaml.smc.run import Answer, ratio_of
@@ -40,6 +41,7 @@ class Result:
         is_interrupted: whether somebody could not wait.
         choices: what is known of other schedulers than the uniform one; None if that is the one that is wanted.
         refusal: why there is no answer.
+        stuck: its traces that got stuck, if any did.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Result:
     seconds: float
     is_interrupted: bool = False
     extremes: Extremes | None = None
+    stuck: Stuck | None = None
     exact: Exact | None = None
     choices: Choices | None = None
     refusal: Refusal | None = None
@@ -123,6 +126,9 @@ def _remarks(result: Result) -> list[str]:
     if answer.tally.undecided:
         steps = f"{answer.options.max_steps:,}"
         lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
+    if result.stuck is not None and not answer.question.is_stuck:
+        count = answer.tally.traces
+        lines.append(f"  {result.stuck.count:,} of {count:,} traces got stuck, and say nothing about the property")
     if result.is_interrupted:
         lines.append("  interrupted; this is what was known by then")
     elif not answer.is_complete:
@@ -136,9 +142,13 @@ def _number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def as_json(results: Sequence[Result], errors: Sequence[dict[str, Any]] = ()) -> str:
-    """For programs."""
+def as_json(
+    results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
+) -> str:
+    """For programs; `stuck` is what is known of getting stuck."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
+    if stuck is not None:
+        value["stuck"] = stuck
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
@@ -203,11 +213,16 @@ def _finite(value: float) -> float | str | None:
     return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"
 
 
-def as_junit(results: Sequence[Result], title: str) -> str:
-    """A test for each property; it fails if an expectation is not met."""
+def as_junit(results: Sequence[Result], title: str, look: Look | None = None, stuck: str = "") -> str:
+    """A test for each property; it fails if an expectation is not met, and is an error if there is no answer. One more
+    tells whether the system gets stuck: it fails if that is an error; `stuck` is its text."""
     errors = sum(result.refusal is not None for result in results)
-    failures = sum(not result.is_met for result in results) - errors
-    counts = {"tests": str(len(results)), "failures": str(failures), "errors": str(errors)}
+    failures = sum(not result.is_met for result in results) - errors + (look is not None and not look.is_met)
+    counts = {
+        "tests": str(len(results) + (look is not None)),
+        "failures": str(failures),
+        "errors": str(errors),
+    }
     suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
     for result in results:
@@ -228,6 +243,10 @@ def as_junit(results: Sequence[Result], title: str) -> str:
         else:
             missed = [v.expectation.text for v in result.verdicts if not v.is_met]
             ET.SubElement(case, "failure", {"message": f"expected {' and '.join(missed)}"}).text = text
+    if look is not None:
+        case = ET.SubElement(suite, "testcase", {"classname": _clean(title), "name": NOT_STUCK})
+        told = ET.SubElement(case, "system-out") if look.is_met else ET.SubElement(case, "failure", message="stuck")
+        told.text = _clean(stuck)
     ET.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
 

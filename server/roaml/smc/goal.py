@@ -80,6 +80,7 @@ class Question:
         is_reward: whether an expected reward is asked for, not a probability.
         threshold: what the value is compared with, if it is.
         variables: what the property reads.
+        is_stuck: whether it is asked whether traces get stuck (`ask_stuck`).
     """
 
     name: str
@@ -87,6 +88,7 @@ class Question:
     is_reward: bool
     threshold: Threshold | None
     variables: tuple[str, ...]
+    is_stuck: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +132,7 @@ def ask_stuck(compilation: Compilation) -> Asked:
         step_reward=-1,
         exit_reward=-1,
     )
-    question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, ())
+    question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, (), is_stuck=True)
     return Asked(Property(STUCK_PROPERTY, formula), question, goal)
 
 

@@ -213,9 +213,15 @@ class Kernel:
         """Why a trace would end here if nothing changed any more, whatever is known of the goal."""
         return self._reason(0 if self.enabled_count == 0 else 1)
 
-    def readiness(self, slot: int) -> int:
-        """The number of edges of a slot that are enabled."""
-        return self.ready[slot]
+    def open_ways(self, instance: int) -> list[int]:
+        """The first way of each edge of an instance whose guard holds."""
+        location = self.place[instance]
+        found = []
+        for group in range(self.group_start[location], self.group_start[location + 1]):
+            for edge in range(self.edge_start[group], self.edge_start[group + 1]):
+                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                    found.append(self.way_start[edge])
+        return found
 
     def problem(self) -> tuple[int, int, int, int, float]:
         """The fault: its code, the place in the bytecode, and what belongs into the message."""

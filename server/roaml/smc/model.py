@@ -30,6 +30,7 @@ class Checker:
 
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
         asked: a question for each property that can be answered.
@@ -41,7 +42,12 @@ class Checker:
     """
 
     def __init__(
-        self, model: Model, properties: Iterable[Property] | None = None, marks: Marks = MappingProxyType({})
+        self,
+        model: Model,
+        properties: Iterable[Property] | None = None,
+        marks: Marks = MappingProxyType({}),
+        *,
+        asks_stuck: bool = False,
     ) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
@@ -58,6 +64,9 @@ class Checker:
                 except FaultError as fault:
                     self.refused[property_.name] = fault
             self.stuck: Asked = ask_stuck(self._compilation)
+            if asks_stuck:
+                self.asked += (self.stuck,)
+                self._names += (self.stuck.question.name,)
             self.program: Program = self._compilation.program(marks)
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
