@@ -286,7 +286,8 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
 
     Raises:
         PropertyError: the model has no property of a name.
-        FaultError: the model or a property is of a kind that cannot be run; see `roaml.smc.fault`.
+        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
+            are in `refused`.
     """
     from roaml.smc.goal import STUCK_PROPERTY  # noqa: PLC0415 - checking and translating start faster without it
     from roaml.smc.model import Checker  # noqa: PLC0415
@@ -325,12 +326,15 @@ def verify(
 
     Raises:
         PropertyError: the model has no property of a name.
-        FaultError: the model cannot be run, or did something that has no meaning.
+        FaultError: the model cannot be run, or did something that has no meaning; or a property cannot be answered.
+        ValueError: an option makes no sense.
     """
     from roaml.smc.pool import Pool  # noqa: PLC0415
     from roaml.smc.run import Options as _Options  # noqa: PLC0415
 
     ready = checker(model, properties)
+    for fault in ready.refused.values():
+        raise fault
     with Pool(jobs, executor) as pool:
         for asked in ready.asked:
             yield ready.answer(asked, options or _Options(), pool)

@@ -25,6 +25,7 @@ else:
     import tomli as tomllib
 
 CONFIG_FILE = "as2fm.toml"
+SCHEDULERS = ("uniform",)
 SEVERITIES = {severity.label: severity for severity in Severity}
 
 
@@ -37,6 +38,8 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    scheduler: "uniform" if `verify` is meant to answer for uniform choices, also where a property asks for the minimum
+        or maximum over all schedulers; else empty.
     limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
     """
@@ -49,6 +52,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    scheduler: str = ""
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
 
@@ -97,6 +101,11 @@ def settings_from(
         if key not in _KEYS:
             problems.append(f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}")
             continue
+        if key == "verify":
+            problems += _verify_problems(value, origin)
+            if isinstance(value, dict) and value.get("scheduler") in SCHEDULERS:
+                changes["scheduler"] = value["scheduler"]
+            continue
         read = _KEYS[key](value)
         if read is None:
             problems.append(f"{origin}: `{key}` is not {_WANTED[key]}")
@@ -114,6 +123,18 @@ def settings_from(
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
     return replace(base, **changes), tuple(problems)
+
+
+def _verify_problems(value: Any, origin: str) -> Iterator[str]:
+    """What is wrong with the table `[verify]`."""
+    if not isinstance(value, dict):
+        yield f"{origin}: `verify` is not a table"
+        return
+    for key, said in value.items():
+        if key != "scheduler":
+            yield f"{origin}: unknown setting `verify.{key}`; there is scheduler"
+        elif said not in SCHEDULERS:
+            yield f"{origin}: `verify.scheduler` is not {' or '.join(SCHEDULERS)}"
 
 
 def _strings(value: Any) -> tuple[str, ...] | None:
@@ -152,6 +173,7 @@ _KEYS: dict[str, Any] = {
     "ignore": _strings,
     "severity": _severities,
     "warnings-as-errors": _boolean,
+    "verify": None,
     "max-cells": _count,
     "max-parts": _count,
 }
