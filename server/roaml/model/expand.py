@@ -20,7 +20,8 @@ ROOT_NUMBER = 1000
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without places. `position` counts the nodes of its tree in pre-order from 0."""
+    """A node without places. `position` counts the nodes of its tree in pre-order from 0; `condition` tells that it is
+    written as `<Condition>`."""
 
     position: int
     plugin: str
@@ -28,6 +29,7 @@ class NodeOutline:
     is_subtree: bool
     attributes: tuple[tuple[str, str], ...]
     children: tuple[NodeOutline, ...]
+    condition: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +41,14 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`."""
+    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`, `conditions` the
+    plugins that are conditions there."""
 
     path: str
     main: str
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
+    conditions: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +86,7 @@ class Instance:
         automaton: `BT_plugin_<number>_<name>`.
         ports: what the tree sets, defaults of `<TreeNodesModel>` included.
         children: the numbers of its children.
+        condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
     """
 
     number: int
@@ -91,6 +96,7 @@ class Instance:
     parent: int | None
     children: tuple[int, ...]
     source: Source
+    condition: bool = False
 
     @property
     def automaton(self) -> str:
@@ -114,6 +120,7 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
             for port in model.ports
             if model.id and port.name and port.default is not None
         ),
+        frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
     )
 
 
@@ -130,6 +137,7 @@ def _outlines(root: TreeNode) -> NodeOutline:
             node.is_subtree,
             tuple((attribute.name, attribute.value) for attribute in node.element.attributes),
             tuple(convert(child) for child in node.children),
+            node.element.name == "Condition",
         )
 
     return convert(root)
@@ -241,6 +249,7 @@ class _Expansion:
         for file in files:
             for plugin, port, value in file.defaults:
                 self.defaults.setdefault(plugin, {}).setdefault(port, value)
+        self.conditions = frozenset(name for file in files for name in file.conditions)
         self.instances: list[Instance] = []
         self.prefixes: set[str] = set()
 
@@ -265,12 +274,13 @@ class _Expansion:
         settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
         ports = tuple((key, frame.value(text)) for key, text in settings.items())
         source = Source(tree.path, tree.id, node.position)
-        instance = Instance(number, node.plugin, node.name or node.plugin, ports, parent, (), source)
+        condition = node.condition or node.plugin in self.conditions
+        instance = Instance(number, node.plugin, node.name or node.plugin, ports, parent, (), source, condition)
         self.instances.append(instance)
         placed = [self.place(child, tree, frame, number, inside) for child in node.children]
         children = tuple(child for child in placed if child is not None)
         self.instances[number - ROOT_NUMBER] = Instance(
-            number, instance.plugin, instance.name, ports, parent, children, source
+            number, instance.plugin, instance.name, ports, parent, children, source, condition
         )
         return number
 

@@ -15,6 +15,7 @@ from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.behavior.summary import ChartOutline, summarised
 from roaml.model.machine import (
     CallChild,
     Communicate,
@@ -130,6 +131,7 @@ class MachineOutline:
     Attributes:
         sound: all ROS types, handles, fields and ports in it are known: it says what it means to say.
         all_ports: `ports` are all that it means to declare.
+        charts: how it behaves; of a chart that cannot be looked through nothing is said.
     """
 
     name: str
@@ -144,6 +146,7 @@ class MachineOutline:
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
     all_ports: bool = True
+    charts: tuple[ChartOutline, ...] = ()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -191,6 +194,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
         ),
         _plugin(machine),
         _declares_all_ports(machine),
+        tuple(summarised(machine, chart) for chart in machine.charts),
     )
 
 

@@ -6,6 +6,13 @@ from __future__ import annotations
 import importlib.resources
 
 from roaml.rules import (
+    running_condition,
+    unknown_thread,
+    wrong_goal_id,
+    unanswered_goal,
+    unanswered_request,
+    repeated_answer,
+    answer_needs_time,
     blackboard_never_read,
     blackboard_never_written,
     blackboard_read,
@@ -141,6 +148,13 @@ from roaml.rules import (
 from roaml.rules.rule import Rule
 
 RULES: tuple[Rule, ...] = (
+    running_condition.RULE,
+    unknown_thread.RULE,
+    wrong_goal_id.RULE,
+    unanswered_goal.RULE,
+    unanswered_request.RULE,
+    repeated_answer.RULE,
+    answer_needs_time.RULE,
     blackboard_never_read.RULE,
     blackboard_never_written.RULE,
     blackboard_read.RULE,
