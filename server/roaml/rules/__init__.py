@@ -6,12 +6,6 @@ from __future__ import annotations
 import importlib.resources
 
 from roaml.rules import (
-    running_condition,
-    unknown_thread,
-    wrong_goal_id,
-    unanswered_goal,
-    unanswered_request,
-    repeated_answer,
     answer_needs_time,
     blackboard_never_read,
     blackboard_never_written,
@@ -91,8 +85,10 @@ from roaml.rules import (
     port_value,
     probability_sum,
     removed_bt_event,
+    repeated_answer,
     repeated_element,
     repeated_parameter,
+    running_condition,
     schema_violation,
     several_servers,
     shadowed_transition,
@@ -110,7 +106,9 @@ from roaml.rules import (
     tree_model_mismatch,
     tree_structure,
     type_mismatch,
+    unanswered_goal,
     unanswered_halt,
+    unanswered_request,
     unanswered_tick,
     undeclared_handle,
     undeclared_port,
@@ -130,6 +128,7 @@ from roaml.rules import (
     unknown_port,
     unknown_property_variable,
     unknown_ros_type,
+    unknown_thread,
     unknown_type,
     unreachable_state,
     unset_field,
@@ -143,6 +142,7 @@ from roaml.rules import (
     unused_suppression,
     unused_variable,
     wrong_file_kind,
+    wrong_goal_id,
     xml_syntax,
 )
 from roaml.rules.rule import Rule

@@ -60,7 +60,9 @@ def _finding(
     context: MachineContext, system: System, step: Step, duty: Duty, delay: Delay, automaton: Automaton
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
-    message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}, which takes time: {reason}"
+    message = (
+        f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}, which takes time: {reason}"
+    )
     if delay.event.part == "tick":
         message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
     what = "answer RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"

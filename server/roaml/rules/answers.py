@@ -101,18 +101,17 @@ def with_unknown_elements(context: MachineContext, handler: Handler) -> bool:
 
 # ------------------------------------------------------------ place in the tree
 
-_ASKS_ONCE = frozenset(
-    ("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Inverter", "ForceSuccess")
-    + ("ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt", "ParallelAll")
-    + tuple(f"Switch{n}" for n in range(2, 7))
-)
+_SWITCHES = frozenset(f"Switch{cases}" for cases in range(2, 7))
+_ASKS_ONCE = _SWITCHES | {
+    *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "ParallelAll"),
+    *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
+}
 """They do not tick a child again that has ended, before they have ended themselves (spec/02 §5, §7.2)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """They halt their child only when they are halted."""
-_INTERRUPTS = frozenset(
-    ("ReactiveSequence", "ReactiveFallback", "Parallel", "WhileDoElse", "Timeout", "BlackboardCheckInt")
-    + tuple(f"Switch{n}" for n in range(2, 7))
-)
+_INTERRUPTS = _SWITCHES | {
+    *("ReactiveSequence", "ReactiveFallback", "Parallel", "WhileDoElse", "Timeout", "BlackboardCheckInt")
+}
 """They halt children that are running of their own accord."""
 
 

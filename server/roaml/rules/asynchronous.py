@@ -42,7 +42,9 @@ def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
             edits += _stored(handler, variable, done)
     edits.append(last_in(document, waiting.element, *_asked(waiting.id.value, RUNNING)))
     answered = _asked(goal, f'<bt_return_status status="{variable}" />')
-    edits.append(after(document, waiting.element, f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>"))
+    edits.append(
+        after(document, waiting.element, f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>")
+    )
     yield Fix("Answer RUNNING, and the status at a later tick", tuple(edits))
 
 

@@ -64,7 +64,10 @@ def _twice(step: Step, fault: Fault) -> bool:
 def _finding(context: MachineContext, step: Step, fault: Fault) -> Finding:
     where = place(step.handler, fault.statement)
     related = [Related(fault.statement.element.name_span, "this answer")]
-    return RULE.at(where, _message(step, fault), *_fixes(context, step, fault), related=related)
+    # What is sent when a state is entered may be meant for another way into it.
+    shared = where == fault.statement.element.name_span and not _twice(step, fault)
+    severity = Severity.INFORMATION if shared else None
+    return RULE.at(where, _message(step, fault), *_fixes(context, step, fault), severity=severity, related=related)
 
 
 def _message(step: Step, fault: Fault) -> str:
@@ -73,11 +76,11 @@ def _message(step: Step, fault: Fault) -> str:
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
         return f"a {what} is answered with `<{tag}>`, which its parent does not wait for; send `<{right}>` instead"
     if _twice(step, fault):
-        how = "is answered twice" if fault.duty.kind != "result" else "ends twice"
-        return f"on one path through this a {what} {how}, and the second answer is taken for that to the next one; send just one"
+        how = "ends" if fault.duty.kind == "result" else "is answered"
+        return f"on a path through this a {what} {how} twice: the second answer is taken for that to the next; send one"
     return (
-        f"`<{tag}>` is sent here though no {what} is waiting for it: it has been answered already, or has not come yet; "
-        "answer where it is taken"
+        f"`<{tag}>` is sent here though no {what} is waiting for it: it was answered before, or has not come yet; "
+        "send the answer where it is taken"
     )
 
 
@@ -87,7 +90,11 @@ _QUESTION = {"tick": "tick", "halt": "halt", "request": "request", "goal": "goal
 def _fixes(context: MachineContext, step: Step, fault: Fault) -> Iterator[Fix]:
     element = fault.statement.element
     if fault.kind == "wrong-kind":
-        right = "<bt_return_halted />" if isinstance(fault.statement, ReturnStatus) else '<bt_return_status status="SUCCESS" />'
+        right = (
+            "<bt_return_halted />"
+            if isinstance(fault.statement, ReturnStatus)
+            else '<bt_return_status status="SUCCESS" />'
+        )
         yield Fix(f"Change to `{right}`", (TextEdit(element.span, right),), preferred=False)
     elif _is_last(step.handler, fault.statement):
         yield Fix(f"Remove this `<{element.name}>`", (removal(context.source.text, element.span),), preferred=False)

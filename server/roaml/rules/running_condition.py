@@ -21,9 +21,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement, answers in behavior.statuses.items():
             if "RUNNING" in answers:
                 message = (
-                    f"`{context.machine.name.value if context.machine.name else ''}` stands in the tree as a "
-                    "`<Condition>`, which answers SUCCESS or FAILURE at once: BehaviorTree.CPP stops on RUNNING; answer "
-                    "one of the two, or use an `<Action>`"
+                    "the tree has this plugin as a `<Condition>`, and BehaviorTree.CPP stops when a condition answers "
+                    "RUNNING; answer SUCCESS or FAILURE at once, or make it an `<Action>`"
                 )
                 related = [Related(statement.element.name_span, "it answers RUNNING here")]
                 yield RULE.at(_handler(context, statement), message, *_fixes(statement), related=related)

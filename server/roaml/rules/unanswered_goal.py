@@ -55,7 +55,7 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
     how = never if certain else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is taken here"
-    if ends and not {e.part for e in step.sent} & {"goal-accepted"} or not (ends or _asks(step)):
+    if (ends and not {e.part for e in step.sent} & {"goal-accepted"}) or not (ends or _asks(step)):
         which = "the goal that is waiting here"
     return f"{which} {how}, so that its client waits for ever; {end} on each path"
 

@@ -12,7 +12,16 @@ from roaml.model.behavior.explore import Behavior, Step
 from roaml.model.machine import State
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
-from roaml.rules.answers import behaviors, deaf_states, is_spelled, missed, place, plugins, target_of, with_unknown_elements
+from roaml.rules.answers import (
+    behaviors,
+    deaf_states,
+    is_spelled,
+    missed,
+    place,
+    plugins,
+    target_of,
+    with_unknown_elements,
+)
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
@@ -115,6 +124,4 @@ def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:
         yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 
-RULE = Rule(
-    "unanswered-halt", Severity.ERROR, "A halt is not taken or not answered on every path.", machine=check
-)
+RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not taken or not answered on every path.", machine=check)

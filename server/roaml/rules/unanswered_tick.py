@@ -7,12 +7,21 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import TICK, always
+from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
 from roaml.model.behavior.instants import Instants
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
-from roaml.rules.answers import behaviors, deaf_states, is_spelled, missed, place, plugins, target_of, with_unknown_elements
+from roaml.rules.answers import (
+    behaviors,
+    deaf_states,
+    is_spelled,
+    missed,
+    place,
+    plugins,
+    target_of,
+    with_unknown_elements,
+)
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
 
@@ -78,7 +87,11 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
             continue
         instants = Instants(context.system, automaton)
         for state, _ in deaf_states(
-            context, behavior, automaton, TICK, lambda step, i=instants: step.event is None or i.comes(step.event)  # type: ignore[misc]
+            context,
+            behavior,
+            automaton,
+            TICK,
+            lambda step, i=instants: step.event is None or i.comes(step.event),  # type: ignore[misc]
         ):
             if state not in told and state.id is not None:
                 told.add(state)

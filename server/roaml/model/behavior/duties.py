@@ -48,7 +48,9 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
     taking = {step.source for step in behavior.steps if step.event and step.event.part == _TAKING[duty.kind]}
     known = {n for n, c in enumerate(behavior.configurations) if c.state == NOWHERE}
     between = [
-        step for step in behavior.steps if possible(step) and not (step.event and step.event.part in ("bt-tick", "bt-halt"))
+        step
+        for step in behavior.steps
+        if possible(step) and not (step.event and step.event.part in ("bt-tick", "bt-halt"))
     ]
     return waiting - _back((taking & waiting) | known, between)
 
@@ -69,9 +71,9 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
         if step.source in lost and step.target in lost and component[step.source] != component[step.target]
     }
     for step in behavior.steps:
-        if step.target in lost and component[step.target] in final:
-            if step.source not in lost or component[step.source] != component[step.target]:
-                yield step
+        inside = step.source in lost and step.target in lost and component[step.source] == component[step.target]
+        if step.target in lost and component[step.target] in final and not inside:
+            yield step
 
 
 def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Step]:

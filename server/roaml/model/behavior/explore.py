@@ -197,7 +197,21 @@ class _Path(NamedTuple):
         return self._replace(faults=(*self.faults, Fault(kind, duty, statement, certain and self.certain)))
 
 
-class _TooLarge(Exception):
+def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
+    """The types of the scalar variables of a chart; those that are integers and those that are truth values."""
+    types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
+    scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
+    whole = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
+    return scalar, frozenset(whole), frozenset(name for name, base in scalar.items() if base == "bool")
+
+
+def condition_facts(chart: Chart) -> Facts:
+    """With which conditions of a chart are compared with each other."""
+    _, whole, logical = _kinds(chart)
+    return Facts(whole, logical, constants=STATUSES)
+
+
+class _TooLargeError(Exception):
     pass
 
 
@@ -230,15 +244,11 @@ class _Explorer:
         self.threaded = {t.server.value for t in self.machine.threads if t.server}
         self.count = next((t.count for t in self.machine.threads if t.chart is chart), None)
         self.counts = {t.server.value: t.count for t in self.machine.threads if t.server and t.count}
-        types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
-        scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
-        whole = {name for name, base in scalar.items() if base.startswith(("int", "uint"))}
-        logical = {name for name, base in scalar.items() if base == "bool"}
-        whole |= {"_bt"}
+        scalar, whole, logical = _kinds(chart)
         self.relevant = self._relevant(scalar, logical)
         followed, counted = self.relevant | EVENT_VARIABLES, self._counted()
-        self.facts = Facts(frozenset(whole), frozenset(logical), followed, counted)
-        self.status_facts = Facts(frozenset(whole), frozenset(logical), followed, counted, STATUSES)
+        self.facts = Facts(whole, logical, followed, counted)
+        self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
         self.goal_ids = self._goal_ids()
         self.declarations: dict[Handler | Communicate, Declaration | None] = {}
         self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
@@ -251,7 +261,7 @@ class _Explorer:
 
     # ------------------------------------------------------ what is followed
 
-    def _relevant(self, scalar: Mapping[str, str], logical: set[str]) -> frozenset[str]:
+    def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
         """The variables of which it is worth to know something, because that may decide where a path leads: those that
         conditions read, if they are compared more than once or given nothing but constants and truth values."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
@@ -324,7 +334,7 @@ class _Explorer:
                 for configuration in list(self.numbers)[done:]:
                     self._from(configuration, self.numbers[configuration])
                     done += 1
-        except _TooLarge:
+        except _TooLargeError:
             return None
         return Behavior(
             self.chart,
@@ -356,7 +366,7 @@ class _Explorer:
             return self._number(replace(configuration, knowledge=NOTHING))
         here.add(configuration.knowledge)
         if len(self.numbers) >= MOST_CONFIGURATIONS:
-            raise _TooLarge
+            raise _TooLargeError
         self.numbers[configuration] = len(self.numbers)
         return self.numbers[configuration]
 
@@ -448,7 +458,13 @@ class _Explorer:
             self._execute(number, state, event, handler, [path], choice)
 
     def _execute(
-        self, number: int, state: State, event: Event | None, handler: Handler, paths: list[_Path], only: int | None = None
+        self,
+        number: int,
+        state: State,
+        event: Event | None,
+        handler: Handler,
+        paths: list[_Path],
+        only: int | None = None,
     ) -> None:
         leave = state.exit.statements if state.exit else ()
         arrived = {"goal": "asked", "thread-start": "accepted"}.get(event.part if event else "")
@@ -465,7 +481,14 @@ class _Explorer:
                 self._step(number, after, event, handler, choice, False, path)
 
     def _step(
-        self, number: int, after: Configuration, event: Event | None, handler: Handler, choice: int, ignored: bool, path: _Path
+        self,
+        number: int,
+        after: Configuration,
+        event: Event | None,
+        handler: Handler,
+        choice: int,
+        ignored: bool,
+        path: _Path,
     ) -> None:
         target = self._number(after)
         step = Step(number, target, event, handler, choice, ignored, path.sent, path.faults, path.certain)
@@ -501,7 +524,7 @@ class _Explorer:
             for statement in body:
                 paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
                 if len(paths) > MOST_CONFIGURATIONS:
-                    raise _TooLarge
+                    raise _TooLargeError
         return paths
 
     def _run(self, statement: Statement, path: _Path) -> Iterable[_Path]:
@@ -678,4 +701,3 @@ class _Explorer:
             wrong = values.high != float("inf") and values.high >= count
             wrong = wrong or values.low >= count
         return path.wrong("thread", Duty("thread", handle), statement) if wrong else path
-

@@ -16,7 +16,6 @@ from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System
 
 _PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
 """What a client receives, and the duty of the server that it comes from."""
-_CLIENTS = {"request": "service-client", "goal": "action-client", "feedback": "action-client"}
 _KINDS = {
     "message": ("subscriber",),
     "request": ("service-server",),
@@ -151,7 +150,7 @@ class Instants:
 
     def _takes_time(self, server: Endpoint, promise: Promise) -> bool:
         number = self.solver.number(server.automaton)
-        return not any(all([self.solver.read(number, event) for event in needs]) for needs in promise.needs)
+        return not any(all(self.solver.read(number, event) for event in needs) for needs in promise.needs)
 
     def delay(self, event: Event) -> Delay:
         """Why an event does not come."""
@@ -215,11 +214,20 @@ def _below(system: System, plugin: Automaton) -> Iterator[Automaton]:
 # -------------------------------------------------- while a machine stands still
 
 
-def comes_again(system: System, receiver: Automaton, event: Event, sent: frozenset[Event]) -> bool:
-    """Whether `event` may be sent once more while `receiver`, which has received it and sent `sent`, does not move.
+def comes_again(system: System, receiver: Automaton, chart: int, event: Event, sent: frozenset[Event]) -> bool:
+    """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
+    `sent` since. Time may pass meanwhile (spec/05 §7).
 
-    Time may pass meanwhile (spec/05 §7). Several copies of an action thread count as several senders.
+    Args:
+        chart: its index in the outline; one of several copies of a thread does not hinder the others.
     """
+    copies = [1, *(thread.count for thread in receiver.outline.threads)]
+    frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
+
+    def sends(solver: _Solver, automaton: Automaton, what: Event) -> Iterator[Event]:
+        for each in automaton.outline.charts:
+            if automaton is not receiver or each is not frozen:
+                yield from (cause for cause, event in each.reactions if event == what)
 
     def holds(solver: _Solver, number: int, awaited: Event) -> bool:
         automaton = system.automata[number]
@@ -229,38 +237,34 @@ def comes_again(system: System, receiver: Automaton, event: Event, sent: frozens
             return True
         if awaited.part in _PROMISED:
             server = server_of(system, automaton, awaited)
-            own = server is not None and server.automaton is receiver
-            return not own or bool({Event(part, server.use.handle) for part in _ANSWERS[awaited.part]} & sent)  # type: ignore[union-attr]
-        for sender, what in solver.senders(automaton, awaited):
-            if sender is receiver and automaton is not receiver:
-                if what in sent:
-                    return True
-            elif any(solver.read(solver.number(sender), cause) for cause in solver.causes(sender, what)):
+            if server is None:
+                return False
+            answers = [(server.automaton, Event(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
+        else:
+            answers = list(solver.senders(automaton, awaited))
+        for sender, what in answers:
+            if sender is receiver and what in sent:
+                return True
+            if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, what)):
                 return True
         return False
 
     solver = _Solver(system, holds)
+    if is_clock(system, receiver, event) or (event.part == "event" and event in sent):
+        return True
     senders = list(solver.senders(receiver, event))
-    copies = max((t.count for t in receiver.outline.threads if t.server == event.name), default=1)
-    if event in sent and event.part in ("message", "event"):
+    if any(sender is receiver and what in sent for sender, what in senders):
         return True
-    if event.part == "thread-free" and copies > 1:
-        return True
-    if is_clock(system, receiver, event):
-        return True
-    if len(senders) > 1:
-        return any(
-            solver.solve(solver.number(sender), cause)
-            for sender, what in senders[1:] or senders
-            for cause in solver.causes(sender, what)
-        )
+    # Each copy of a thread is a sender of its own.
+    several = len(senders) > 1 or (event.part == "thread-free" and max(copies[1:], default=1) > 1)
     for sender, what in senders:
         number = solver.number(sender)
-        for chart in sender.outline.charts:
-            for repeated, needs in chart.repeats:
-                if repeated == what:
-                    if any(all([solver.solve(number, need) for need in alternative]) for alternative in needs):
-                        return True
+        if several and any(solver.solve(number, cause) for cause in sends(solver, sender, what)):
+            return True
+        for each in sender.outline.charts:
+            needs = dict(each.repeats).get(what, frozenset()) if sender is not receiver or each is not frozen else ()
+            if any(all(solver.solve(number, need) for need in alternative) for alternative in needs):
+                return True
     return False
 
 

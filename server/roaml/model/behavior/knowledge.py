@@ -26,7 +26,6 @@ from roaml.expr.tree import (
     Expr,
     Member,
     Name,
-    Number,
     String,
     Unary,
     is_draw,
@@ -221,14 +220,14 @@ class Facts:
                 for first in self.assume(knowledge, left, value):
                     yield from self.assume(first, right, value if "=" in relation else not value)
             return
-        first, second = self.value(knowledge, left), self.value(knowledge, right)
-        if first is not None and second is not None:
-            if _stands(first, second) & relation:
+        one, other = self.value(knowledge, left), self.value(knowledge, right)
+        if one is not None and other is not None:
+            if _stands(one, other) & relation:
                 yield knowledge
-        elif second is not None:
-            yield from self._bound(knowledge, left, relation, second)
-        elif first is not None:
-            yield from self._bound(knowledge, right, frozenset(_MIRROR[r] for r in relation), first)
+        elif other is not None:
+            yield from self._bound(knowledge, left, relation, other)
+        elif one is not None:
+            yield from self._bound(knowledge, right, frozenset(_MIRROR[r] for r in relation), one)
         else:
             yield from self._relate(knowledge, left, right, relation)
 
@@ -251,10 +250,8 @@ class Facts:
         if isinstance(value, bool):
             wanted = Domain(frozenset((value if "=" in relation else not value,)))
         elif isinstance(value, str):
-            if "=" in relation:
-                wanted = Domain(frozenset((value,)))
-            else:
-                wanted = Domain(excluded=frozenset((value,)))
+            only = frozenset((value,))
+            wanted = Domain(only) if "=" in relation else Domain(excluded=only)
         elif relation == {"<", ">"}:
             wanted = Domain(excluded=frozenset((value,)))
         else:
@@ -353,7 +350,9 @@ def _roots(expr: Expr) -> frozenset[str]:
     """The variables in an expression."""
     if isinstance(expr, Name):
         return frozenset((expr.name,))
-    skipped = {node.function.object for node in walk(expr) if isinstance(node, Call) and isinstance(node.function, Member)}
+    skipped = {
+        node.function.object for node in walk(expr) if isinstance(node, Call) and isinstance(node.function, Member)
+    }
     return frozenset(node.name for node in walk(expr) if isinstance(node, Name) and node not in skipped)
 
 

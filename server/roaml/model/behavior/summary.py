@@ -150,9 +150,7 @@ def _reactions(behavior: Behavior) -> frozenset[tuple[Event, Event]]:
     return frozenset(found)
 
 
-def _needs(
-    behavior: Behavior, reaches: Callable[[Step], bool], cost: Callable[[Step], Needs | None]
-) -> list[Needs]:
+def _needs(behavior: Behavior, reaches: Callable[[Step], bool], cost: Callable[[Step], Needs | None]) -> list[Needs]:
     """For each configuration the least sets of events by which a step that `reaches` the goal is taken."""
     incoming: list[list[tuple[Step, Needs]]] = [[] for _ in behavior.configurations]
     found: list[Needs] = [frozenset() for _ in behavior.configurations]
