@@ -67,7 +67,8 @@ def missed(behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
     """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it."""
     steps: dict[Handler, list[Step]] = {}
     for step in dead_ends(behavior, duty):
-        if step.certain or not behavior.approximate:
+        wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
+        if not wrong and (step.certain or not behavior.approximate):
             steps.setdefault(step.handler, []).append(step)
     for found in steps.values():
         certain = [step for step in found if step.certain and not step.ignored]

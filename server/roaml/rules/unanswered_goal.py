@@ -52,7 +52,7 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
     if step.ignored:
         what = "what comes while this condition does not hold is dropped, and a goal"
         return f"{what} {never}, so that its client waits for ever; add a `{tag}` without `cond` behind it"
-    how = never if certain else f"{never} on some path"
+    how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is taken here"
     if (ends and not {e.part for e in step.sent} & {"goal-accepted"}) or not (ends or _asks(step)):

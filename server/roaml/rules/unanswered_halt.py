@@ -73,7 +73,7 @@ def _message(step: Step, certain: bool) -> str:
         return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
     halted = step.event is not None and step.event.part == "bt-halt"
     where = "a halt that is taken here" if halted else "the halt that is waiting here"
-    how = "is never answered" if certain else "is not answered on every path"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_halted>` on each path"
 
 

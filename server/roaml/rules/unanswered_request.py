@@ -46,7 +46,7 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
         tag = f"<{step.handler.element.name}>"
         return f"{what} never answered, so that the client waits for ever; add a `{tag}` without `cond` behind it"
     where = "a request that is taken here" if asked else f"the request for `{duty.handle}` that is waiting here"
-    how = "is never answered" if certain else "is not answered on every path"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so that the client waits for ever; send one `<ros_service_send_response>` on each path"
 
 

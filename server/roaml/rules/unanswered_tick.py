@@ -68,7 +68,7 @@ def _message(step: Step, certain: bool) -> str:
             what = "what comes while this condition does not hold is dropped, and the tick is never answered"
         return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
     where = "a tick that is taken here" if ticked else "the tick that is waiting here"
-    how = "is never answered" if certain else "is not answered on every path"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_status>` on each path"
 
 

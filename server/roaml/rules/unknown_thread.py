@@ -28,8 +28,8 @@ def _finding(context: MachineContext, step: Step, fault: Fault, statement: Commu
     assert statement.thread_id is not None
     numbers = "the only one is 0" if thread.count == 1 else f"they are 0 to {(thread.count or 1) - 1}"
     message = (
-        f"`{fault.duty.handle}` has no thread of the number that `{statement.thread_id.text.strip()}` may be: {numbers}, "
-        "so that this start reaches nobody; start a thread that exists, or raise `n_threads`"
+        f"`{fault.duty.handle}` has no thread numbered `{statement.thread_id.text.strip()}`: {numbers}, "
+        "so this start reaches nobody; start a thread that exists, or raise `n_threads`"
     )
     count = thread.element.get("n_threads")
     related = [Related(statement.element.name_span, "it is started here")]

@@ -18,6 +18,10 @@ TICK, HALT = Duty("tick", ""), Duty("halt", "")
 _TAKING = {"tick": "bt-tick", "halt": "bt-halt", "request": "request", "goal": "goal", "result": "thread-start"}
 
 
+_FOLLOWING = ("response", "result", "goal-response", "child-status", "child-halted")
+"""What comes because of something that was sent; other events come of their own accord."""
+
+
 def always(_: Step) -> bool:
     return True
 
@@ -52,27 +56,40 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
         for step in behavior.steps
         if possible(step) and not (step.event and step.event.part in ("bt-tick", "bt-halt"))
     ]
-    return waiting - _back((taking & waiting) | known, between)
+    lost = waiting - _back((taking & waiting) | known, between)
+    # Where something still follows without being asked for, the machine does not stay.
+    left = {
+        step.source
+        for step in between
+        if step.source in lost and step.target in lost and _follows(step) and _moves(behavior, step)
+    }
+    return (lost - left) or lost
+
+
+def _follows(step: Step) -> bool:
+    return step.event is None or step.event.part in _FOLLOWING
+
+
+def _moves(behavior: Behavior, step: Step) -> bool:
+    """Whether a step leads to another state."""
+    return behavior.configurations[step.source].state != behavior.configurations[step.target].state
 
 
 def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
-    """The steps behind which the answer never comes and nothing else is left to happen on the way to it.
+    """The steps behind which the answer never comes.
 
-    Where the answer was missed earlier, but more is handled before the path ends, the last step counts: that is where
-    the answer is missing.
+    Where the answer was missed early, but more was still to follow from it (the response to a request that was sent),
+    the last step counts: that is where the answer is missing.
     """
     lost = unfinished(behavior, duty)
-    if not lost:
-        return
-    component = _components(lost, behavior.steps)
-    final = set(component.values()) - {
-        component[step.source]
-        for step in behavior.steps
-        if step.source in lost and step.target in lost and component[step.source] != component[step.target]
-    }
-    for step in behavior.steps:
-        inside = step.source in lost and step.target in lost and component[step.source] == component[step.target]
-        if step.target in lost and component[step.target] in final and not inside:
+    inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
+    following = [step for step in inside if _follows(step)]
+    going_on = _back({step.source for step in following if step.source != step.target}, inside)
+    if going_on >= lost:
+        going_on = set()  # it never ends: what leads there counts
+        following = []
+    for step in (*entering(behavior, lost), *following):
+        if step.target not in going_on and (step.source not in lost or step.source in going_on or step.ignored):
             yield step
 
 
@@ -93,34 +110,3 @@ def _back(goals: set[int], steps: Iterable[Step]) -> set[int]:
                 found.add(source)
                 waiting.append(source)
     return found
-
-
-def _components(nodes: frozenset[int], steps: Iterable[Step]) -> dict[int, int]:
-    """The strongly connected component of each node, as a number (Kosaraju's algorithm)."""
-    forward: dict[int, list[int]] = {node: [] for node in nodes}
-    backward: dict[int, list[int]] = {node: [] for node in nodes}
-    for step in steps:
-        if step.source in nodes and step.target in nodes:
-            forward[step.source].append(step.target)
-            backward[step.target].append(step.source)
-    order: list[int] = []
-    seen: set[int] = set()
-    for node in sorted(nodes):
-        stack = [] if node in seen else [(node, iter(forward[node]))]
-        seen.add(node)
-        while stack:
-            following = next((n for n in stack[-1][1] if n not in seen), None)
-            if following is None:
-                order.append(stack.pop()[0])
-            else:
-                seen.add(following)
-                stack.append((following, iter(forward[following])))
-    component: dict[int, int] = {}
-    for node in reversed(order):
-        waiting = [] if node in component else [node]
-        while waiting:
-            each = waiting.pop()
-            if each not in component:
-                component[each] = node
-                waiting += [n for n in backward[each] if n not in component]
-    return component
