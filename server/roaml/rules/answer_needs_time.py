@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.model.behavior.duties import HALT, TICK, Possible, entering, unfinished
+from roaml.model.behavior.duties import HALT, TICK, entering, unfinished
 from roaml.model.behavior.explore import Behavior, Duty, Event, Step
 from roaml.model.behavior.instants import Delay, Instants, channel_of
 from roaml.model.machine import Handler
@@ -24,31 +24,50 @@ def check(context: MachineContext) -> Iterator[Finding]:
     told: set[tuple[Handler, Duty]] = set()
     for automaton in plugins(context):
         instants = Instants(system, automaton)
-
-        def possible(step: Step, instants: Instants = instants) -> bool:
-            return step.event is None or instants.comes(step.event)
-
         for behavior in behaviors(context):
             if behavior.chart is not context.machine.chart:
                 continue
             for duty in (TICK, HALT):
-                slow = unfinished(behavior, duty, possible) - unfinished(behavior, duty)
+                slow = unfinished(behavior, duty, instants.possible) - unfinished(behavior, duty)
                 for step in entering(behavior, slow):
-                    awaited = _awaited(behavior, step, slow, possible)
-                    if awaited is not None and (step.handler, duty) not in told:
-                        told.add((step.handler, duty))
-                        yield _finding(context, system, step, duty, instants.delay(awaited), automaton)
+                    awaited = _awaited(behavior, step, slow, instants)
+                    if awaited is None or not instants.possible(step):
+                        continue
+                    for handler in _beginning(behavior, step, duty):
+                        if (handler, duty) not in told:
+                            told.add((handler, duty))
+                            yield _finding(context, system, handler, duty, instants.delay(awaited), automaton)
 
 
-def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], possible: Possible) -> Event | None:
+def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
+    """Where the wait begins: the handler of the step; behind a decision on a goal, which has no content, the handlers
+    of the ticks that lead there."""
+    if step.event is None or step.event.part != "goal-response":
+        return (step.handler,)
+    sources, waiting = {step.source}, [step.source]
+    found: dict[Handler, None] = {}
+    while waiting:
+        here = waiting.pop()
+        for each in behavior.steps:
+            if each.target != here:
+                continue
+            if not behavior.configurations[each.source].owes(duty):
+                found[each.handler] = None
+            elif each.source not in sources:
+                sources.add(each.source)
+                waiting.append(each.source)
+    return found
+
+
+def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], instants: Instants) -> Event | None:
     """The first event on the way to the answer that does not come without time."""
     outgoing = behavior.outgoing()
     seen, waiting = {first.target}, [first.target]
     while waiting:
         here = waiting.pop(0)
         for step in outgoing[here]:
-            if not possible(step):
-                if not step.ignored:
+            if not instants.possible(step):
+                if not step.ignored and step.event is not None and not instants.comes(step.event):
                     return step.event
             elif step.target in slow and step.target not in seen:
                 seen.add(step.target)
@@ -57,20 +76,17 @@ def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], possible: Po
 
 
 def _finding(
-    context: MachineContext, system: System, step: Step, duty: Duty, delay: Delay, automaton: Automaton
+    context: MachineContext, system: System, handler: Handler, duty: Duty, delay: Delay, automaton: Automaton
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
-    message = (
-        f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}, which takes time: {reason}"
-    )
-    if delay.event.part == "tick":
-        message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
+    message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
+    message += f", which takes time: {reason}" if reason else ""
     what = "answer RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
     if _not_taken(delay):
         what = "take the request in that state, too"
-    message += f"; the clock stands still until the {duty.kind} is answered, so this never ends; {what}"
-    fixes = rewritten(context, step.handler) if duty is TICK and not _not_taken(delay) else ()
-    return RULE.at(place(step.handler), message, *fixes, related=_related(delay))
+    message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {what}"
+    fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
+    return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
 
 def _not_taken(delay: Delay) -> bool:
@@ -82,16 +98,17 @@ def _reasons(system: System, delay: Delay | None) -> Iterator[str]:
     while delay is not None and delay.next is not None:
         then = delay.next
         what = _named(system, then.automaton, then.event)
+        timed = then.event.part == "tick"
         if delay.promise is not None and delay.server is not None:
             name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
-            doing = _DOING[delay.event.part]
+            doing, state = _DOING[delay.event.part], delay.promise.state
             if not delay.promise.taken:
-                doing = "takes no request for"
-                yield f"`{name}` {doing} {channel} in its state `{delay.promise.state}` before {what}"
+                question = "request for" if delay.promise.duty.kind == "request" else "goal for"
+                yield f"`{name}` takes no {question} {channel} in its state `{state}` before {what}"
             else:
-                yield f"`{name}` {doing} {channel} in its state `{delay.promise.state}` only on {what}"
+                yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {what}"
         else:
-            yield f"`{then.automaton.name}` sends it only on {what}"
+            yield f"`{then.automaton.name}` sends it only {'at' if timed else 'after'} {what}"
         delay = then
 
 
@@ -116,7 +133,7 @@ def _named(system: System, automaton: Automaton, event: Event) -> str:
     """What is waited for, in words."""
     match event.part:
         case "tick":
-            return f"the timer `{event.name}`"
+            return f"its timer `{event.name}`"
         case "event":
             return f"the event `{event.name}`"
         case "start":

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Fix
-from roaml.model.machine import Handler, ReturnStatus, statements
+from roaml.model.machine import Handler, ReturnStatus, State, statements
 from roaml.model.typing import STATUSES
 from roaml.rules.layout import after, first_in, last_in
 from roaml.rules.rule import MachineContext, unused
@@ -16,36 +16,56 @@ RUNNING = '<bt_return_status status="RUNNING" />'
 
 
 def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
-    """The change, where it is mechanical: the tick only starts something, all that ends it stands in one state, and
-    leads from there to one other."""
+    """The change, where it is mechanical: the tick only starts something, and all that ends it answers in handlers that
+    lead to one and the same state."""
     chart, document = context.machine.chart, context.document
     states = {state.id.value: state for state in chart.states if state.id}
-    target = tick.targets[0].state if len(tick.targets) == 1 else None
-    waiting = states.get(target.value) if target else None
-    if tick.trigger != "bt-tick" or waiting is None or waiting.id is None or waiting.entry or waiting.exit:
+    if tick.trigger != "bt-tick" or _answers(tick) or not _is_tidy(tick):
         return
-    if any(isinstance(s, ReturnStatus) for s in statements(tick.targets[0].body)) or not tick.element.complete:
+    region = _region(tick, states)
+    if region is None:
         return
-    handlers = [h for h in waiting.handlers if h.effective]
-    goals = {t.state.value for h in handlers for t in h.targets if t.state and _answers(h)}
-    tidy = all(_is_tidy(h) for h in handlers) and waiting.element.complete
-    if len(goals) != 1 or not tidy or any(h.trigger in ("bt-tick", "bt-halt") for h in handlers):
+    answering = [h for state in region for h in state.handlers if h.effective and _answers(h)]
+    goals = {t.state.value for h in answering for t in h.targets if t.state}
+    if len(goals) != 1 or not all(map(_is_tidy, answering)):
         return
     (goal,) = goals
-    if states.get(goal) is None or states[goal].entry is not None:
+    if goal not in states or states[goal].entry is not None or states[goal] in region:
         return
     variable = _fresh("answer", {d.id.value for d in chart.data if d.id})
-    done = _fresh(f"{waiting.id.value}_done", set(states))
+    last = region[-1]
+    assert last.id is not None
+    done = _fresh(f"{last.id.value}_done", set(states))
     edits = [last_in(document, tick.element, RUNNING), _declared(context, variable)]
-    for handler in handlers:
-        if _answers(handler):
-            edits += _stored(handler, variable, done)
-    edits.append(last_in(document, waiting.element, *_asked(waiting.id.value, RUNNING)))
+    edits += (edit for handler in answering for edit in _stored(handler, variable, done))
+    for state in region:
+        at_once = any(h.effective and h.trigger == "" and h.cond is None for h in state.handlers)
+        if state.id is not None and not at_once:
+            edits.append(last_in(document, state.element, *_asked(state.id.value, RUNNING)))
     answered = _asked(goal, f'<bt_return_status status="{variable}" />')
-    edits.append(
-        after(document, waiting.element, f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>")
-    )
+    lines = (f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>")
+    edits.append(after(document, last.element, *lines))
     yield Fix("Answer RUNNING, and the status at a later tick", tuple(edits))
+
+
+def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
+    """The states in which the answer is waited for; None if one of them is more than that."""
+    found: list[State] = []
+    waiting = [target.state for target in tick.targets]
+    while waiting:
+        name = waiting.pop(0)
+        state = states.get(name.value) if name else None
+        if state is None or state.entry or state.exit or not state.element.complete:
+            return None
+        if state in found:
+            continue
+        found.append(state)
+        for handler in state.handlers:
+            if handler.trigger in ("bt-tick", "bt-halt"):
+                return None
+            if handler.effective and not _answers(handler):
+                waiting += [target.state for target in handler.targets]
+    return found
 
 
 def _fresh(name: str, names: set[str]) -> str:
@@ -69,7 +89,7 @@ def _answers(handler: Handler) -> bool:
 
 
 def _is_tidy(handler: Handler) -> bool:
-    """Whether it answers at its very end or nowhere, and its target is an attribute."""
+    """Whether its one target is an attribute."""
     return len(handler.targets) == 1 and handler.element.get("target") is not None and handler.element.complete
 
 

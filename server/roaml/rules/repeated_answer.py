@@ -40,6 +40,8 @@ def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Faul
             return False  # the handler that is missing is reported
     elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
         return False
+    elif fault.duty.kind == "request" and _owes_another(behavior, step, fault.duty):
+        return False  # the request that is not answered is reported
     return not behavior.approximate or _twice(step, fault)
 
 
@@ -47,6 +49,11 @@ def _is_asked(behavior: Behavior, duty: Duty) -> bool:
     """Whether this chart takes what is answered."""
     kinds = ("goal", "thread-start") if duty.kind == "result" else (duty.kind,)
     return any(step.event and step.event.part in kinds and step.event.name == duty.handle for step in behavior.steps)
+
+
+def _owes_another(behavior: Behavior, step: Step, duty: Duty) -> bool:
+    phases = behavior.configurations[step.target].phases
+    return any(kind == duty.kind and handle != duty.handle for (kind, handle), _ in phases)
 
 
 def _twice(step: Step, fault: Fault) -> bool:
@@ -76,7 +83,7 @@ def _message(step: Step, fault: Fault) -> str:
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
         return f"a {what} is answered with `<{tag}>`, which its parent does not wait for; send `<{right}>` instead"
     if _twice(step, fault):
-        how = "ends" if fault.duty.kind == "result" else "is answered"
+        how = {"result": "ends", "goal": "is accepted or rejected"}.get(fault.duty.kind, "is answered")
         return f"on a path through this a {what} {how} twice: the second answer is taken for that to the next; send one"
     return (
         f"`<{tag}>` is sent here though no {what} is waiting for it: it was answered before, or has not come yet; "

@@ -85,14 +85,8 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
                 yield RULE.at(state.id.span, message, *_take(context, state.element), severity=severity)
         if context.system is None or not context.system.complete:
             continue
-        instants = Instants(context.system, automaton)
-        for state, _ in deaf_states(
-            context,
-            behavior,
-            automaton,
-            TICK,
-            lambda step, i=instants: step.event is None or i.comes(step.event),  # type: ignore[misc]
-        ):
+        possible = Instants(context.system, automaton).possible
+        for state, _ in deaf_states(context, behavior, automaton, TICK, possible):
             if state not in told and state.id is not None:
                 told.add(state)
                 message = f"a tick that comes in the state `{state.id.value}` is not taken before time has passed, but "

@@ -16,7 +16,6 @@ _WHY = {
     "unstored": "no goal id has been stored in `{id}` before; store `_action.goal_id` in it where the goal is taken",
     "other": "`{id}` holds the id of a goal of another action; name the goal by the id that it came with",
     "rejected": "the goal whose id `{id}` holds was rejected; keep the id of the accepted goal in another variable",
-    "finished": "the goal whose id `{id}` holds has ended already; a goal has one result",
     "undecided": "the goal whose id `{id}` holds has not been accepted; accept it first",
 }
 

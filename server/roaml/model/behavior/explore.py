@@ -70,8 +70,8 @@ class Fault:
     Attributes:
         kind: "unasked" (nothing waits for the answer: it has been given, or was not asked for), "wrong-kind" (a tick
             that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored), "other"
-            (the id of a goal of another action), "rejected", "finished", "undecided" (a result for such a goal) or
-            "thread" (a thread that does not exist).
+            (the id of a goal of another action), "rejected" or "undecided" (a result for such a goal), or "thread" (a
+            thread that does not exist).
         duty: what is answered.
         statement: what sends it.
         certain: no condition on the way decides on it.
@@ -567,7 +567,9 @@ class _Explorer:
         if not isinstance(location, Name) or value is None:
             return "any"
         if access_path(value) == ("_action", "goal_id"):
-            return self.goal_here
+            server = self.goal_here.removeprefix("asked ")
+            decided = server != self.goal_here and not path.phase("goal", server)
+            return "any" if decided else self.goal_here
         if isinstance(value, Name):
             return path.phase("id", value.name) if value.name in self.goal_ids else "any"
         return "" if self.facts.value(NOTHING, value) is not None else "any"
@@ -686,7 +688,8 @@ class _Explorer:
         if server != handle:
             return path.wrong("other", duty, statement)
         if status not in wanted:
-            return path.wrong({"asked": "undecided"}.get(status, status), duty, statement)
+            kind = {"asked": "undecided", "finished": "unasked"}.get(status, status)
+            return path.wrong(kind, duty, statement)
         return path
 
     def _started(self, statement: Communicate, path: _Path, handle: str) -> _Path:

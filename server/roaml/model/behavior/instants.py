@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
-from roaml.model.behavior.explore import Event
+from roaml.model.behavior.explore import Event, Step
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
 
@@ -130,6 +130,17 @@ class Instants:
         """Whether an event that the plugin waits for can come."""
         return self.solver.solve(self.own, event)
 
+    def possible(self, step: Step) -> bool:
+        """Whether the plugin can take a step. Some servers never reject a goal."""
+        if step.event is None or step.event.part in ("bt-tick", "bt-halt"):
+            return True
+        if step.event.part == "goal-response":
+            server = server_of(self.system, self.plugin, step.event)
+            answer = ("goal-accepted", "goal-rejected")[step.choice]
+            if server is not None and answer not in server.use.sends:
+                return False
+        return self.comes(step.event)
+
     def _holds(self, solver: _Solver, number: int, event: Event) -> bool:
         automaton = self.system.automata[number]
         match event.part:
@@ -139,7 +150,7 @@ class Instants:
                 return id(automaton) in self.below
             case "response" | "goal-response" | "result":
                 server = server_of(self.system, automaton, event)
-                return server is None or not any(self._takes_time(server, p) for p in promises(server, event))
+                return server is None or not any(self._takes_time(server, p) for p in self._kept(server, event))
         if event == START or event.part == "tick" or is_clock(self.system, automaton, event):
             return False
         for sender, sent in solver.senders(automaton, event):
@@ -147,6 +158,12 @@ class Instants:
                 if sender is self.plugin or solver.read(solver.number(sender), cause):
                     return True
         return False
+
+    def _kept(self, server: Endpoint, event: Event) -> Iterator[Promise]:
+        """The promises that the plugin may meet: an only client does not find a server busy with its own goal."""
+        channel = self.system.channel(server.automaton, server.use)
+        alone = channel is not None and len(channel.users) == 1
+        return (promise for promise in promises(server, event) if not (alone and promise.busy))
 
     def _takes_time(self, server: Endpoint, promise: Promise) -> bool:
         number = self.solver.number(server.automaton)
@@ -164,7 +181,7 @@ class Instants:
         seen |= {fact}
         if event.part in _PROMISED:
             server = server_of(self.system, automaton, event)
-            for promise in promises(server, event) if server else ():
+            for promise in self._kept(server, event) if server else ():
                 if server and self._takes_time(server, promise):
                     awaited = self._first(server.automaton, promise.needs)
                     return Delay(automaton, event, server, promise, self._delay(server.automaton, awaited, seen))

@@ -33,13 +33,15 @@ class Promise:
         duty: "request", "goal" or "result".
         state: where the machine waits; `scope` tells the threads of a file apart.
         taken: the request has been taken; else the machine does not even take it there.
-        needs: what has to happen before the answer is sent.
+        busy: the result of an earlier goal is still owed there.
+        needs: what has to happen before the answer is sent, or before the request is taken.
     """
 
     duty: Duty
     state: str
     scope: str
     taken: bool
+    busy: bool
     needs: Needs
 
 
@@ -101,7 +103,7 @@ def _promises(behavior: Behavior, duty: Duty) -> Iterable[Promise]:
     needs = _needs(behavior, answers, lambda step: _one(step.event) if owing[step.source] else None)
     for number, configuration in enumerate(behavior.configurations):
         if needs[number] and configuration.phase(duty.kind, duty.handle) != "several":
-            yield Promise(duty, configuration.state, scope, True, needs[number])
+            yield Promise(duty, configuration.state, scope, True, False, needs[number])
     if duty.kind == "result":
         return
 
@@ -113,7 +115,8 @@ def _promises(behavior: Behavior, duty: Duty) -> Iterable[Promise]:
     needs = _needs(behavior, lambda step: step.event == taking, idle)
     for number, configuration in enumerate(behavior.configurations):
         if needs[number] and not owing[number]:
-            yield Promise(duty, configuration.state, scope, False, needs[number])
+            busy = bool(configuration.phase("result", duty.handle))
+            yield Promise(duty, configuration.state, scope, False, busy, needs[number])
 
 
 def _repeats(behavior: Behavior) -> Iterable[tuple[Event, Needs]]:
