@@ -148,12 +148,6 @@ from roaml.rules import (
 from roaml.rules.rule import Rule
 
 RULES: tuple[Rule, ...] = (
-    running_condition.RULE,
-    unknown_thread.RULE,
-    wrong_goal_id.RULE,
-    unanswered_goal.RULE,
-    unanswered_request.RULE,
-    repeated_answer.RULE,
     answer_needs_time.RULE,
     blackboard_never_read.RULE,
     blackboard_never_written.RULE,
@@ -233,8 +227,10 @@ RULES: tuple[Rule, ...] = (
     port_value.RULE,
     probability_sum.RULE,
     removed_bt_event.RULE,
+    repeated_answer.RULE,
     repeated_element.RULE,
     repeated_parameter.RULE,
+    running_condition.RULE,
     schema_violation.RULE,
     several_servers.RULE,
     shadowed_transition.RULE,
@@ -252,7 +248,9 @@ RULES: tuple[Rule, ...] = (
     tree_model_mismatch.RULE,
     tree_structure.RULE,
     type_mismatch.RULE,
+    unanswered_goal.RULE,
     unanswered_halt.RULE,
+    unanswered_request.RULE,
     unanswered_tick.RULE,
     undeclared_handle.RULE,
     undeclared_port.RULE,
@@ -272,6 +270,7 @@ RULES: tuple[Rule, ...] = (
     unknown_port.RULE,
     unknown_property_variable.RULE,
     unknown_ros_type.RULE,
+    unknown_thread.RULE,
     unknown_type.RULE,
     unreachable_state.RULE,
     unset_field.RULE,
@@ -285,6 +284,7 @@ RULES: tuple[Rule, ...] = (
     unused_suppression.RULE,
     unused_variable.RULE,
     wrong_file_kind.RULE,
+    wrong_goal_id.RULE,
     xml_syntax.RULE,
 )
 
