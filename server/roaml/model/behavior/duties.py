@@ -79,17 +79,27 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
     """The steps behind which the answer never comes.
 
     Where the answer was missed early, but more was still to follow from it (the response to a request that was sent),
-    the last step counts: that is where the answer is missing.
+    the last step counts: that is where the answer is missing. But if the machine waits for it in a state that takes the
+    next tick, the answer is missing in the first step.
     """
     lost = unfinished(behavior, duty)
     inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
     following = [step for step in inside if _follows(step)]
     going_on = _back({step.source for step in following if step.source != step.target}, inside)
     if going_on >= lost:
-        going_on = set()  # it never ends: what leads there counts
-        following = []
-    for step in (*entering(behavior, lost), *following):
-        if step.target not in going_on and (step.source not in lost or step.source in going_on or step.ignored):
+        going_on, following = set(), []  # it never ends: what leads there counts
+    takers = (s for s in behavior.chart.states if any(h.trigger == _TAKING[duty.kind] for h in s.handlers))
+    ready = {state.id.value for state in takers if state.id}
+    early: set[int] = set()
+    for step in entering(behavior, lost):
+        if step.target not in going_on:
+            yield step
+        elif behavior.configurations[step.target].state in ready and _moves(behavior, step):
+            early.add(step.target)
+            yield step
+    told = _forward(early, inside)
+    for step in following:
+        if step.target not in going_on and step.source not in told and (step.source in going_on or step.ignored):
             yield step
 
 
@@ -100,13 +110,22 @@ def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Ste
 
 def _back(goals: set[int], steps: Iterable[Step]) -> set[int]:
     """The configurations from which some of `steps` lead to `goals`, these included."""
-    sources: dict[int, list[int]] = {}
-    for step in steps:
-        sources.setdefault(step.target, []).append(step.source)
-    found, waiting = set(goals), list(goals)
+    return _reached(goals, ((step.target, step.source) for step in steps))
+
+
+def _forward(first: set[int], steps: Iterable[Step]) -> set[int]:
+    """The configurations to which some of `steps` lead from `first`, these included."""
+    return _reached(first, ((step.source, step.target) for step in steps))
+
+
+def _reached(first: set[int], pairs: Iterable[tuple[int, int]]) -> set[int]:
+    following: dict[int, list[int]] = {}
+    for here, there in pairs:
+        following.setdefault(here, []).append(there)
+    found, waiting = set(first), list(first)
     while waiting:
-        for source in sources.get(waiting.pop(), ()):
-            if source not in found:
-                found.add(source)
-                waiting.append(source)
+        for there in following.get(waiting.pop(), ()):
+            if there not in found:
+                found.add(there)
+                waiting.append(there)
     return found
