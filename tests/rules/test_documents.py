@@ -20,9 +20,9 @@ from roaml.rules import RULES, document
 from roaml.rules.rule import Rule
 
 SECTIONS = ["What it does", "Why", "Bad", "Good"]
-# No small text file shows them: two are found outside the rules' own checks, one needs bytes that are no text, and for
-# one no file is known. The last two are tested in test_cases_z.
-WITHOUT_EXAMPLE = {"file-too-large", "internal-error", "undecodable-text", "schema-violation"}
+# No small text file shows them: two are found outside the rules' own checks, two need certain bytes, and for one no
+# file is known. The last three are tested in test_cases_z.
+WITHOUT_EXAMPLE = {"file-too-large", "ignored-encoding", "internal-error", "undecodable-text", "schema-violation"}
 _BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 

@@ -18,6 +18,9 @@ NODE_TYPES = ("node-ascxml", "ros-scxml")
 
 DEFAULT_MAX_ARRAY_SIZE = 100
 DEFAULT_TICK_RATE = 1.0
+DEFAULT_RANDOM_VALUES = 100
+MAX_RANDOM_VALUES = 10_000
+"""Each value is a destination of an edge in JANI."""
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
@@ -74,12 +77,14 @@ class Parameters:
     Attributes:
         max_time: the bound of the clock in ns; None if it is not given or no number.
         tick_rate: of the behavior tree, in Hz.
+        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (spec/03 §7).
     """
 
     max_time: int | None = None
     max_array_size: int = DEFAULT_MAX_ARRAY_SIZE
     tick_rate: float = DEFAULT_TICK_RATE
     tick_if_not_running: bool = False
+    random_values: int = DEFAULT_RANDOM_VALUES
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +167,7 @@ def _parameters(root: Element) -> Parameters:
     section = _parameter_section(root)
     max_time = None
     size, rate, keep_ticking = DEFAULT_MAX_ARRAY_SIZE, DEFAULT_TICK_RATE, False
+    random_values = DEFAULT_RANDOM_VALUES
     for element in section.elements if section else ():
         value = name_of(element.get("value"))
         text = value.value if value else ""
@@ -176,7 +182,11 @@ def _parameters(root: Element) -> Parameters:
             rate = _positive(text) or rate
         elif element.name == "bt_tick_if_not_running":
             keep_ticking = text == "true"
-    return Parameters(max_time, size, rate, keep_ticking)
+        elif element.name == "random_values":
+            number = _integer(text)
+            if number is not None and 1 <= number <= MAX_RANDOM_VALUES:
+                random_values = number
+    return Parameters(max_time, size, rate, keep_ticking, random_values)
 
 
 def _integer(text: str) -> int | None:

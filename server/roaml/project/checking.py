@@ -196,7 +196,7 @@ class _Run:
 
     def key(self) -> object:
         """All that the findings depend on."""
-        parts: tuple[object, ...] = (self.source.digest, self.kind, self.system)
+        parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
                 machine = self.analysis.machine(self.path)
