@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import Possible, always, dead_ends, untaken
+from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, Duty, Step, explore
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
@@ -29,9 +29,14 @@ ELEMENTS = {
 
 
 def behaviors(context: MachineContext) -> Iterator[Behavior]:
-    """The graphs of the machine and its threads; those that are too large are left out."""
+    """The graphs of the machine and its threads; those that are too large are left out.
+
+    Where something seems to be wrong, values are followed in them.
+    """
     for chart in context.machine.charts:
         behavior = explore(context.machine, chart)
+        if behavior is not None and is_suspicious(behavior):
+            behavior = explore(context.machine, chart, fine=True)
         if behavior is not None:
             yield behavior
 
@@ -104,7 +109,7 @@ def with_unknown_elements(context: MachineContext, handler: Handler) -> bool:
 
 _SWITCHES = frozenset(f"Switch{cases}" for cases in range(2, 7))
 _ASKS_ONCE = _SWITCHES | {
-    *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "ParallelAll"),
+    *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
     *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
 }
 """They do not tick a child again that has ended, before they have ended themselves (spec/02 §5, §7.2)."""

@@ -103,6 +103,21 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
             yield step
 
 
+def is_suspicious(behavior: Behavior) -> bool:
+    """Whether there may be a mistake in what the chart answers."""
+    known = behavior.chart.__dict__.setdefault("suspicion", {})
+    if behavior not in known:
+        events = {step.event for step in behavior.steps if step.event is not None}
+        duties = {Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, "goal")}
+        asked = [duty for duty in duties if duty.kind in ("tick", "halt")]
+        known[behavior] = (
+            any(step.faults for step in behavior.steps)
+            or any(unfinished(behavior, duty) for duty in duties)
+            or any(untaken(behavior, duty) for duty in asked)
+        )
+    return bool(known[behavior])
+
+
 def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Step]:
     """The steps that lead into a set of configurations from outside."""
     return (step for step in behavior.steps if step.target in configurations and step.source not in configurations)

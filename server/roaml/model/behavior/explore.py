@@ -166,15 +166,19 @@ class Behavior:
         return found
 
 
-def explore(machine: Machine, chart: Chart) -> Behavior | None:
+def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior | None:
     """The graph of a chart of `machine`; None if it has no initial state or is too large to be looked through.
 
     It is kept with the chart, as the chart's own cached properties are, and goes with it.
+
+    Args:
+        fine: values are followed from step to step. That takes longer and leaves out more of the paths that cannot be
+            taken, so it is for charts in which something seems to be wrong.
     """
-    known: dict[str, Behavior | None] = chart.__dict__.setdefault("behavior", {})
-    if "graph" not in known:
-        known["graph"] = _Explorer(machine, chart).run()
-    return known["graph"]
+    known: dict[bool, Behavior | None] = chart.__dict__.setdefault("behavior", {})
+    if fine not in known:
+        known[fine] = _Explorer(machine, chart, fine).run()
+    return known[fine]
 
 
 class _Path(NamedTuple):
@@ -229,6 +233,7 @@ _ANSWERED = {"response": "response", "result": "outcome", "goal-response": "deci
 class _Explorer:
     machine: Machine
     chart: Chart
+    fine: bool
     numbers: dict[Configuration, int] = field(default_factory=dict)
     steps: dict[tuple[object, ...], Step] = field(default_factory=dict)
     statuses: defaultdict[ReturnStatus, set[str]] = field(default_factory=lambda: defaultdict(set))
@@ -245,8 +250,9 @@ class _Explorer:
         self.count = next((t.count for t in self.machine.threads if t.chart is chart), None)
         self.counts = {t.server.value: t.count for t in self.machine.threads if t.server and t.count}
         scalar, whole, logical = _kinds(chart)
-        self.relevant = self._relevant(scalar, logical)
-        followed, counted = self.relevant | EVENT_VARIABLES, self._counted()
+        counted = self._counted()
+        self.relevant = self._relevant(scalar, logical) if self.fine else counted | self._statuses()
+        followed = None if not self.fine else self.relevant | EVENT_VARIABLES
         self.facts = Facts(whole, logical, followed, counted)
         self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
         self.goal_ids = self._goal_ids()
@@ -265,14 +271,12 @@ class _Explorer:
         """The variables of which it is worth to know something, because that may decide where a path leads: those that
         conditions read, if they are compared more than once or given nothing but constants and truth values."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
-        wanted = set(self._counted())
+        wanted = {*self._counted(), *self._statuses()}
         assigned: dict[str, list[Expr | None]] = {}
         for statement in self.chart.statements:
             match statement:
                 case If():
                     read += [branch.cond.tree for branch in statement.branches if branch.cond]
-                case ReturnStatus() if statement.status:
-                    wanted.add(statement.status.value)
                 case Assign() if statement.location:
                     value = statement.value.tree if isinstance(statement.value, Expression) else None
                     root = (access_path(statement.location.tree) or ("",))[0]
@@ -290,6 +294,11 @@ class _Explorer:
             sources = {v.name for v in values if v.name in scalar} - wanted
             wanted |= sources
         return frozenset(wanted) - EVENT_VARIABLES
+
+    def _statuses(self) -> frozenset[str]:
+        """The variables that hold answers."""
+        given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
+        return frozenset(given) - set(STATUSES)
 
     def _counted(self) -> frozenset[str]:
         """The variables that number threads."""
