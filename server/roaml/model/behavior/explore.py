@@ -29,11 +29,13 @@ from roaml.model.machine import (
     Handler,
     If,
     Machine,
+    NoEffect,
     ReturnHalted,
     ReturnStatus,
     Send,
     State,
     Statement,
+    statements,
 )
 from roaml.model.syntax import Expression
 from roaml.model.typing import STATUSES, find_handle
@@ -224,6 +226,21 @@ EVENT_VARIABLES = frozenset(
 )
 """They hold the data of the event that is being handled, and nothing behind its step."""
 
+
+class _Group(NamedTuple):
+    """The handlers of a state for one event, with the phases that matter to them."""
+
+    state: State
+    event: Event | None
+    handlers: tuple[Handler, ...]
+    touched: frozenset[tuple[str, str]]
+
+
+_Found = tuple[str, _Path, Handler, int, bool]
+"""Where a step leads, what has happened on the way, its handler, the choice, and whether the event is ignored."""
+
+_ANSWERABLE = ("bt-tick", "bt-halt", "request", "goal", "response", "result", "child-status", "child-halted")
+"""Events that are lost if no condition holds, and that somebody waits for."""
 _CODES = (4, 5, 6)
 _ANSWERED = {"response": "response", "result": "outcome", "goal-response": "decision"}
 """What a client waits for, by what it receives."""
@@ -257,6 +274,10 @@ class _Explorer:
         self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
         self.goal_ids = self._goal_ids()
         self.declarations: dict[Handler | Communicate, Declaration | None] = {}
+        self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
+        self.groups: dict[str, list[_Group]] = {}
+        self.reactions: dict[tuple[State, Event | None, Phases, Knowledge], list[_Found]] = {}
+        self.found: list[_Found] = []
         self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
         self.goal_here = "any"  # what `_action.goal_id` means in the step that is being executed
 
@@ -383,16 +404,39 @@ class _Explorer:
         return knowledge.within(self.relevant)
 
     def _from(self, configuration: Configuration, number: int) -> None:
-        state = self.states.get(configuration.state)
-        if state is None:
-            return
-        groups: dict[Event | None, list[Handler]] = {}
-        for handler in state.handlers:
-            if handler.effective:
-                groups.setdefault(self.event(handler), []).append(handler)
-        for event, handlers in groups.items():
-            if event is None or self._may_come(configuration, event):
-                self._react(configuration, number, state, event, handlers)
+        for group in self._groups(configuration.state):
+            if group.event is None or self._may_come(configuration, group.event):
+                self._react(configuration, number, group)
+
+    def _groups(self, name: str) -> list[_Group]:
+        """The handlers of a state that wait for the same event."""
+        if name not in self.groups:
+            state = self.states.get(name)
+            found: dict[Event | None, list[Handler]] = {}
+            for handler in state.handlers if state else ():
+                if handler.effective:
+                    found.setdefault(self.event(handler), []).append(handler)
+            groups = found.items()
+            self.groups[name] = [_Group(state, e, tuple(hs), self._touched(state, e, hs)) for e, hs in groups if state]
+        return self.groups[name]
+
+    def _touched(self, state: State, event: Event | None, handlers: Iterable[Handler]) -> frozenset[tuple[str, str]]:
+        """The phases that the steps of a group may look at or change."""
+        found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
+        if event is not None:
+            handle = event.name
+            found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "outcome", "decision")}
+        bodies = [state.exit.statements if state.exit else ()]
+        for handler in handlers:
+            for target in handler.targets:
+                entered = self.states.get(target.state.value) if target.state else None
+                bodies += [target.body, entered.entry.statements if entered and entered.entry else ()]
+        for statement in (inner for body in bodies for inner in statements(body)):
+            if isinstance(statement, Communicate):
+                declaration = self.declaration(statement)
+                handle = declaration.handle.value if declaration and declaration.handle else ""
+                found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
+        return frozenset(found)
 
     def event(self, handler: Handler) -> Event | None:
         """What a handler waits for; None for nothing."""
@@ -401,8 +445,10 @@ class _Explorer:
                 return None
             case "event":
                 return Event("event", handler.event.value if handler.event else "")
-            case "bt-tick" | "bt-halt" | "child-status" | "child-halted":
+            case "bt-tick" | "bt-halt":
                 return Event(handler.trigger, "")
+            case "child-status" | "child-halted":
+                return Event(handler.trigger, handler.child.value if handler.child else "")
         declaration = self.declaration(handler)
         handle = declaration.handle if declaration and declaration.handle else handler.handle
         return Event(handler.trigger, handle.value if handle else "")
@@ -421,60 +467,69 @@ class _Explorer:
                 return bool(configuration.phase(_ANSWERED[event.part], event.name))
         return True
 
-    def _react(
-        self, configuration: Configuration, number: int, state: State, event: Event | None, handlers: list[Handler]
-    ) -> None:
-        taken = self._received(_Path(configuration.phases, configuration.knowledge), event)
+    def _react(self, configuration: Configuration, number: int, group: _Group) -> None:
+        """What happens depends on few phases only, so the same happens in many configurations."""
+        taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
+        inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
+        key = (group.state, group.event, inside, taken.knowledge)
+        if key not in self.reactions:
+            self.found = self.reactions[key] = []
+            self._decide(group, taken._replace(phases=inside))
+        outside = tuple(e for e in taken.phases if not (e[0] in group.touched or e[0][0] == "id"))
+        for state, path, handler, choice, ignored in self.reactions[key]:
+            phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
+            target = self._number(Configuration(state, phases, path.knowledge))
+            step = (number, target, group.event, handler, choice, ignored, path.sent, path.faults, path.certain)
+            if step not in self.steps:
+                self.steps[step] = Step(*step)
+
+    def _decide(self, group: _Group, taken: _Path) -> None:
+        event, handlers = group.event, group.handlers
         if event is not None and event.part == "result":
             for code in _CODES:
-                with_code = [h for h in handlers if h.type.code in (code, 0)]
+                with_code = tuple(h for h in handlers if h.type.code in (code, 0))
                 if with_code:
-                    self._choose(number, state, event, with_code, taken)
+                    self._choose(group, with_code, taken)
         elif event is not None and event.part == "goal-response":
-            for handler in handlers[:1]:
-                self._answered(number, state, event, handler, taken)
+            self._answered(group, handlers[0], taken)
         else:
-            self._choose(number, state, event, handlers, taken)
+            self._choose(group, handlers, taken)
 
-    def _choose(self, number: int, state: State, event: Event | None, handlers: list[Handler], taken: _Path) -> None:
+    def _choose(self, group: _Group, handlers: tuple[Handler, ...], taken: _Path) -> None:
         """The first handler whose condition holds is executed (spec/01 §5.3)."""
-        facts = self.facts
+        facts, event = self.facts, group.event
         ways = [taken.knowledge]
+        matters = event is not None and event.part in _ANSWERABLE
         if event is not None and event.part in ("child-status", "child-halted"):
             facts = self.status_facts
             if event.part == "child-status":
                 ways = [facts.know(taken.knowledge, "_bt.status", Domain(frozenset(STATUSES.values())))]
         for handler in handlers:
             if handler.cond is None:
-                self._execute(number, state, event, handler, [taken._replace(knowledge=way) for way in ways])
+                self._execute(group, handler, [taken._replace(knowledge=way) for way in ways])
                 return
+            if not (self.fine or matters):
+                self._execute(group, handler, [taken])
+                continue
             tree = handler.cond.tree
             holding = [known for way in ways for known in facts.assume(way, tree, True)]
-            self._execute(number, state, event, handler, [taken._replace(knowledge=way) for way in holding])
+            self._execute(group, handler, [taken._replace(knowledge=way) for way in holding])
             ways = [known for way in ways for known in facts.assume(way, tree, False)]
-        if event is not None:
-            assert state.id is not None
+        if matters:
+            assert group.state.id is not None
             for way in ways:
-                if way.enumerates(taken.knowledge):
-                    continue  # they are all values that are ever sent
-                after = Configuration(state.id.value, taken.phases, self._kept(way))
-                self._step(number, after, event, handlers[-1], 0, True, taken)
+                if not way.enumerates(taken.knowledge):  # if so, they are all values that are ever sent
+                    path = taken._replace(knowledge=self._kept(way))
+                    self.found.append((group.state.id.value, path, handlers[-1], 0, True))
 
-    def _answered(self, number: int, state: State, event: Event, handler: Handler, taken: _Path) -> None:
+    def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
         """A goal is accepted, so that its result is awaited, or rejected."""
+        assert group.event is not None
         for choice, phase in ((0, "awaited"), (1, "")):
-            path = taken.at("outcome", event.name, phase)
-            self._execute(number, state, event, handler, [path], choice)
+            self._execute(group, handler, [taken.at("outcome", group.event.name, phase)], choice)
 
-    def _execute(
-        self,
-        number: int,
-        state: State,
-        event: Event | None,
-        handler: Handler,
-        paths: list[_Path],
-        only: int | None = None,
-    ) -> None:
+    def _execute(self, group: _Group, handler: Handler, paths: list[_Path], only: int | None = None) -> None:
+        state, event = group.state, group.event
         leave = state.exit.statements if state.exit else ()
         arrived = {"goal": "asked", "thread-start": "accepted"}.get(event.part if event else "")
         self.goal_here = f"{arrived} {event.name}" if event and arrived else "any"
@@ -485,24 +540,9 @@ class _Explorer:
             entered = self.states.get(name)
             enter = entered.entry.statements if entered and entered.entry else ()
             for path in self._bodies([leave, target.body, enter], paths):
-                known = path.knowledge if entered else NOTHING
-                after = Configuration(name if entered else NOWHERE, path.phases, self._kept(known))
-                self._step(number, after, event, handler, choice, False, path)
-
-    def _step(
-        self,
-        number: int,
-        after: Configuration,
-        event: Event | None,
-        handler: Handler,
-        choice: int,
-        ignored: bool,
-        path: _Path,
-    ) -> None:
-        target = self._number(after)
-        step = Step(number, target, event, handler, choice, ignored, path.sent, path.faults, path.certain)
-        key = (number, target, event, handler, choice, ignored, path.sent, path.faults, path.certain)
-        self.steps.setdefault(key, step)
+                known = self._kept(path.knowledge) if entered else NOTHING
+                after = name if entered else NOWHERE
+                self.found.append((after, path._replace(knowledge=known), handler, choice, False))
 
     def _received(self, path: _Path, event: Event | None) -> _Path:
         """What an event changes before anything is executed."""
@@ -530,11 +570,27 @@ class _Explorer:
 
     def _bodies(self, bodies: Iterable[tuple[Statement, ...]], paths: list[_Path]) -> list[_Path]:
         for body in bodies:
-            for statement in body:
+            for statement in self._effective(body):
                 paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
                 if len(paths) > MOST_CONFIGURATIONS:
                     raise _TooLargeError
         return paths
+
+    def _effective(self, body: tuple[Statement, ...]) -> tuple[Statement, ...]:
+        """The statements of a body that matter here; most assignments do not."""
+        if body not in self.effective:
+            self.effective[body] = tuple(statement for statement in body if self._matters(statement))
+        return self.effective[body]
+
+    def _matters(self, statement: Statement) -> bool:
+        match statement:
+            case Assign():
+                root = (access_path(statement.location.tree) or ("",))[0] if statement.location else ""
+                return root in self.relevant or root in self.goal_ids
+            case If():
+                parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+                return any(self._effective(part.body) for part in parts)
+        return not isinstance(statement, NoEffect)
 
     def _run(self, statement: Statement, path: _Path) -> Iterable[_Path]:
         match statement:
@@ -584,6 +640,8 @@ class _Explorer:
         return "" if self.facts.value(NOTHING, value) is not None else "any"
 
     def _if(self, statement: If, path: _Path) -> Iterable[_Path]:
+        if not self.fine:
+            return self._any_part(statement, path)
         ways = [path.knowledge]
         parts: list[tuple[list[Knowledge], tuple[Statement, ...]]] = []
         for branch in statement.branches:
@@ -599,6 +657,11 @@ class _Explorer:
         for known, body in possible:
             found += self._bodies([body], [path._replace(knowledge=k, certain=certain) for k in dict.fromkeys(known)])
         return found
+
+    def _any_part(self, statement: If, path: _Path) -> Iterable[_Path]:
+        found = [after for branch in statement.branches for after in self._bodies([branch.body], [path])]
+        found += self._bodies([statement.otherwise.body], [path]) if statement.otherwise else [path]
+        return [after._replace(certain=False) for after in found]
 
     def _status(self, statement: ReturnStatus, path: _Path) -> Iterable[_Path]:
         duty = Duty("tick", "")

@@ -6,8 +6,8 @@ It holds names of states and handles, but no places, so that most changes of a f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from roaml.model.behavior.explore import NOWHERE, Behavior, Duty, Event, Step, explore
@@ -72,121 +72,139 @@ def summarised(machine: Machine, chart: Chart) -> ChartOutline:
 
 
 def summarise(behavior: Behavior) -> ChartOutline:
-    promises = dict.fromkeys(
-        promise for duty in _duties(behavior) for promise in _promises(behavior, duty) if AT_ONCE not in promise.needs
-    )
-    return ChartOutline(tuple(promises), _reactions(behavior), tuple(_repeats(behavior)))
+    return _Summary(behavior).outline()
 
 
-def _duties(behavior: Behavior) -> list[Duty]:
-    """What the machine answers as a server."""
-    found: dict[Duty, None] = {}
-    for step in behavior.steps:
-        if step.event is not None and step.event.part in ("request", "goal"):
-            found[Duty(step.event.part, step.event.name)] = None
-            if step.event.part == "goal":
-                found[Duty("result", step.event.name)] = None
-        elif step.event is not None and step.event.part == "thread-start":
-            found[Duty("result", step.event.name)] = None
-    return list(found)
+@dataclass(frozen=True, slots=True)
+class _Edge:
+    """Steps that are alike here. `event` is a bit, 0 for none; `taken` and `sent` are what is received and sent."""
+
+    source: int
+    target: int
+    event: int
+    taken: Event | None
+    sent: frozenset[Event]
 
 
-def _promises(behavior: Behavior, duty: Duty) -> Iterable[Promise]:
-    """Where an answer is owed, and where a request is not even taken."""
-    taking, scope = Event(duty.kind, duty.handle), behavior.chart.scope
-    owing = [c.owes(duty) for c in behavior.configurations]
+class _Summary:
+    """Sets of events are numbers here, with one bit for each event."""
 
-    def answers(step: Step) -> bool:
-        unknown = behavior.configurations[step.target].state == NOWHERE
-        return owing[step.source] and (unknown or not owing[step.target])
+    def __init__(self, behavior: Behavior) -> None:
+        self.behavior = behavior
+        self.events: dict[Event, int] = {}
+        self.edges = list(dict.fromkeys(self._edge(step) for step in behavior.steps))
+        self.names = {bit: event for event, bit in self.events.items()}
 
-    needs = _needs(behavior, answers, lambda step: _one(step.event) if owing[step.source] else None)
-    for number, configuration in enumerate(behavior.configurations):
-        if needs[number] and configuration.phase(duty.kind, duty.handle) != "several":
-            yield Promise(duty, configuration.state, scope, True, False, needs[number])
-    if duty.kind == "result":
-        return
+    def _edge(self, step: Step) -> _Edge:
+        bit = 0 if step.event is None else self.events.setdefault(step.event, 1 << len(self.events))
+        return _Edge(step.source, step.target, bit, step.event, frozenset(step.sent))
 
-    def idle(step: Step) -> Needs | None:
-        if step.event == taking:
-            return frozenset((AT_ONCE,))
-        return None if owing[step.source] or owing[step.target] else _one(step.event)
+    def outline(self) -> ChartOutline:
+        promises = dict.fromkeys(
+            promise for duty in self._duties() for promise in self._promises(duty) if AT_ONCE not in promise.needs
+        )
+        return ChartOutline(tuple(promises), self._reactions(), tuple(self._repeats()))
 
-    needs = _needs(behavior, lambda step: step.event == taking, idle)
-    for number, configuration in enumerate(behavior.configurations):
-        if needs[number] and not owing[number]:
-            busy = bool(configuration.phase("result", duty.handle))
-            yield Promise(duty, configuration.state, scope, False, busy, needs[number])
+    def _duties(self) -> list[Duty]:
+        """What the machine answers as a server."""
+        found: dict[Duty, None] = {}
+        for event in self.events:
+            if event.part in ("request", "goal"):
+                found[Duty(event.part, event.name)] = None
+            if event.part in ("goal", "thread-start"):
+                found[Duty("result", event.name)] = None
+        return list(found)
+
+    def _promises(self, duty: Duty) -> Iterator[Promise]:
+        """Where an answer is owed, and where a request is not even taken."""
+        taking, configurations = Event(duty.kind, duty.handle), self.behavior.configurations
+        owing = [c.owes(duty) for c in configurations]
+        on_the_way = [edge for edge in self.edges if owing[edge.source]]
+        answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
+        needs = self._needs(on_the_way, answers)
+        for number, alternatives in needs.items():
+            if configurations[number].phase(duty.kind, duty.handle) != "several":
+                yield self._promise(duty, number, True, alternatives)
+        if duty.kind != "result":
+            takes = [replace(edge, event=0) for edge in self.edges if edge.taken == taking]
+            idle = [edge for edge in self.edges if not owing[edge.source] and not owing[edge.target]]
+            for number, alternatives in self._needs([*idle, *takes], takes).items():
+                yield self._promise(duty, number, False, alternatives)
+
+    def _promise(self, duty: Duty, number: int, taken: bool, alternatives: tuple[int, ...]) -> Promise:
+        configuration = self.behavior.configurations[number]
+        busy = not taken and bool(configuration.phase("result", duty.handle))
+        scope = self.behavior.chart.scope
+        return Promise(duty, configuration.state, scope, taken, busy, frozenset(map(self._set, alternatives)))
+
+    def _set(self, mask: int) -> frozenset[Event]:
+        return frozenset(event for bit, event in self.names.items() if mask & bit)
+
+    def _repeats(self) -> Iterator[tuple[Event, Needs]]:
+        at_start = [event for event in self.behavior.at_start if event.part in REPEATED]
+        twice = {e for step in self.behavior.steps for e in step.sent if step.sent.count(e) > 1}
+        for event in dict.fromkeys([*(e for edge in self.edges for e in sorted(edge.sent)), *at_start]):
+            if event.part not in REPEATED:
+                continue
+            sending = [edge for edge in self.edges if event in edge.sent]
+            needs = self._needs(self.edges, sending)
+            after = {edge.target for edge in sending}
+            if event in at_start:
+                after.update(range(self.behavior.starts))
+            found = {mask for number in after for mask in needs.get(number, ())} | ({0} if event in twice else set())
+            yield event, frozenset(map(self._set, _least(found)))
+
+    def _reactions(self) -> frozenset[tuple[Event, Event]]:
+        before: list[set[Event]] = [set() for _ in self.behavior.configurations]
+        for start in range(self.behavior.starts):
+            before[start].add(START)
+        changed = True
+        while changed:
+            changed = False
+            for edge in self.edges:
+                causes = before[edge.source] if edge.taken is None else {edge.taken}
+                if not causes <= before[edge.target]:
+                    before[edge.target] |= causes
+                    changed = True
+        found = {(START, event) for event in self.behavior.at_start}
+        for edge in self.edges:
+            causes = before[edge.source] if edge.taken is None else {edge.taken}
+            found |= {(cause, event) for cause in causes for event in edge.sent}
+        return frozenset(found)
+
+    def _needs(self, edges: Iterable[_Edge], reaching: Iterable[_Edge]) -> dict[int, tuple[int, ...]]:
+        """For each configuration from which `edges` lead to one of those that are `reaching`, the least sets of events
+        by which that happens."""
+        goals = set(reaching)
+        incoming: dict[int, list[_Edge]] = {}
+        found: dict[int, tuple[int, ...]] = {}
+        waiting: dict[int, None] = {}
+        for edge in edges:
+            if edge in goals:
+                found[edge.source] = _least((*found.get(edge.source, ()), edge.event))
+                waiting[edge.source] = None
+            elif edge.source != edge.target:
+                incoming.setdefault(edge.target, []).append(edge)
+        while waiting:
+            target = next(iter(waiting))
+            del waiting[target]
+            for edge in incoming.get(target, ()):
+                known = found.get(edge.source, ())
+                if known == (0,):
+                    continue
+                least = _least((*known, *(edge.event | mask for mask in found[target])))
+                if least != known:
+                    found[edge.source] = least
+                    waiting[edge.source] = None
+        return found
 
 
-def _repeats(behavior: Behavior) -> Iterable[tuple[Event, Needs]]:
-    sent = dict.fromkeys(e for step in behavior.steps for e in step.sent if e.part in REPEATED)
-    for event in (*sent, *(e for e in behavior.at_start if e.part in REPEATED and e not in sent)):
-        needs = _needs(behavior, lambda step, event=event: event in step.sent, lambda step: _one(step.event))  # type: ignore[misc]
-        found: Needs = frozenset()
-        for step in behavior.steps:
-            if event in step.sent:
-                twice = step.sent.count(event) > 1
-                found = _least((*found, *needs[step.target], *((AT_ONCE,) if twice else ())))
-        if event in behavior.at_start:
-            again = (needs[start] for start in range(behavior.starts))
-            found = _least((*found, *(each for alternatives in again for each in alternatives)))
-        yield event, found
-
-
-def _reactions(behavior: Behavior) -> frozenset[tuple[Event, Event]]:
-    before: list[set[Event]] = [set() for _ in behavior.configurations]
-    for start in range(behavior.starts):
-        before[start].add(START)
-    changed = True
-    while changed:
-        changed = False
-        for step in behavior.steps:
-            causes = {step.event} if step.event is not None else before[step.source]
-            if not causes <= before[step.target]:
-                before[step.target] |= causes
-                changed = True
-    found = {(START, event) for event in behavior.at_start}
-    for step in behavior.steps:
-        causes = {step.event} if step.event is not None else before[step.source]
-        found |= {(cause, event) for cause in causes for event in step.sent}
-    return frozenset(found)
-
-
-def _needs(behavior: Behavior, reaches: Callable[[Step], bool], cost: Callable[[Step], Needs | None]) -> list[Needs]:
-    """For each configuration the least sets of events by which a step that `reaches` the goal is taken."""
-    incoming: list[list[tuple[Step, Needs]]] = [[] for _ in behavior.configurations]
-    found: list[Needs] = [frozenset() for _ in behavior.configurations]
-    waiting: dict[int, None] = {}
-    for step in behavior.steps:
-        price = cost(step)
-        if price is None:
-            continue
-        if reaches(step):
-            found[step.source] = _least((*found[step.source], *price))
-            waiting[step.source] = None
-        else:
-            incoming[step.target].append((step, price))
-    while waiting:
-        target = next(iter(waiting))
-        del waiting[target]
-        for step, price in incoming[target]:
-            through = (one | other for one in price for other in found[target])
-            least = _least((*found[step.source], *through))
-            if least != found[step.source]:
-                found[step.source] = least
-                waiting[step.source] = None
-    return found
-
-
-def _one(event: Event | None) -> Needs:
-    return frozenset((AT_ONCE if event is None else frozenset((event,)),))
-
-
-def _least(alternatives: Iterable[frozenset[Event]]) -> Needs:
+def _least(masks: Iterable[int]) -> tuple[int, ...]:
     """Without those that contain another one; of many, the smallest."""
-    found: list[frozenset[Event]] = []
-    for each in sorted(set(alternatives), key=lambda each: (len(each), sorted(each))):
-        if len(each) <= MOST_EVENTS and not any(known <= each for known in found):
-            found.append(each)
-    return frozenset(found[:MOST_ALTERNATIVES])
+    found: list[int] = []
+    for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
+        if mask.bit_count() > MOST_EVENTS:
+            break
+        if not any(known & mask == known for known in found):
+            found.append(mask)
+    return tuple(found[:MOST_ALTERNATIVES])
