@@ -208,9 +208,11 @@ class Grammar:
 
     def find(self, name: str) -> ElementType | None:
         """The element called `name` wherever it is allowed; global ones first."""
-        if name in self.elements:
-            return self.elements[name]
-        return next((element for element in self._everywhere if element.name == name), None)
+        return self.elements.get(name) or self._by_name.get(name)
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, ElementType]:
+        return {element.name: element for element in reversed(tuple(self._everywhere))}
 
     def parents(self, name: str) -> tuple[str, ...]:
         """The names of the elements in which `name` may stand."""

@@ -31,6 +31,14 @@ INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
 MAX_COMBINATIONS = 10_000
 """Of random numbers that are drawn at once in one assignment: each combination is a destination in JANI."""
 
+
+def combinations(value: Expr, random_values: int) -> int | None:
+    """How many values the random numbers of an assignment have together, if they are drawn at once; None if they are
+    drawn one after the other."""
+    count: int = random_values ** sum(map(is_draw, walk(value)))
+    return count if count <= MAX_COMBINATIONS else None
+
+
 TypedParam: TypeAlias = tuple[Param, Type]
 
 
@@ -90,8 +98,7 @@ class StatementLowering:
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
         """An assignment. Many random numbers are drawn one after the other, and forgotten when they are used."""
-        values = self.context.program.parameters.random_values
-        if values ** sum(map(is_draw, walk(value))) <= MAX_COMBINATIONS:
+        if combinations(value, self.context.program.parameters.random_values) is not None:
             yield Assign(location, value, origin)
             return
         drawn: list[Data] = []

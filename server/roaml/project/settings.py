@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
 
@@ -36,6 +37,7 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
     """
 
@@ -47,6 +49,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
 
 
@@ -105,6 +108,9 @@ def settings_from(
             read = tuple(os.path.normpath(os.path.join(folder, path)) for path in read)
         if key == "exclude":
             read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
+        if key in _LIMITS:
+            changes["limits"] = replace(changes.get("limits", base.limits), **{_LIMITS[key]: read})
+            continue
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
     return replace(base, **changes), tuple(problems)
@@ -126,11 +132,16 @@ def _boolean(value: Any) -> bool | None:
     return value if isinstance(value, bool) else None
 
 
+def _count(value: Any) -> int | None:
+    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else None
+
+
 def _unknown(codes: Iterable[str]) -> list[str]:
     return [code for code in codes if code not in BY_CODE]
 
 
 _SETS = ("select", "ignore")
+_LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _OF_CODES = (*_SETS, "severity")
 _FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
 _KEYS: dict[str, Any] = {
@@ -141,11 +152,14 @@ _KEYS: dict[str, Any] = {
     "ignore": _strings,
     "severity": _severities,
     "warnings-as-errors": _boolean,
+    "max-cells": _count,
+    "max-parts": _count,
 }
 _WANTED = {
     **dict.fromkeys(("roots", "ros-path", "exclude", "select", "ignore"), "a list of texts"),
     "severity": "a table of codes with " + ", ".join(SEVERITIES),
     "warnings-as-errors": "true or false",
+    **dict.fromkeys(_LIMITS, "a whole number above 0"),
 }
 
 
