@@ -201,3 +201,32 @@ def hospital(*, mended: bool = False) -> dict[str, str]:
     """
     files = split_files(HOSPITAL)
     return {**files, "fetch.ascxml": _ANSWERS_AT_ONCE} if mended else files
+
+
+_PROPERTIES = '<properties><input type="jani" src="properties.jani" /></properties>'
+
+
+def system(machines: dict[str, str], tree: str = "", more: str = "") -> dict[str, str]:
+    """File name -> text of a system.
+
+    Args:
+        machines: name -> what is inside of its `<ascxml>`, the name of the initial state first; names of plugins are
+            those of the tree.
+        tree: what is inside of its `<BehaviorTree>`; "" for none.
+        more: parameters besides `max_time`.
+    """
+    files = {}
+    for name, inside in machines.items():
+        initial, _, body = inside.partition("\n")
+        files[f"{name}.ascxml"] = f'<ascxml name="{name}" version="1.0" initial="{initial}">\n{body}</ascxml>\n'
+    plugins = [name for name in machines if f"<{name} " in tree or f"<{name}/" in tree]
+    listed = "".join(f'<input type="bt-plugin-ascxml" src="{name}.ascxml" />' for name in plugins)
+    if tree:
+        files["tree.xml"] = f'<root BTCPP_format="4">\n<BehaviorTree ID="T">\n{tree}\n</BehaviorTree>\n</root>\n'
+        listed = f'<behavior_tree><input type="bt.cpp-xml" src="tree.xml" />{listed}</behavior_tree>'
+    nodes = "".join(f'<input type="node-ascxml" src="{name}.ascxml" />' for name in machines if name not in plugins)
+    nodes = f"<node_models>{nodes}</node_models>" if nodes else ""
+    parameters = f'<parameters><max_time value="5" unit="s" />{more}</parameters>'
+    files["main.xml"] = f"<roaml>{parameters}{listed}{nodes}{_PROPERTIES}</roaml>\n"
+    files["properties.jani"] = '{"properties": []}\n'
+    return files

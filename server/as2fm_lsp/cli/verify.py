@@ -238,18 +238,15 @@ class _Verification:
         return Result(name, answer, verdicts, took, interrupted, stuck=stuck_traces, choices=choices)
 
     def _stuck(self, asked: Asked, answer: Answer, scheduler: int = 0) -> stuck.Stuck | None:
-        return stuck.stuck_in(self.subject, self.checker, asked, self.limits, answer, scheduler)
+        return stuck.stuck_in(self.subject, self.checker, asked, answer, scheduler)
 
     def _look(self, bar: Bar | None) -> stuck.Look:
         """What is known of getting stuck; with a bar, traces are made for it."""
-        answer, own = None, None
+        level = self.options.stuck
+        own = stuck.Look(None, None, level)
         if bar is not None:
-            options = stuck.look_options(self.limits)
-            with Pool(1) as pool:
-                answer = self.checker.answer(self.checker.stuck, options, pool, pulse=bar.pulse)
-            own = stuck.stuck_in(self.subject, self.checker, self.checker.stuck, options, answer)
-        example = stuck.shortest([own, *(result.stuck for result in self.results)])
-        return stuck.Look(answer, example, self.options.stuck)
+            own = stuck.look(self.subject, self.checker, self.limits, level, bar.pulse)
+        return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
     def _exact(self, asked: Asked, began: float) -> Result:
         from as2fm_lsp.verification.exactly import ExactError, exactly, judged  # noqa: PLC0415

@@ -251,7 +251,7 @@ class _Run:
                 under_all_schedulers(judge(expected, answer), answer, choices) for expected in self.expected(asked)
             )
             options = self.wanted.options
-            gets_stuck = stuck.stuck_in(subject, checker, asked, options, answer)
+            gets_stuck = stuck.stuck_in(subject, checker, asked, answer)
             took = time.monotonic() - began
             result = Result(each, answer, verdicts, took, stuck=gets_stuck, choices=choices)
             results.append(result)
@@ -269,19 +269,22 @@ class _Run:
         """What is known of getting stuck, by traces that are made for it if it was not asked."""
         if not stuck.can_be_stuck(checker):
             return None
-        answer, found = None, [result.stuck for result in results]
+        known = stuck.Look(None, None, self.wanted.stuck)
         if not any(result.answer and result.answer.question.is_stuck for result in results):
-            options, asked = stuck.look_options(self.wanted.options), checker.stuck
+            options, asked = self.wanted.options, checker.stuck
             await self.shown.step(asked.question.name)
             began = time.monotonic()
-            checkpoint = self.server.requests.checkpoint
-            answer, _ = await background.answer(checker, asked, options, checkpoint, lambda _: None, is_uniform=True)
-            found.append(stuck.stuck_in(subject, checker, asked, options, answer))
-            result = Result(asked.question.name, answer, (), time.monotonic() - began, stuck=found[-1])
-            if all(each.name != asked.question.name for each in subject.model.properties):
-                self.server.verified.put(self.path, Known(result, subject, analysis, checker, asked, options, texts))
+            known = await background.in_thread(
+                lambda checked: stuck.look(subject, checker, options, self.wanted.stuck, lambda _, __: checked()),
+                self.server.requests.checkpoint,
+            )
+            is_free = all(each.name != asked.question.name for each in subject.model.properties)
+            if known.answer is not None and is_free:
+                result = Result(asked.question.name, known.answer, (), time.monotonic() - began, stuck=known.stuck)
+                made = Known(result, subject, analysis, checker, asked, known.answer.options, texts)
+                self.server.verified.put(self.path, made)
             self.server.refresh.look()
-        known = stuck.Look(answer, stuck.shortest(found), self.wanted.stuck)
+        known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
         text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
         if known.stuck is not None and not self.wanted.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error

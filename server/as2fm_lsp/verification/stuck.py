@@ -14,10 +14,12 @@ from typing import Any
 from as2fm_lsp.verification.subject import Subject
 from roaml.jani.node import Origin
 from roaml.smc.end import End
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked
 from roaml.smc.model import Checker
+from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import FIXED, Answer, Options, Seen
+from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
 from roaml.views.waiting import Wait, advice, waits
 
 WARNING, ERROR = "warning", "error"
@@ -26,8 +28,13 @@ LEVELS = (WARNING, ERROR)
 NOT_STUCK = "does not get stuck"
 """The name of the test in a JUnit report."""
 TRACES = 100
-STEPS = 10_000
-"""So many traces are made to see it, of at most so many steps: some hundredths of a second."""
+"""So many traces are made to see it."""
+STEPS = 100_000
+"""None of them is longer."""
+EFFORT = 1_000_000
+"""No more are made after so many steps: a tenth of a second."""
+FEW = 10
+"""So many are made at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,20 +67,38 @@ class Look:
         answer: that of the traces which were made for it; None if none were.
         stuck: the shortest example, from these traces or from those of a property.
         level: whether it is a warning or an error.
+        fault: what went wrong in one of these traces; then there is no answer.
     """
 
     answer: Answer | None
     stuck: Stuck | None
     level: str = WARNING
+    fault: str = ""
 
     @property
     def is_met(self) -> bool:
         return self.stuck is None or self.level != ERROR
 
 
-def look_options(options: Options) -> Options:
-    """How traces are made to see whether they get stuck."""
-    return replace(options, method=FIXED, max_traces=TRACES, max_steps=min(options.max_steps, STEPS))
+def look(subject: Subject, checker: Checker, options: Options, level: str, pulse: Pulse | None = None) -> Look:
+    """Make traces to see whether they get stuck."""
+    try:
+        answer = _answer(checker, options, pulse)
+    except FaultError as fault:
+        return Look(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
+    return Look(answer, stuck_in(subject, checker, checker.stuck, answer), level)
+
+
+def _answer(checker: Checker, options: Options, pulse: Pulse | None) -> Answer:
+    asked, tally = checker.stuck, Tally()
+    alone = Alone(checker.compiled(asked))
+    for traces in range(FEW, TRACES + FEW, FEW):
+        limits = replace(options, method=FIXED, max_traces=traces, max_steps=min(options.max_steps, STEPS))
+        tally.is_finished = False
+        answer = checker.answer(asked, limits, alone, tally, pulse=pulse)
+        if tally.steps >= EFFORT:
+            break
+    return answer
 
 
 def can_be_stuck(checker: Checker) -> bool:
@@ -81,14 +106,12 @@ def can_be_stuck(checker: Checker) -> bool:
     return any(checker.program.location_mark)
 
 
-def stuck_in(
-    subject: Subject, checker: Checker, asked: Asked, options: Options, answer: Answer, scheduler: int = 0
-) -> Stuck | None:
+def stuck_in(subject: Subject, checker: Checker, asked: Asked, answer: Answer, scheduler: int = 0) -> Stuck | None:
     """The traces of an answer that got stuck; None if none did."""
     ended = answer.tally.ends.get(End.STUCK)
     if ended is None:
         return None
-    recorder = Recorder(checker, asked, options.seed, options.max_steps, scheduler)
+    recorder = Recorder(checker, asked, answer.options.seed, answer.options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
     time = time_of(subject, recorder)
     return Stuck(ended.count, ended.shortest, time, waits(recorder.standstill(), time))
@@ -123,6 +146,8 @@ def as_text(look: Look, place_of: PlaceOf) -> str:
         cut = answer.tally.ended(End.CUT)
         to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
         lines.append(f"stuck: {answer.value:.6g} in [{lower:.6g}, {upper:.6g}] from {answer.tally.traces:,} traces{to}")
+    if look.fault:
+        lines.append(f"stuck: not known, since a trace that ran on went wrong: {look.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else ", time stands still"
         lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
@@ -146,6 +171,8 @@ def as_row(look: Look, place: Callable[[Origin], dict[str, Any]]) -> dict[str, A
         tally, (lower, upper) = look.answer.tally, look.answer.bounds
         found.update(traces=tally.traces, stuck=tally.ended(End.STUCK), cut=tally.ended(End.CUT))
         found.update(lower=lower, upper=upper)
+    if look.fault:
+        found["fault"] = look.fault
     found["example"] = None if look.stuck is None else example_row(look.stuck, place)
     return found
 

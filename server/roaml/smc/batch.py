@@ -93,7 +93,11 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
     Args:
         pulse: told now and then the number of the trace and its steps; what it raises ends the batch.
     """
-    kernel = kernel_of(task.payload)
+    return run_on(kernel_of(task.payload), task, pulse)
+
+
+def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
+    """The same on a kernel that nobody else uses meanwhile."""
     verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)

@@ -17,7 +17,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked, ask, ask_stuck
 from roaml.smc.lss import Extremes, candidates, extremes
 from roaml.smc.opcodes import MESSAGES, FaultCode
-from roaml.smc.pool import Pool, Pulse
+from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program
 from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
 
@@ -88,7 +88,7 @@ class Checker:
         self,
         asked: Asked,
         options: Options,
-        pool: Pool,
+        pool: Runner,
         tally: Tally | None = None,
         watch: Watch | None = None,
         pulse: Pulse | None = None,

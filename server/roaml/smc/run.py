@@ -16,7 +16,7 @@ from typing import NamedTuple
 from roaml.smc.batch import Outcome, Payload, Problem, Task
 from roaml.smc.end import End
 from roaml.smc.goal import Question
-from roaml.smc.pool import Pool, Pulse
+from roaml.smc.pool import Pulse, Runner
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
 
@@ -199,7 +199,7 @@ def answer(
     payload: Payload,
     question: Question,
     options: Options,
-    pool: Pool,
+    pool: Runner,
     tally: Tally | None = None,
     watch: Watch | None = None,
     pulse: Pulse | None = None,

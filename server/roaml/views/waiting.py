@@ -249,13 +249,14 @@ class _Chain:
                 return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
         return {CLOCK: THE_CLOCK, BLACKBOARD: THE_BLACKBOARD}.get(name, name_of(name))
 
-    def shown_from(self, number: int) -> str:
-        """Who does something in the end that an automaton passes on."""
+    def shown_from(self, number: int, event: str) -> tuple[str, str]:
+        """Who does something in the end that an automaton passes on, and the event that is waited for there."""
         seen = set()
         while number not in seen and number in self.links and not self.is_shown(number):
             seen.add(number)
-            number = self.links[number][0].others[0][0]
-        return self.who(number)
+            link = self.links[number][0]
+            number, event = link.others[0][0], link.event or event
+        return self.who(number), event
 
     def words(self, link: _Link) -> Wait:
         number = link.automaton
@@ -265,7 +266,8 @@ class _Chain:
         where = f" in `{here}`" if is_state and not is_generated else ""
         if who == THE_CLOCK and self.time is not None:
             where = f" at {self.time:g} s"
-        others = list(dict.fromkeys(self.shown_from(other) for other, _ in link.others))
+        shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
+        others = list(dict.fromkeys(name for name, _ in shown))
         them = " and ".join(others)
         unanswered = ""
         if link.event is None:
@@ -277,7 +279,7 @@ class _Chain:
         elif link.is_taken:
             what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
         elif _is_answer(link.event):
-            unanswered = HALT if link.event.endswith("_halt_response") else TICK
+            unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
             what = f"waits{where} for {them} to answer its {unanswered}"
         else:
             senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""

@@ -3,7 +3,15 @@
 
 import * as vscode from "vscode";
 import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
-import { properties, STUCK, VERIFY, type Property, type VerifiableSystem, type Verification, type Wrong } from "../protocol";
+import {
+    properties,
+    STUCK,
+    VERIFY,
+    type Property,
+    type VerifiableSystem,
+    type Verification,
+    type Wrong,
+} from "../protocol";
 import { outcomeOf, type Outcome } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE } from "./client";
