@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from smc_models import Json, automaton, document, edge, model, op, plain_kernel, probability, variable, way
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.smc import kernel
 from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
@@ -15,6 +15,7 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import Options
 from roaml.smc.solve import solve
+from twin import plain_kernel
 
 GOAL = op("F", "done")
 
