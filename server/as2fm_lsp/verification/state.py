@@ -13,6 +13,7 @@ import time
 from typing import Any
 
 from as2fm_lsp.write import write_file
+from roaml.disk import MAX_DATA, required
 from roaml.smc.batch import Payload
 from roaml.smc.run import Options, Tally
 
@@ -78,8 +79,7 @@ class State:
 
     def _read(self) -> None:
         try:
-            with open(self.path, encoding="utf-8") as file:
-                value = json.load(file)
+            value = json.loads(required(self.path, MAX_DATA).decode("utf-8"))
             if value["version"] != VERSION:
                 raise StateError(f"{self.path} was written by another version")
             self._properties = dict(value["properties"])

@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from roaml.diagnostics import Finding
+from roaml.disk import Problem
 from roaml.expr.types import UNKNOWN, Struct, Type
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
@@ -47,7 +48,7 @@ from roaml.model.system_file import (
 )
 from roaml.model.tree import TreeFile, build_tree_file
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
-from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
+from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile
 from roaml.xml import Document

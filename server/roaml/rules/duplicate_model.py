@@ -73,9 +73,4 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     return RULE.at(src.span, f"there are two {what}s `{name}`, here and in `{earlier.value}`", related=[first, named])
 
 
-RULE = Rule(
-    "duplicate-model",
-    Severity.ERROR,
-    "Two machines of a system, or a machine and an event, have the same name.",
-    system=check,
-)
+RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)
