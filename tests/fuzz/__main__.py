@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from fuzz.pairs import Outcome, choose, outcome
 from fuzz.runner import Ran, run, run_all
 from fuzz.strategies import plan, strategies
 from fuzz.strategy import Case, Failure, Strategy
@@ -30,13 +31,16 @@ def main() -> int:
     parser.add_argument("--case", metavar="NAME:SEED", help="only this case, with all that is known about it")
     parser.add_argument("--unlimited", action="store_true", help="with --case: let it take what it takes")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="with --case: write its files there")
+    parser.add_argument("--pairs", type=int, metavar="N", help="this many pairs of mistakes instead, from --seed on")
     parser.add_argument("--slowest", type=int, default=3, metavar="N", help="name the slowest cases (3)")
     arguments = parser.parse_args()
     if arguments.case is not None:
         name, _, seed = arguments.case.rpartition(":")
         if name not in strategies() or not seed.isdecimal():
-            parser.error(f"{arguments.case} is no NAME:SEED; there are {', '.join(strategies())}")
+            parser.error(f"{arguments.case} is not NAME:SEED; there are {', '.join(strategies())}")
         return one(name, int(seed), not arguments.unlimited, arguments.keep)
+    if arguments.pairs is not None:
+        return pairs(range(arguments.seed, arguments.seed + arguments.pairs))
     chosen = tuple(strategies()[name] for name in arguments.strategy or strategies())
     return many(chosen, arguments.cases, arguments.seed, arguments.jobs, arguments.slowest)
 
@@ -66,6 +70,23 @@ def many(chosen: Sequence[Strategy], cases: int, first: int, jobs: int, slowest:
         smallest = min(found, key=lambda each: each[0].size)[0].name
         print(f"{len(found)} cases, the smallest is {smallest}: {kind}")
     return 1 if kinds else 0
+
+
+def pairs(seeds: range) -> int:
+    """How many pairs of mistakes are reported as each is alone; those that are not, in words."""
+    counts = dict.fromkeys(Outcome, 0)
+    for number, seed in enumerate(seeds, 1):
+        mistakes = choose(seed)
+        found, details = outcome(*mistakes)
+        counts[found] += 1
+        if found is not Outcome.BOTH:
+            shown = " and ".join(f"{mistake.file}, {mistake.what}" for mistake in mistakes)
+            print(f"seed {seed}: {found.value}: {details}\n    {shown}", flush=True)
+        if number % 500 == 0 or number == len(seeds):
+            print(
+                f"{number} pairs: " + ", ".join(f"{count} {each.value}" for each, count in counts.items()), flush=True
+            )
+    return 1 if counts[Outcome.LOST] else 0
 
 
 def _in_turn(shares: Sequence[tuple[str, int]], first: int) -> Iterator[tuple[str, int]]:

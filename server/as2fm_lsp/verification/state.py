@@ -17,7 +17,7 @@ from roaml.disk import MAX_DATA, required
 from roaml.smc.batch import Payload
 from roaml.smc.run import Options, Tally
 
-VERSION = 1
+VERSION = 2
 PAUSE = 1.0
 """Seconds between two times of writing."""
 

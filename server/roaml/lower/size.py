@@ -19,7 +19,7 @@ from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Type, is_kind, resolve_
 from roaml.lower.interfaces import fields
 from roaml.lower.nodes import builtin_machine
 from roaml.lower.program import Program
-from roaml.lower.statements import MOST_DRAWS
+from roaml.lower.statements import combinations
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import (
     Assign,
@@ -40,9 +40,6 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Automaton, Channel
 from roaml.model.typing import bindings
-
-_DRAWS = 100
-"""The values of `Math.random()` (spec/03 §7)."""
 
 _EDGE = 4
 """What an edge counts besides its expressions: it has a destination, an action and two locations."""
@@ -251,10 +248,11 @@ class _Count:
         one = location + 1 + self.value(statement.value, handler)
         if draws == 0:
             return one + stored
-        if draws <= MOST_DRAWS:
-            values: int = _DRAWS**draws
-            return _EDGE + values * (one + stored + _EDGE)
-        return draws * _EDGE * (_DRAWS + 1) + one + stored
+        values = self.program.parameters.random_values
+        at_once = combinations(statement.value.tree, values)
+        if at_once is not None:
+            return _EDGE + at_once * (one + stored + _EDGE)
+        return draws * _EDGE * (values + 1) + one + stored
 
     def padding(self, statement: Assign, handler: Handler | None) -> int:
         """Literals are filled up to the capacity of the array that they are stored in."""
@@ -273,7 +271,9 @@ class _Count:
         type_ = self.type(param.value.tree, handler) if literals else UNKNOWN
         padding = cells_of(type_, self.program.parameters.max_array_size, sent=True) * len(literals) if literals else 0
         draws = sum(map(is_draw, walk(param.value.tree)))
-        drawn: int = _DRAWS ** min(draws, MOST_DRAWS) * (_EDGE + _nodes(param.value.tree)) if draws else 0
+        values = self.program.parameters.random_values
+        at_once = combinations(param.value.tree, values) or draws * values
+        drawn = at_once * (_EDGE + _nodes(param.value.tree)) if draws else 0
         return 3 + self.value(param.value, handler) + padding + drawn
 
     def value(self, value: Expression, handler: Handler | None) -> int:

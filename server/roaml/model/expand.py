@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
-from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes
+from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes, port_key
 
 ROOT_NUMBER = 1000
 
@@ -123,12 +123,13 @@ def _outlines(root: TreeNode) -> NodeOutline:
     def convert(node: TreeNode) -> NodeOutline:
         nonlocal count
         position, count = count, count + 1
+        plugin = node.plugin.value if node.plugin else ""
         return NodeOutline(
             position,
-            node.plugin.value if node.plugin else "",
+            plugin,
             node.name.value if node.name else "",
             node.is_subtree,
-            tuple((attribute.name, attribute.value) for attribute in node.element.attributes),
+            tuple((port_key(plugin, attribute.name), attribute.value) for attribute in node.element.attributes),
             tuple(convert(child) for child in node.children),
         )
 

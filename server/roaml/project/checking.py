@@ -22,9 +22,10 @@ from roaml.interfaces.types import Kind
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
+from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import FileKind
-from roaml.model.machine import Dialect
+from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
@@ -222,7 +223,7 @@ class _Run:
 
     def key(self) -> object:
         """All that the findings depend on."""
-        parts: tuple[object, ...] = (self.source.digest, self.kind, self.system)
+        parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
                 machine = self.analysis.machine(self.path)
@@ -361,9 +362,21 @@ class _Run:
             structs.complete,
             self.analysis.interface,
             events.get,
+            self._machine_gaps(machine),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
+
+    def _machine_gaps(self, machine: Machine) -> tuple[PlacedGap, ...]:
+        automata = self.system.automata_of(self.path) if self.system else ()
+        if not any(automaton.outline.gaps for automaton in automata):
+            return ()
+        return self.analysis.machine_gaps(self.path, machine, self.analysis.typed_in(self.path, self.system_path))
+
+    def _gaps(self) -> tuple[PlacedGap, ...]:
+        """The gaps of the system that have their cause in this file."""
+        gaps = self.analysis.gaps(self.system_path) if self.system_path else ()
+        return tuple(placed for path, placed in gaps if path == self.path)
 
     def _tree_context(self) -> TreeContext | None:
         file, document = self.analysis.tree(self.path), self.analysis.document(self.path)
@@ -371,7 +384,8 @@ class _Run:
             return None
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
-        return TreeContext(self.source, document, file, self.system, outlines, self._missing_includes(), older)
+        missing, interface = self._missing_includes(), self.analysis.interface
+        return TreeContext(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
@@ -404,8 +418,9 @@ class _Run:
             return None
         size = size_of_translation(self.analysis, self.path)
         assert size is not None
-        files = self.analysis.listed(self.path)
-        return SystemContext(self.source, document, file, files, system, size, self.limits)
+        files, gaps = self.analysis.listed(self.path), self._gaps()
+        interface = self.analysis.interface
+        return SystemContext(self.source, document, file, files, system, interface, gaps, size, self.limits)
 
     def _structs_context(self) -> StructsContext:
         declarations = self.analysis.struct_declarations(self.path)

@@ -38,8 +38,6 @@ def check(context: SystemContext) -> Iterator[Finding]:
 def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
     """A machine that is listed as a plugin and is none, or the other way round: another file is meant."""
     system, section = context.system, listed.input.section
-    if not system.readable:
-        return
     ticked = section == "node_models" and listed.path in system.ticked_nodes
     same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")
     plugins = list(same) if ticked else []
