@@ -13,14 +13,15 @@ import time
 from typing import Any
 
 from as2fm_lsp.write import write_file
+from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
 from roaml.smc.goal import Question
 from roaml.smc.run import Options, Tally
 from roaml.smc.stored import tally_from_json
 
 VERSION = 3
-LARGEST = 64 << 20
-"""Bytes; a file of some hundred properties has a few million."""
+MAX_STATE = 64 * MEGABYTE
+"""Bytes; the state of some hundred properties has a few million."""
 PAUSE = 1.0
 """Seconds between two times of writing."""
 
@@ -85,17 +86,14 @@ class State:
 
     def _read(self) -> None:
         try:
-            if not os.path.isfile(self.path) or os.path.getsize(self.path) > LARGEST:
-                raise ValueError
-            with open(self.path, encoding="utf-8") as file:
-                value = json.load(file)
+            value = json.loads(required(self.path, MAX_STATE).decode("utf-8"))
         except (ValueError, RecursionError):
             value = None
         if not isinstance(value, dict) or "version" not in value:
-            raise StateError(f"{self.path} is no state of a verification")
+            raise StateError(f"{self.path} is not the state of a verification")
         if value["version"] != VERSION:
             raise StateError(f"{self.path} was written by another version; remove it to begin again")
         properties = value.get("properties")
         if not isinstance(properties, dict) or not all(isinstance(each, dict) for each in properties.values()):
-            raise StateError(f"{self.path} is no state of a verification")
+            raise StateError(f"{self.path} is not the state of a verification")
         self._properties = properties

@@ -33,6 +33,7 @@ class Reason(enum.Enum):
     UNKNOWN_PACKAGE = "unknown package"
     UNKNOWN_TYPE = "the package has no such type"
     UNREADABLE = "the file cannot be read"
+    TOO_LARGE = "it holds too many fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class NotFound:
 
     `wanted` is the name as asked for. `close` are names of the same kind, `package/Name`, the nearest first.
     `other_kind` is set if the type exists but is, say, a service and not a message. `looked_in` are the places in
-    words. `path` is the file that could not be read.
+    words. `path` is the file that could not be read. `size` tells in words how large a type is that is too large.
     """
 
     reason: Reason
@@ -51,6 +52,7 @@ class NotFound:
     other_kind: Kind | None = None
     looked_in: tuple[str, ...] = ()
     path: str | None = None
+    size: str = ""
 
     @property
     def message(self) -> str:
@@ -69,6 +71,8 @@ class NotFound:
                 return f"the package `{package}` has no {kind} `{name}`{hint}"
             case Reason.UNREADABLE:
                 return f"the definition of `{self.wanted}` cannot be read: {self.path}"
+            case Reason.TOO_LARGE:
+                return f"`{self.wanted}` is too large: with all messages in it, it has {self.size}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import NamedTuple, Protocol, TypeAlias
 
+from roaml.disk import read
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
 
@@ -235,11 +236,8 @@ def _named_files(folder: str, kind: Kind) -> Mapping[str, str]:
 
 def _package_name(folder: str) -> str:
     """The name in the folder's `package.xml`, else the folder's own."""
-    try:
-        with open(os.path.join(folder, "package.xml"), "rb") as file:
-            head = file.read(_PACKAGE_XML_HEAD).decode("utf-8", "replace")
-    except OSError:
-        head = ""
+    content = read(os.path.join(folder, "package.xml"), head=_PACKAGE_XML_HEAD)
+    head = content.decode("utf-8", "replace") if isinstance(content, bytes) else ""
     name = _XML_NAME.search(_XML_COMMENT.sub("", head))
     return name[1] if name else os.path.basename(folder)
 

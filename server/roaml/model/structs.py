@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
+from roaml.model.nesting import Extent, extents
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
 from roaml.text import Span
 from roaml.xml import Document, Element
@@ -71,29 +72,31 @@ def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
     """All structs by name, their members resolved. Of equal names the last counts.
 
     A member whose type is not known, or that would contain the struct itself, has an unknown type, and so has a struct
-    whose declaration is not complete.
+    whose declaration is not complete, or that is too large.
     """
     by_name = {outline.name: outline for outline in outlines}
     resolved: dict[str, Type] = {}
+    for name, extent in extents(_graph(by_name)).items():
+        members = tuple((m, _member_type(t, resolved)) for m, t in by_name[name].members)
+        known = by_name[name].complete and not extent.is_too_large
+        resolved[name] = Struct(name, members) if known else UNKNOWN
+    return {name: resolved[name] for name in by_name}
 
-    def resolve(name: str, inside: tuple[str, ...]) -> Type:
-        if name in BASE_TYPES:
-            return BASE_TYPES[name]
-        if name in resolved:
-            return resolved[name]
-        outline = by_name.get(name)
-        if outline is None or name in inside:
-            return UNKNOWN
-        path = (*inside, name)
-        members = tuple((m, wrap(resolve(t.base, path), t.dimensions) if t else UNKNOWN) for m, t in outline.members)
-        struct = Struct(name, members) if outline.complete else UNKNOWN
-        if not inside:
-            resolved[name] = struct
-        return struct
 
-    for name in by_name:
-        resolve(name, ())
-    return resolved
+def _member_type(name: TypeName | None, resolved: Mapping[str, Type]) -> Type:
+    if name is None:
+        return UNKNOWN
+    return wrap(BASE_TYPES.get(name.base) or resolved.get(name.base, UNKNOWN), name.dimensions)
+
+
+def struct_extents(outlines: Mapping[str, StructOutline]) -> Mapping[str, Extent]:
+    """How large structs are with all that is in them."""
+    return extents(_graph(outlines))
+
+
+def _graph(by_name: Mapping[str, StructOutline]) -> dict[str, list[str]]:
+    """Struct -> the types of its members."""
+    return {name: [t.base if t else "" for _, t in outline.members] for name, outline in by_name.items()}
 
 
 def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:

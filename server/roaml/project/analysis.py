@@ -16,9 +16,10 @@ from functools import cached_property
 from typing import TypeVar
 
 from roaml.diagnostics import Finding
+from roaml.disk import Problem
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.interfaces.registry import NotFound, Registry
-from roaml.interfaces.types import Definition
+from roaml.interfaces.registry import NotFound, Reason, Registry
+from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
@@ -32,8 +33,9 @@ from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
+from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
-from roaml.model.ros import InterfaceType, RepeatedType, interface_type
+from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.spelling import close_names
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
@@ -49,7 +51,7 @@ from roaml.model.system_file import (
 )
 from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
-from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
+from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile, Span
 from roaml.xml import Document
@@ -213,13 +215,20 @@ class Analysis:
 
     def _find_interface(self, kind: str, name: str) -> InterfaceType | NotFound:
         assert kind in ("msg", "srv", "action")
-        definition = self.registry.resolve(kind, name)  # type: ignore[arg-type]
+        key: tuple[Kind, str] = (kind, name)  # type: ignore[assignment]
+        definition = self.registry.resolve(*key)
         if isinstance(definition, NotFound):
             return definition
         parts = tuple(self._closure(definition))
+        extent = self.memo.get("interface extent", key, parts, lambda: extent_of(parts))
+        if extent.is_too_large:
+            fields = f"{extent.fields:,} fields (at most {MAX_FIELDS:,} are read)"
+            deep = f"messages in each other {extent.depth} deep (at most {MAX_DEPTH} are read)"
+            size = fields if extent.fields > MAX_FIELDS else deep
+            return NotFound(Reason.TOO_LARGE, key[0], name, size=size)
         return self.memo.get(
             "interface",
-            (kind, name),
+            key,
             parts,
             lambda: interface_type(definition, lambda n: self.registry.resolve("msg", n)),
         )

@@ -16,6 +16,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
+from roaml.disk import Problem
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
@@ -29,7 +30,7 @@ from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.edits import laid_out
-from roaml.project.files import MAX_CHARACTERS, Problem
+from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.disk import MAX_CONFIGURATION, NotReadableError, Problem, required
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
@@ -67,13 +68,15 @@ def read_settings(folder: str, base: Settings) -> tuple[Settings, tuple[str, ...
     for name, keys in ((CONFIG_FILE, ()), ("pyproject.toml", ("tool", "as2fm"))):
         path = os.path.join(folder, name)
         try:
-            with open(path, "rb") as file:
-                table: Any = tomllib.load(file)
-        except FileNotFoundError:
-            continue
-        except (OSError, ValueError) as error:
+            table: Any = tomllib.loads(required(path, MAX_CONFIGURATION).decode("utf-8").replace("\r\n", "\n"))
+        except NotReadableError as error:
+            if error.problem is Problem.MISSING:
+                continue
+            return base, (str(error),)
+        except (ValueError, RecursionError) as error:
             if name == CONFIG_FILE:
-                return base, (f"{path}: {error}",)
+                words = "brackets are nested too deep" if isinstance(error, RecursionError) else str(error)
+                return base, (f"{path}: {words}",)
             continue
         for key in keys:
             table = table.get(key) if isinstance(table, dict) else None

@@ -20,6 +20,7 @@ from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program
 from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
+from roaml.smc.size import check_size
 
 DEPTH = 15_000
 """Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
@@ -55,6 +56,7 @@ class Checker:
         depth = sys.getrecursionlimit()
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
+            check_size(model, chosen)
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
             self.asked: tuple[Asked, ...] = ()
             self.refused: dict[str, FaultError] = {}
