@@ -30,8 +30,7 @@ from as2fm_lsp.session import Session
 from as2fm_lsp.tcp import accepted
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
-from roaml.model.kinds import EXTENSIONS
-from roaml.project.settings import CONFIG_FILE
+from roaml.model.kinds import CONFIG_FILES, EXTENSIONS
 
 log = logging.getLogger(__name__)
 
@@ -179,7 +178,7 @@ def _documents(server: Server) -> None:
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         path = session.convert.path(params.text_document.uri)
         session.look_again()
-        if os.path.basename(path) in (CONFIG_FILE, "pyproject.toml"):
+        if os.path.basename(path) in CONFIG_FILES:
             session.configure()
             server.tell_problems()
         diagnostics.schedule(path)
@@ -250,7 +249,7 @@ def _workspace(server: Server) -> None:
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         paths = [session.convert.path(change.uri) for change in params.changes]
         session.look_again()
-        if any(os.path.basename(path) in (CONFIG_FILE, "pyproject.toml") for path in paths):
+        if any(os.path.basename(path) in CONFIG_FILES for path in paths):
             session.configure()
             server.tell_problems()
         if any(change.type is not types.FileChangeType.Changed for change in params.changes):
@@ -296,7 +295,7 @@ async def _watch(server: Server) -> None:
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
         return
-    patterns = [f"**/*{extension}" for extension in EXTENSIONS] + [f"**/{CONFIG_FILE}", "**/pyproject.toml"]
+    patterns = [*(f"**/*{extension}" for extension in EXTENSIONS), *(f"**/{name}" for name in CONFIG_FILES)]
     options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
     registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:

@@ -27,7 +27,8 @@ from as2fm_lsp.verification.subject import Subject, load
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.project.settings import ament_prefixes, find_settings
+from roaml.project.configuration import find_settings
+from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked, with_threshold
 from roaml.smc.model import Checker

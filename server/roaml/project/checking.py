@@ -25,12 +25,13 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.configuration import missing_folders
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS, Problem
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, suppressions
-from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
+from roaml.rules import BY_CODE, RULES, file_too_large, invalid_setting, toml_syntax, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
 from roaml.rules.rule import (
     FileContext,
@@ -47,6 +48,7 @@ log = logging.getLogger(__name__)
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
+_OF_CONFIGURATION = (toml_syntax.RULE.code, invalid_setting.RULE.code)
 
 _GRAMMARS: dict[FileKind, Grammar] = {
     FileKind.SYSTEM: SYSTEM,
@@ -132,7 +134,11 @@ class Checker:
 
     def _wanted(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
-        return code == _CRASH or (code not in settings.ignore and (not settings.select or code in settings.select))
+        if code == _CRASH:
+            return True
+        # A choice of rules must not hide that it was not understood.
+        chosen = not settings.select or code in settings.select or code in _OF_CONFIGURATION
+        return chosen and code not in settings.ignore
 
     def _publish(self, path: str, finding: Finding) -> Diagnostic:
         severity = self.settings.severities.get(finding.code)
@@ -212,6 +218,8 @@ class _Run:
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
+            case FileKind.CONFIGURATION:
+                return (*parts, self._configuration_findings())
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
@@ -280,6 +288,8 @@ class _Run:
                 return FileContext(self.source, findings)
             case FileKind.INTERFACE:
                 return FileContext(self.source, self._interface_findings())
+            case FileKind.CONFIGURATION:
+                return FileContext(self.source, self._configuration_findings())
         document = self.analysis.document(self.path)
         assert document is not None
         grammar = self._grammar()
@@ -291,6 +301,10 @@ class _Run:
         kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
         package = self.path.replace("\\", "/").split("/")[-3:-2]
         return parse_interface(self.source.text, package[0] if package else "package", name, kind)[1]
+
+    def _configuration_findings(self) -> tuple[Finding, ...]:
+        configuration = self.analysis.configuration(self.path)
+        return (*configuration.findings, *missing_folders(configuration)) if configuration else ()
 
     def _grammar(self) -> Grammar | None:
         if self.kind is FileKind.MACHINE:
