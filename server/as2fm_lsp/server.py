@@ -42,7 +42,8 @@ class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
     `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
-    client that shows places, `show_counterexample` the one that shows why a property fails; "" if it has none.
+    client that shows places, `show_counterexample` the one that shows why a property fails, `trigger_suggest` the one
+    that asks for completions; "" if it has none.
     `verified` is what is known of properties.
     """
 
@@ -51,6 +52,7 @@ class Server(LanguageServer):
         self.is_shut_down = False
         self.show_references = ""
         self.show_counterexample = ""
+        self.trigger_suggest = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
         self.session = Session(self._checkpoint)
@@ -203,6 +205,7 @@ def _workspace(server: Server) -> None:
         session.configure(options.get("settings") or {})
         server.show_references = str(options.get("showReferences") or "")
         server.show_counterexample = str(options.get("showCounterexample") or "")
+        server.trigger_suggest = str(options.get("triggerSuggest") or "")
         general = params.capabilities.general
         if general is not None and general.stale_request_support is not None:
             server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)
