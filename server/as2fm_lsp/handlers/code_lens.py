@@ -46,8 +46,9 @@ def register(server: Server) -> None:
         uri, symbol = str(data[0]), unpack(data[1])
         if lens.command is not None or symbol is None:
             return lens
-        analysis = session.moment().snapshot(session.convert.path(uri)).analysis
-        found = counted(analysis, symbol)
+        path = session.convert.path(uri)
+        analysis = session.moment().snapshot(path).analysis
+        found = counted(analysis, symbol, path)
         places = [
             session.convert.location(source, each)
             for each in found.places

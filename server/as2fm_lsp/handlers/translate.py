@@ -16,6 +16,7 @@ from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
 from as2fm_lsp.write import write_file
 from roaml import api
+from roaml.ide.system_names import system_names
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.project.memo import Interrupted
@@ -113,8 +114,8 @@ def _while_wanted(server: Server, pieces: Iterable[str]) -> Iterator[str]:
 
 def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types.CodeAction]:
     """One for each system that a file belongs to; a system file belongs to itself."""
-    for system in snapshot.analysis.memberships.get(path, ()):
-        title = TITLE if system == path else f"Translate {os.path.basename(system)} to JANI"
+    for system, name in system_names(snapshot.analysis.memberships.get(path, ())).items():
+        title = TITLE if system == path else f"Translate {name} to JANI"
         command = types.Command(title, COMMAND, arguments=[convert.uri(system)])
         yield types.CodeAction(title, kind=types.CodeActionKind.Source, command=command)
 

@@ -29,6 +29,7 @@ from as2fm_lsp.verification.wishes import Wishes, wishes
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.pictures import lit
+from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -131,11 +132,11 @@ def register(server: Server) -> None:
 
 def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
     """At each property of a system, and at the system file."""
-    systems = on.analysis.memberships.get(on.path, ())
-    for system in systems:
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
         if not os.path.isabs(system):
             continue
-        uri, where = on.convert.uri(system), f" in {os.path.basename(system)}" if len(systems) > 1 else ""
+        uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
         found = verifiable(on.analysis, system)
         file = on.analysis.system_file(system)
         if system == on.path and file is not None and found:
@@ -155,13 +156,15 @@ def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
 def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.InlayHint]:
     """What is known, behind the name of each property."""
     span = on.span(within)
-    for system in on.analysis.memberships.get(on.path, ()):
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
+        where = f" in {name}" if len(systems) > 1 else ""
         for each in verifiable(on.analysis, system) if server.verified.has(system) else ():
             known = server.verified.get(system, each.name)
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
                 continue
             mark = "✗" if missed(known.result) else "✓" if known.result.verdicts else "="
-            text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}"
+            text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
             whole = as_text([known.result], "").strip()
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
