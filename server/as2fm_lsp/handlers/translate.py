@@ -12,6 +12,7 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.convert import Converter
+from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
 from as2fm_lsp.write import write_file
@@ -66,9 +67,9 @@ def register(server: Server) -> None:
                     return None
                 raise
             except api.ModelError as error:
-                count = len(error.result.diagnostics)
-                errors = "1 error" if count == 1 else f"{count} errors"
+                errors = counted(error.result.diagnostics)
                 _tell(server, types.MessageType.Error, f"{name} has {errors} and was not translated.")
+                await show(server, error.result.snapshot, error.result.diagnostics)
                 return None
             except (api.PathError, OutputError) as error:
                 _tell(server, types.MessageType.Error, str(error))

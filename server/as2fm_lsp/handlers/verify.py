@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,9 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.handlers.asked import Asked as Document
+from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress, progress
+from as2fm_lsp.shown import shown
 from as2fm_lsp.verification import background
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
 from as2fm_lsp.verification.expectations import Expectation, judge
@@ -77,13 +79,13 @@ def register(server: Server) -> None:
         wanted = wishes(session.client_settings, arguments[2] if len(arguments) > 2 else None)
         for problem in wanted.problems:
             _tell(server, types.MessageType.Warning, problem)
-        async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as shown:
+        async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
             try:
-                with server.requests.cancelled_by(shown.token):
-                    run = _Run(server, shown, path, wanted)
+                with server.requests.cancelled_by(bar.token):
+                    run = _Run(server, bar, path, wanted)
                     return await run.answer([str(name) for name in names] if isinstance(names, Sequence) else [])
             except Interrupted:
-                if shown.is_cancelled:
+                if bar.is_cancelled:
                     return None
                 raise
             finally:
@@ -130,11 +132,13 @@ def register(server: Server) -> None:
         }
 
 
-def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
-    """At each property of a system, and at the system file."""
+def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[types.CodeLens]:
+    """At each property of a system that is not `broken`, and at the system file. Results stand in the hints behind the
+    names, and in the lenses only where no hints are shown."""
+    tells = not _shows_hints(server)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
-        if not os.path.isabs(system):
+        if system in broken or not os.path.isabs(system):
             continue
         uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
         found = verifiable(on.analysis, system)
@@ -146,7 +150,8 @@ def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
             if each.path != on.path:
                 continue
             known = server.verified.get(system, each.name)
-            title = " · ".join([f"{TITLE}{where}", *_words(server, on.analysis, system, known)])
+            words = _words(server, on.analysis, system, known) if tells else []
+            title = " · ".join([f"{TITLE}{where}", *words])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
             if known and server.show_counterexample and missed(known.result) and speaking_against(known.result):
                 show = types.Command("Show counterexample", server.show_counterexample, arguments=[uri, each.name])
@@ -170,6 +175,11 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
 
 
+def _shows_hints(server: Server) -> bool:
+    document = server.client_capabilities.text_document
+    return bool(document and document.inlay_hint) and shown(server.session.client_settings).results
+
+
 def _words(server: Server, analysis: Analysis, system: str, known: Known | None) -> list[str]:
     if known is None:
         return []
@@ -183,9 +193,9 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
 class _Run:
     """One call of the command."""
 
-    def __init__(self, server: Server, shown: Progress, path: str, wanted: Wishes) -> None:
+    def __init__(self, server: Server, bar: Progress, path: str, wanted: Wishes) -> None:
         self.server = server
-        self.shown = shown
+        self.bar = bar
         self.path = path
         self.wanted = wanted
 
@@ -193,11 +203,12 @@ class _Run:
         server, path = self.server, self.path
         name = os.path.basename(path)
         try:
-            await self.shown.step("checking")
+            await self.bar.step("checking")
             system = api.loaded(server.session.moment().snapshot(path), path)
         except api.ModelError as error:
-            count = len(error.result.diagnostics)
-            self.say_wrong(f"{name} has {'1 error' if count == 1 else f'{count} errors'} and was not verified.")
+            self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
+            if not self.wanted.is_silent:
+                await show(server, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
             self.say_wrong(str(error))
@@ -205,14 +216,14 @@ class _Run:
         texts = fingerprint(system.analysis, path)
         subject = server.verified.subject(texts)
         if subject is None:
-            await self.shown.step("translating")
+            await self.bar.step("translating")
             subject = of_system(system)
             server.verified.keep_subject(texts, subject)
         known = [each.name for each in subject.model.properties]
         rows: list[Json] = []
         for each in dict.fromkeys(names or known):
             try:
-                await self.shown.step(each)
+                await self.bar.step(each)
                 began = time.monotonic()
                 checker = api.checker(subject.model, [each])
                 asked = self.with_threshold(checker.asked[0])
@@ -238,7 +249,7 @@ class _Run:
     async def traces(self, checker: Checker, asked: Asked) -> Answer:
         def tell(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, self.wanted.options, tally), (), 0)
-            self.shown.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
+            self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
         return await background.answer(checker, asked, self.wanted.options, self.server.requests.checkpoint, tell)
 
