@@ -88,10 +88,9 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     const uri = system && server.client?.code2ProtocolConverter.asUri(system);
     if (uri === undefined) return;
-    if (await tests.verify(uri, [])) {
-        await vscode.commands.executeCommand("workbench.view.testing.focus");
-        return;
-    }
+    // First: what is run may lead to an error, which then keeps the focus.
+    await vscode.commands.executeCommand("workbench.view.testing.focus");
+    if (await tests.verify(uri, [])) return;
     const name = vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
     void vscode.window.showInformationMessage(vscode.l10n.t("{0} lists no properties that can be verified.", name));
 }
