@@ -44,10 +44,10 @@ class Refresh:
         session = self._server.session
         moment = session.moment()
         systems = {
-            system: analysis.system(system)
+            system: (snapshot.analysis.system(system), len(snapshot.checker.errors(system)))
             for path in moment.versions
-            for analysis in (moment.snapshot(path).analysis,)
-            for system in analysis.memberships.get(path, ())
+            for snapshot in (moment.snapshot(path),)
+            for system in snapshot.analysis.memberships.get(path, ())
         }
         verified = self._server.verified
         stale = [verified.is_stale(known, moment.snapshot(system).analysis, system) for system, known in verified.all()]

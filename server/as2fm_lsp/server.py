@@ -14,7 +14,7 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
 
 from lsprotocol import types
@@ -35,8 +35,7 @@ from as2fm_lsp.sockets import Client
 from as2fm_lsp.trust import DID_CHANGE, Trust
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
-from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
-from roaml.project.settings import CONFIG_FILE
+from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, PROJECT_EXTENSION
 
 log = logging.getLogger(__name__)
 
@@ -48,9 +47,9 @@ class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
     `is_shut_down` tells whether the client has asked it to shut down. `has_parent` tells whether the client has started
-    this process, so that the server ends with it. `show_references` is the command of the
-    client that shows places, `show_counterexample` the one that shows why a property fails; "" if it has none.
-    `verified` is what is known of properties. `trust` says whether the user trusts the workspace.
+    this process, so that the server ends with it. `show_references` is the command of the client that shows places,
+    `show_counterexample` the one that shows why a property fails, `trigger_suggest` the one that asks for completions;
+    "" if it has none. `verified` is what is known of properties. `trust` says whether the user trusts the workspace.
     """
 
     protocol: Protocol
@@ -61,6 +60,7 @@ class Server(LanguageServer):
         self.has_parent = False
         self.show_references = ""
         self.show_counterexample = ""
+        self.trigger_suggest = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
         self.trust = Trust()
@@ -69,6 +69,12 @@ class Server(LanguageServer):
         self.verified = Verified()
         self.refresh = Refresh(self)
         self.diagnostics.finished = self.refresh.look
+
+    def use_commands(self, options: Mapping[str, Any]) -> None:
+        """Take over the names of the client's commands from its `initializationOptions`."""
+        self.show_references = str(options.get("showReferences") or "")
+        self.show_counterexample = str(options.get("showCounterexample") or "")
+        self.trigger_suggest = str(options.get("triggerSuggest") or "")
 
     def feature(self, feature_name: str, options: Any = None) -> Callable[[Any], Any]:
         register = super().feature(feature_name, options)
@@ -211,7 +217,7 @@ def _documents(server: Server) -> None:
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         path = session.convert.path(params.text_document.uri)
         session.look_again()
-        if os.path.basename(path) in (CONFIG_FILE, "pyproject.toml"):
+        if os.path.basename(path) in CONFIG_FILES:
             session.configure()
             server.tell_problems()
         diagnostics.schedule(path)
@@ -237,8 +243,7 @@ def _workspace(server: Server) -> None:
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
         server.trust.set(options.get("trusted", True))
         session.configure(options.get("settings") or {})
-        server.show_references = str(options.get("showReferences") or "")
-        server.show_counterexample = str(options.get("showCounterexample") or "")
+        server.use_commands(options)
         general = params.capabilities.general
         if general is not None and general.stale_request_support is not None:
             server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)
@@ -285,7 +290,7 @@ def _workspace(server: Server) -> None:
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         paths = [session.convert.path(change.uri) for change in params.changes]
         session.look_again()
-        if any(os.path.basename(path) in (CONFIG_FILE, "pyproject.toml") for path in paths):
+        if any(os.path.basename(path) in CONFIG_FILES for path in paths):
             session.configure()
             server.tell_problems()
         if any(change.type is not types.FileChangeType.Changed for change in params.changes):
@@ -337,10 +342,8 @@ async def _watch(server: Server) -> None:
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
         return
-    patterns = [f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)] + [
-        f"**/{CONFIG_FILE}",
-        "**/pyproject.toml",
-    ]
+    extensions = (*EXTENSIONS, PROJECT_EXTENSION)
+    patterns = [*(f"**/*{extension}" for extension in extensions), *(f"**/{name}" for name in CONFIG_FILES)]
     options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
     registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:

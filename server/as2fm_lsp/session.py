@@ -20,9 +20,10 @@ from lsprotocol import types
 
 from as2fm_lsp.buffer import MARK, edited
 from as2fm_lsp.convert import Converter
+from roaml.project.configuration import find_settings
 from roaml.project.discover import is_inside
 from roaml.project.memo import go_on
-from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings, settings_from
+from roaml.project.settings import Settings, ament_prefixes, enclosing_root, settings_from
 from roaml.project.workspace import Snapshot, Workspace
 
 log = logging.getLogger(__name__)
@@ -213,8 +214,10 @@ class Session:
     def _settings(self, folder: str) -> Settings:
         """The configuration in a folder, with the client's settings added."""
         settings, problems = find_settings(folder) if os.path.isabs(folder) else (Settings(), ())
-        settings, more = settings_from(_kebab(self._client_settings), folder, settings, "the editor's settings")
-        self.problems += [*problems, *more]
+        settings, mistakes = settings_from(_kebab(self._client_settings), folder, settings)
+        if not settings.origin:  # else they are among the diagnostics of that file
+            self.problems += problems
+        self.problems += [f"In the editor's settings: {each.message}." for each in mistakes]
         return replace(settings, ament_prefixes=ament_prefixes())
 
 

@@ -35,11 +35,12 @@ from roaml.lower import lower
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
+from roaml.project.configuration import find_settings
 from roaml.project.discover import is_inside
 from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
-from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings
+from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.source_map import SourceMap
 from roaml.project.source_map import source_map as _source_map
 from roaml.project.translation import program_of, properties_of
@@ -421,8 +422,10 @@ def _workspace(
 
 
 def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
-    """The files that are reported on, in the order in which they were named."""
+    """The files that are reported on: the configuration, and what was named, in that order."""
     analysis, found = snapshot.analysis, dict[str, None]()
+    if origin := snapshot.checker.settings.origin:  # what is wrong in it matters to all of them
+        found[origin] = None
     for path in named:
         if path not in kinds:
             inside = [each for each in snapshot.files() if is_inside(each, path)]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,7 @@ def test_roots_are_where_the_systems_of_a_single_file_are_looked_for(  # type: i
     (tmp_path / ".git").mkdir()
     clock.write(tmp_path / "models", clock=clock.UNHEARD_CLOCK)
     assert check("models/clock.ascxml").codes == ["topic-without-subscriber"]
+    (tmp_path / "elsewhere").mkdir()
     configure('roots = ["elsewhere"]')
     assert check("models/clock.ascxml").codes == []
     configure('roots = ["elsewhere", "models"]')
@@ -113,51 +115,137 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    ("text", "complaint"),
+    ("text", "at", "complaint"),
     [
-        ("ingore = []", "unknown setting `ingore`; there are exclude, ignore, "),
-        ("ignore = 1", "`ignore` is not a list of texts"),
-        ('ignore = ["undeclared-variable", 1]', "`ignore` is not a list of texts"),
-        ('ignore = ["no-such-rule"]', "`ignore` names `no-such-rule`, and there is no such rule"),
-        ('select = ["no-such-rule"]', "`select` names `no-such-rule`, and there is no such rule"),
-        ('severity = { no-such-rule = "hint" }', "`severity` names `no-such-rule`, and there is no such rule"),
-        ('severity = { undeclared-variable = "fatal" }', "`severity` is not a table of codes with hint, information"),
-        ('severity = { undeclared-variable = ["hint"] }', "`severity` is not a table of codes"),
-        ("severity = { undeclared-variable = {} }", "`severity` is not a table of codes"),
-        ('severity = "hint"', "`severity` is not a table of codes"),
-        ('warnings-as-errors = "yes"', "`warnings-as-errors` is not true or false"),
-        ("roots = { a = 1 }", "`roots` is not a list of texts"),
-        ("ros-path = [[]]", "`ros-path` is not a list of texts"),
-        ("exclude = 2026-01-01", "`exclude` is not a list of texts"),
+        ("ingore = []", "ingore", "there is no setting `ingore`; did you mean `ignore`?"),
+        ("[x]\na = 1", "x", "there is no setting `x`; there are exclude, ignore, roots, ros-path"),
+        ("ignore = 1", "1", "`ignore` must be a list of strings"),
+        ('ignore = ["undeclared-variable", 1]', '["undeclared-variable", 1]', "`ignore` must be a list of strings"),
+        ('ignore = ["no-such-rule"]', '"no-such-rule"', "there is no rule `no-such-rule`"),
+        ("select = 'late-event-date'", "'late-event-date'", "there is no rule `late-event-date`; did you mean `late-"),
+        ('severity = { no-such-rule = "hint" }', "no-such-rule", "there is no rule `no-such-rule`"),
+        (
+            'severity = { undeclared-variable = "fatal" }',
+            '"fatal"',
+            "the severity of `undeclared-variable` must be one",
+        ),
+        ('severity = { undeclared-variable = ["hint"] }', '["hint"]', "the severity of `undeclared-variable` must be"),
+        (
+            "severity = { undeclared-variable = {} }",
+            "{}",
+            "the severity of `undeclared-variable` must be one of `hint`",
+        ),
+        ('severity.undeclared-variable = "eror"', '"eror"', "the severity of `undeclared-variable` must be one of "),
+        ('severity = "hint"', '"hint"', "`severity` must be a table of rule codes and severities"),
+        ('warnings-as-errors = "yes"', '"yes"', "`warnings-as-errors` must be true or false"),
+        ("roots = { a = 1 }", "{ a = 1 }", "`roots` must be a list of strings"),
+        ("ros-path = [[]]", "[[]]", "`ros-path` must be a list of strings"),
+        ("exclude = 2026-01-01 07:32:00 # day", "2026-01-01 07:32:00", "`exclude` must be a list of strings"),
     ],
 )
-def test_mistakes_in_it_are_wrong_use(check: Command, tmp_path: Path, configure, text: str, complaint: str) -> None:  # type: ignore[no-untyped-def]
+def test_mistakes_in_it_are_diagnostics(  # type: ignore[no-untyped-def]
+    check: Command, tmp_path: Path, configure, text: str, at: str, complaint: str
+) -> None:
     clock.write(tmp_path)
     path = configure(text)
+    whole = path.read_text()
+    if path.name == "pyproject.toml":
+        whole = whole.replace("[x]", "[tool.as2fm.x]")
+        path.write_text(whole)
     done = check(".")
+    (row,) = done.rows
+    assert done.status == 1
+    assert (row["file"], row["severity"], row["code"]) == (path.name, "error", "invalid-setting")
+    assert row["message"].startswith(complaint)
+    line = whole.splitlines()[row["line"] - 1]
+    assert line[row["column"] - 1 : row["end_column"] - 1] == at
+
+
+@pytest.mark.parametrize("arguments", [("translate",), ("verify",), ("format", "--check")])
+def test_other_commands_refuse_it_with_the_place(command: Command, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    clock.write(tmp_path)
+    (tmp_path / "as2fm.toml").write_text("\ningore = []\n")
+    done = command(*arguments, "main.xml")
     assert (done.status, done.out) == (2, "")
-    assert done.err.startswith(f"as2fm-lsp: {path}: {complaint}")
-    assert len(done.err.splitlines()) == 1
+    assert f"{tmp_path / 'as2fm.toml'}:2:1: there is no setting `ingore`" in done.err
 
 
 def test_all_mistakes_are_told_at_once(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path)
     (tmp_path / "as2fm.toml").write_text("a = 1\nb = 2\nignore = 3\n")
-    assert len(check(".").err.splitlines()) == 3
+    assert [row["line"] for row in check(".").rows] == [1, 2, 3]
 
 
-@pytest.mark.parametrize("content", [b"ignore = [", b"\xff\xfe", b"\0", b"a = 1\na = 2"])
-def test_a_file_that_is_no_toml(check: Command, tmp_path: Path, content: bytes) -> None:
+def test_what_is_right_is_used(check: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=BOTH)
+    (tmp_path / "as2fm.toml").write_text('ignore = ["undeclared-variable", "no-such-rule"]\n')
+    assert check(".").codes == ["invalid-setting", "topic-without-subscriber"]
+
+
+def test_a_choice_of_rules_that_do_not_exist_hides_nothing(check: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=BOTH)
+    (tmp_path / "as2fm.toml").write_text('select = ["no-such-rule"]\n')
+    assert check(".").codes == ["invalid-setting", "topic-without-subscriber", "undeclared-variable"]
+    (tmp_path / "as2fm.toml").write_text('select = ["topic-without-subscriber", "no-such-rule"]\n')
+    assert check(".").codes == ["invalid-setting", "topic-without-subscriber"]
+
+
+def test_the_configuration_around_what_is_checked(check: Command, tmp_path: Path) -> None:
+    """It may lie above all that is named; in a folder below, where it is not in force, it is checked as well."""
+    clock.write(tmp_path / "models")
+    (tmp_path / "as2fm.toml").write_text("ingore = []\n")
+    (tmp_path / "models" / "inner").mkdir()
+    (tmp_path / "models" / "inner" / "as2fm.toml").write_text("ignore = 1\n")
+    for named in ("models", "models/main.xml", "models/clock.ascxml", "as2fm.toml"):
+        files = [row["file"] for row in check(named).rows]
+        assert files == ["as2fm.toml", *(["models/inner/as2fm.toml"] if named == "models" else [])], named
+
+
+@pytest.mark.parametrize("key", ["ros-path", "roots"])
+def test_a_folder_that_is_not_there(check: Command, tmp_path: Path, configure, key: str) -> None:  # type: ignore[no-untyped-def]
+    clock.write(tmp_path)
+    path = configure(f'{key} = [".", "msgs"]')
+    done = check(".")
+    (row,) = done.rows
+    assert (row["file"], row["severity"], row["code"]) == (path.name, "warning", "missing-folder")
+    assert path.read_text().splitlines()[row["line"] - 1][row["column"] - 1 : row["end_column"] - 1] == '"msgs"'
+    assert done.status == 0
+    assert check("main.xml", "--warnings-as-errors").status == 1
+    (tmp_path / "msgs").mkdir()
+    assert check(".").rows == []
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (b"ignore = [", 1),
+        (b"\xff\xfe", 1),
+        (b"\0", 1),
+        (b"roots = ['.']\r\na = 1\r\na = 2", 3),
+        (b"x = " + b"[" * 5000 + b"]" * 5000, 1),
+        (b"x = " + b"{a=" * 5000 + b"0" + b"}" * 5000, 1),
+    ],
+    ids=["open", "utf-16", "nul", "twice", "deep-list", "deep-table"],
+)
+def test_a_file_that_is_no_toml(check: Command, tmp_path: Path, content: bytes, line: int) -> None:
     clock.write(tmp_path)
     (tmp_path / "pyproject.toml").write_bytes(content)
     assert check(".").status == 0, "a pyproject.toml may be broken for reasons that are not ours"
     (tmp_path / "as2fm.toml").write_bytes(content)
     done = check(".")
-    assert done.status == 2
-    assert done.err.startswith(f"as2fm-lsp: {tmp_path / 'as2fm.toml'}: ")
+    assert done.status == 1
+    assert [(row["file"], row["line"], row["code"]) for row in done.rows] == [("as2fm.toml", line, "toml-syntax")]
 
 
 def test_a_folder_in_its_place(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path)
     (tmp_path / "as2fm.toml").mkdir()
-    assert check(".").status == 2
+    done = check(".")
+    assert (done.status, done.err) == (2, f"as2fm-lsp: {tmp_path / 'as2fm.toml'}: it is a folder\n")
+
+
+def test_a_pipe_in_its_place_is_not_waited_for(check: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    os.mkfifo(tmp_path / "as2fm.toml")
+    done = check(".")
+    assert (done.status, done.err) == (2, f"as2fm-lsp: {tmp_path / 'as2fm.toml'}: it is no regular file\n")

@@ -262,7 +262,7 @@ top  <ros_topic_subscriber name="x" topic="‸" type="std_msgs/Int32"/>
     /level : std_msgs/Int32 · Node, BT_plugin_1001_Walk, Other
     /plan
 
-top  <ros_topic_subscriber name="x"><topic>‸</topic></ros_topic_subscriber>
+walk  <ros_topic_subscriber name="x"><topic>‸</topic></ros_topic_subscriber>
     /level
     bt_get_input
 
@@ -487,6 +487,44 @@ property  {"name": "p", "expression": {"op": "F", "exp": "go.valid", "step-bound
 property  {"name": "p", ‸"expression": "a"}
     expression => "expression"
 """
+
+
+REPORTED = ("tree-element-in-node", "thread-element-outside-thread")
+
+
+@pytest.mark.parametrize("name", ["node.ascxml", "walk.ascxml"])
+@pytest.mark.parametrize(
+    "mark", ["data", "top", "entry", "go", "callback", "state", "walk", "tick", "thread", "in-thread"]
+)
+def test_no_element_is_offered_that_is_reported_at_once(name: str, mark: str) -> None:
+    state = '<state id="w"><!--in-thread--></state>'
+    thread = f'<ros_action_thread name="t" n_threads="1"><!--thread-->{state}</ros_action_thread>'
+    files = {**FILES, name: FILES[name].replace("</ascxml>", f"{thread}</ascxml>")}
+    if f"<!--{mark}-->" not in files[name]:
+        return
+    before, _, after = files[name].partition(f"<!--{mark}-->")
+
+    def moment(text: str) -> Snapshot:
+        workspace = Workspace((), Settings(), [path_of("main.xml")])
+        for each, content in {**files, name: text}.items():
+            workspace.open(path_of(each), content)
+        return workspace.snapshot()
+
+    found = complete(moment(f"{before}<{after}"), path_of(name), len(before) + 1)
+    assert found is not None
+    assert found.items
+    for item in found.items:
+        snapshot = moment(f"{before}<{plain(item.snippet)}{after}")
+        codes = {each.code for each in snapshot.checker.diagnostics(path_of(name))}
+        assert not codes.intersection(REPORTED), item.label
+
+
+def test_elements_of_plugins_are_offered_to_plugins() -> None:
+    labels = {item.label for found in offered("<!--walk-->", "<‸") for item in found.items}
+    assert {"bt_declare_port_in", "bt_declare_port_out"} <= labels
+    labels = {item.label for found in offered("<!--top-->", "<‸") for item in found.items}
+    assert "ros_topic_publisher" in labels
+    assert not any(label.startswith("bt_") for label in labels)
 
 
 def case_list(written: str) -> list[str]:

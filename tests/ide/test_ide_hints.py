@@ -151,7 +151,7 @@ def test_lenses(tmp_path: Path, model: str, name: str, expected: list[str]) -> N
     found = []
     for lens in lenses(analysis, path):
         line = source.lines.position(lens.span.start).line + 1
-        told = counted(analysis, lens.symbol)
+        told = counted(analysis, lens.symbol, path)
         found.append(f"{line} {lens.symbol.kind} {lens.symbol.name}: {told.title}")
         assert all(analysis.source(place.path) is not None for place in told.places)
         assert told.places == tuple(sorted(set(told.places)))
@@ -259,6 +259,6 @@ def test_damaged_documents() -> None:
                     assert 0 <= hint.offset <= len(broken) + 1
                 for lens in lenses(analysis, path):
                     assert 0 <= lens.span.start <= lens.span.end <= len(broken)
-                    assert counted(analysis, lens.symbol).title
+                    assert counted(analysis, lens.symbol, path).title
                 signature_help(analysis, path, min(cut, len(broken)))
                 types_at(analysis, path, min(cut, len(broken)))

@@ -44,7 +44,7 @@ def test_places(main: Path) -> None:
             for part in hint.parts:
                 assert part.symbol is None or explain(analysis, part.symbol).text, part
         for lens in lenses(analysis, path):
-            assert counted(analysis, lens.symbol).title
+            assert counted(analysis, lens.symbol, path).title
     assert len(told) > 20
     for each in told:
         shown = plain(each)

@@ -7,7 +7,7 @@ import random
 from pathlib import Path
 
 import pytest
-from ide_case import one_file
+from ide_case import analysis_of, one_file, path_of
 from ide_models import CORNERS, ROBOT, load
 
 from fixture import split_files
@@ -68,6 +68,39 @@ corners  server.ascxml  sum &l|t; 3  number < number
 corners  tree.xml  ID="Sa|me" v="{=}"  tree Same | 4 nodes
 corners  properties.jani  "op": "Pm|in"  Pmin(F ( | least probability
 """
+
+
+COMPARISON = '{"op": "OP", "left": "bt_1001_response__status", "right": NUMBER}'
+
+
+def hover_in(text: str, at: str, name: str = "properties.jani") -> str | None:
+    analysis = analysis_of({name: text})
+    found = hover(analysis, path_of(name), text.index(at))
+    return plain(found.text) if found else None
+
+
+@pytest.mark.parametrize(("number", "name"), [("1", "SUCCESS"), ("2", "FAILURE"), ("3", "RUNNING")])
+def test_numbers_of_status(number: str, name: str) -> None:
+    for op in ("=", "≠", "=="):
+        formula = COMPARISON.replace("OP", op).replace("NUMBER", number)
+        text = '{"properties": [{"name": "p", "expression": {"op": "F", "exp": FORMULA}}]}'
+        shown = hover_in(text.replace("FORMULA", formula), f"{number}}}")
+        assert shown is not None
+        assert shown.startswith(f"{number} = {name}\n")
+        assert "1 = SUCCESS, 2 = FAILURE, 3 = RUNNING" in shown
+    other = text.replace("FORMULA", formula.replace("bt_1001_response__status", "level"))
+    assert hover_in(other, f"{number}}}") is None
+    turned = text.replace("FORMULA", f'{{"op": "=", "left": {number}, "right": "act_result_handle_client_a__code"}}')
+    assert "4 = STATUS_SUCCEEDED" in (hover_in(turned, f'{number}, "right"') or "")
+
+
+def test_every_operator_is_explained_in_models_too() -> None:
+    for symbol, _ in PROPERTIES.operators("formula"):
+        formula = f'{{"op": "{symbol}", "left": "a", "right": 1, "exp": "a"}}'
+        model = f'{{"jani-version": 1, "automata": [{{"edges": [{{"guard": {{"exp": {formula}}}}}]}}]}}'
+        for name, text in (("m.jani", model), ("p.jani", f'{{"properties": [{{"expression": {formula}}}]}}')):
+            shown = hover_in(text, f'{symbol}", "left"', name)
+            assert shown, (symbol, name)
 
 
 @pytest.mark.parametrize("case", CASES.strip().splitlines())

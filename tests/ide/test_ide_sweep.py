@@ -15,12 +15,13 @@ from roaml.diagnostics import Severity
 from roaml.ide.actions import actions
 from roaml.ide.change import FIX_ALL, Change
 from roaml.ide.closing import close_tag
+from roaml.ide.document_symbol import DocumentSymbol
 from roaml.ide.folding import folds
 from roaml.ide.format import format_edits
 from roaml.ide.linked import linked_names
 from roaml.ide.links import links
 from roaml.ide.selection import selections
-from roaml.ide.symbols import DocumentSymbol, document_symbols
+from roaml.ide.symbols import document_symbols
 from roaml.ide.tokens import semantic_tokens
 from roaml.project.settings import Settings
 from roaml.text import Span

@@ -9,7 +9,8 @@ from textwrap import dedent
 import pytest
 from ide_case import one_file
 
-from roaml.ide.symbols import DocumentSymbol, document_symbols
+from roaml.ide.document_symbol import DocumentSymbol
+from roaml.ide.symbols import document_symbols
 
 CASES = {
     "machine": """

@@ -100,3 +100,21 @@ async def test_an_item_of_another_kind_stays_as_it_is(tmp_path: Path) -> None:
     async with connect(tmp_path) as client:
         item = types.CompletionItem("x", data={"from": "elsewhere"})
         assert await client.completion_item_resolve_async(item) == item
+
+
+async def test_an_accepted_attribute_opens_its_values(tmp_path: Path) -> None:
+    """With a command of the client, where there is nothing in particular to be filled in."""
+    path = tmp_path / "a.ascxml"
+    commands = []
+    for options in ({}, {"triggerSuggest": "editor.suggest"}):
+        async with connect(tmp_path, capabilities=RICH, options=options) as client:
+            text = TEXT.replace(' type="std_msgs/Int32"', " ")
+            client.open(path, text)
+            position = types.Position(1, text.splitlines()[1].index("/>"))
+            found = await client.text_document_completion_async(params(path, position))
+            assert isinstance(found, types.CompletionList)
+            (item,) = (each for each in found.items if each.label == "type")
+            assert isinstance(item.text_edit, types.TextEdit)
+            assert item.text_edit.new_text == 'type="$1"'
+            commands.append(item.command and item.command.command)
+    assert commands == [None, "editor.suggest"]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -142,3 +143,26 @@ async def test_odd_arguments(tmp_path: Path, arguments: tuple[object, ...]) -> N
         params = types.ExecuteCommandParams(COMMAND, list(arguments))
         assert await client.workspace_execute_command_async(params) is None
         assert await translate(client, (tmp_path / "main.xml").as_uri()) is not None
+
+
+async def test_the_readable_view(tmp_path: Path) -> None:
+    """The file on the disk stays compact; the view of it is laid out, and has the outline."""
+    clock.write(tmp_path)
+    async with connect(tmp_path) as client:
+        assert await translate(client, (tmp_path / "main.xml").as_uri()) is not None
+        file = tmp_path / "main.jani"
+        compact = file.read_text(encoding="utf-8")
+        assert len(compact.splitlines()) == 1
+        params = {"textDocument": {"uri": file.as_uri()}}
+        view = await client.protocol.send_request_async("as2fm/janiView", params)
+        assert json.loads(view.text) == json.loads(compact)
+        assert len(view.text.splitlines()) > 20
+        names = [symbol.name for symbol in view.symbols]
+        assert {"variables", "automata", "properties"} <= set(names)
+        assert view.problem == ""
+        automata = view.symbols[names.index("automata")]
+        first = view.text.splitlines()[automata.selectionRange.start.line]
+        assert first.strip().startswith('"automata"')
+        params = {"textDocument": {"uri": (tmp_path / "none.jani").as_uri()}}
+        missing = await client.protocol.send_request_async("as2fm/janiView", params)
+        assert missing.problem == "This file cannot be shown: there is no such file."

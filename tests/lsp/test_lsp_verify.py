@@ -124,6 +124,21 @@ async def test_lens_and_hint_tell_the_result_until_it_is_stale(robot: Path) -> N
         assert known in await lenses(client, properties)
 
 
+async def test_a_result_is_said_once_on_its_line(tmp_path: Path) -> None:
+    """In the hint where the client shows hints, else in the lens."""
+    clock.write(tmp_path)
+    main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"
+    shows = types.TextDocumentClientCapabilities(inlay_hint=types.InlayHintClientCapabilities())
+    capabilities = types.ClientCapabilities(text_document=shows)
+    expected: dict[str, object] = {"verify": {"expectations": {"ticks": "< 0.5"}}}
+    for settings in (expected, {**expected, "inlayHints": {"results": False}}):
+        async with connect(tmp_path, capabilities=capabilities, options={"settings": settings}) as client:
+            await verify(client, main, ["ticks"], {"silent": True})
+            said = [*await lenses(client, properties), *(text for text, _ in await hints(client, properties))]
+            assert len([text for text in said if "not < 0.5" in text]) == 1
+            assert ("Verify" in said) is ("inlayHints" not in settings)
+
+
 async def test_hints_can_be_left_out(tmp_path: Path) -> None:
     clock.write(tmp_path)
     main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"

@@ -9,6 +9,7 @@ import { life } from "./life";
 import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
+import { themes } from "./themes";
 import { verification } from "./verification";
 import { withoutPython } from "./withoutPython";
 import { walkthrough } from "./walkthrough";
@@ -34,6 +35,9 @@ describe("verification", () => {
 });
 describe("walkthrough and templates", () => {
     walkthrough(stage);
+});
+describe("themes", () => {
+    themes(stage);
 });
 describe("life of the server", () => {
     life(stage);

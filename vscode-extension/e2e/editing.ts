@@ -38,6 +38,43 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
+        "_msg. typed straight through lists the fields, quickly and slowly",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            const field = window.page.locator('.suggest-widget.visible .monaco-list-row[aria-label^="data"]');
+            await window.goBehind("nodes/battery.ascxml", 'expr="_msg.data');
+            for (const delay of [0, 50, 250]) {
+                await window.press(...Array.from("_msg.data", () => "Backspace"), "Escape");
+                for (const character of "_msg.") await window.page.keyboard.type(character, { delay });
+                await field.waitFor();
+                await window.screenshot("completion-typed");
+                await window.press("Escape");
+                await window.type("data");
+                await window.press("Escape");
+            }
+        },
+    );
+
+    stage.test(
+        "an accepted attribute opens its values",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.goBehind("nodes/battery.ascxml", 'topic="/battery" type="std_msgs/UInt8"');
+            await window.press(...Array.from(' type="std_msgs/UInt8"', () => "Backspace"), "Escape");
+            await window.type(" ty");
+            const list = window.page.locator(".suggest-widget.visible");
+            await list.locator('.monaco-list-row.focused[aria-label^="type"]').waitFor();
+            await window.press("Enter");
+            await list.locator('.monaco-list-row[aria-label^="std_msgs/UInt8,"]').waitFor();
+            await window.screenshot("attribute-values");
+        },
+    );
+
+    stage.test(
         "hover shows the ROS definition",
         () => sample(MEND),
         async (window) => {

@@ -20,28 +20,123 @@ export function systems(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "translate writes the JANI file and opens it",
+        "translate writes a compact JANI file and opens it laid out, with its outline",
         () => sample(MEND),
         async (window) => {
             await window.openFile("tree.xml");
             await window.running();
             await window.run("AS2FM: Translate to JANI");
-            await window.page.locator('.tab[data-resource-name="main.jani"]').waitFor();
+            await window.page.locator('.tab[data-resource-name="main (laid out).jani"]').waitFor();
             await window.notification("Wrote main.jani").waitFor();
+            const text = fs.readFileSync(path.join(window.folder, "main.jani"), "utf8");
+            assert.ok((JSON.parse(text) as { automata: unknown[] }).automata.length > 5);
+            assert.equal(text.trim().split("\n").length, 1);
+            // Laid out and coloured: keys are not what numbers are.
+            const line = window.page.locator(".view-line", { hasText: '"jani-version": 1' });
+            await line.waitFor();
+            const shades = () => line.locator("span span").count();
+            await window.until(async () => (await shades()) > 3);
+            await window.run("Go to Symbol in Editor");
+            const symbols = window.page.locator(".quick-input-list .monaco-list-row");
+            await symbols.filter({ hasText: "topic_battery_msg.valid" }).first().waitFor();
             await window.screenshot("translate");
-            const model = JSON.parse(fs.readFileSync(path.join(window.folder, "main.jani"), "utf8")) as {
-                automata: unknown[];
-            };
-            assert.ok(model.automata.length > 5);
+            await window.type("never_empty");
+            await symbols.filter({ hasText: "never_empty" }).first().waitFor();
+            await window.press("Enter");
+            await window.until(async () => (await window.caretLine(1)).includes('"name": "never_empty"'));
         },
     );
 
-    stage.test("a system with errors is not translated, and says why", sample, async (window) => {
+    stage.test("a system with errors is not translated, says why, and leads to the error", sample, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Translate to JANI");
         await window.notification("main.xml has 1 error and was not translated.").waitFor();
+        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        await window.statusItem("Ln 28, Col").waitFor();
         assert.ok(!fs.existsSync(path.join(window.folder, "main.jani")));
+    });
+
+    stage.test("the lens of a system with errors says so and leads to the error", sample, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        const lens = window.page.locator(".codelens-decoration a", {
+            hasText: "1 error: cannot be translated or verified",
+        });
+        await lens.waitFor();
+        assert.equal(await window.page.locator(".codelens-decoration a", { hasText: /^Translate/ }).count(), 0);
+        await window.screenshot("lens-errors");
+        await lens.click();
+        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        await window.statusItem("Ln 28, Col").waitFor();
+        await window.notification("battery.ascxml:28: there is no variable").waitFor();
+        await window.openFile("properties.jani");
+        await window.page
+            .locator(".codelens-decoration a", { hasText: "1 error in main.xml: cannot be verified" })
+            .first()
+            .click();
+        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        // Verifying all the same leads there, too.
+        await window.openFile("tree.xml");
+        await window.run("AS2FM: Verify");
+        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        // Once it is mended, the lenses are as ever.
+        await window.openFile("main.xml");
+        const file = path.join(window.folder, "nodes/battery.ascxml");
+        fs.writeFileSync(file, fs.readFileSync(file, "utf8").replace("levle", "level"));
+        await window.page.locator(".codelens-decoration a", { hasText: "Translate to JANI" }).waitFor();
+    });
+
+    const configured = () => {
+        const folder = sample(MEND);
+        write(path.join(folder, "as2fm.toml"), 'ros-path = ["msgs"]\ningore = []\n');
+        return folder;
+    };
+    stage.test("mistakes in as2fm.toml are diagnostics there, gone when mended", configured, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.openFile("as2fm.toml");
+        await window.squiggles.first().waitFor();
+        await window.page.locator(".squiggly-warning").first().waitFor();
+        await window.run("View: Focus Problems");
+        const problems = window.page.locator(".markers-panel");
+        await problems.getByText("there is no setting `ingore`; did you mean `ignore`?").waitFor();
+        await problems.getByText("there is no folder `msgs`").waitFor();
+        await window.screenshot("configuration");
+        assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+        await window.openFile("as2fm.toml");
+        await window.goTo(2, 3);
+        await window.press("Control+.");
+        await window.page
+            .locator(".action-widget .monaco-list-row", { hasText: "Change to `ignore`" })
+            .first()
+            .waitFor();
+        await window.press("Enter");
+        await window.squiggles.first().waitFor({ state: "detached" });
+        await window.goTo(1, 1);
+        await window.press("Shift+End", "Delete");
+        await window.page.locator(".squiggly-warning").first().waitFor({ state: "detached" });
+        assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+    });
+
+    const unusual = () => {
+        const folder = sample(MEND);
+        const file = path.join(folder, "properties.jani");
+        const operators = "∨ ∧ ¬ ⇒ ≠ ≤ ≥ ∀ ∃ π − ×";
+        fs.writeFileSync(
+            file,
+            fs.readFileSync(file, "utf8").replace("{", `{ "x-operators": "${operators}", "x-nu": "ν",`),
+        );
+        return folder;
+    };
+    stage.test("no yellow box around operators of JANI", unusual, async (window) => {
+        await window.openFile("properties.jani");
+        await window.running();
+        // The Greek letter, which does look like a Latin one, shows that VS Code has looked.
+        const boxes = window.page.locator(".view-overlays .unicode-highlight, .view-lines .unicode-highlight");
+        await boxes.first().waitFor();
+        await window.screenshot("unicode");
+        assert.equal(await boxes.count(), 1);
     });
 
     stage.test(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
-// `--measure` measures instead; `--pictures` renews those of the README afterwards.
+// `--measure` measures instead; `--pictures` renews those of the README and of the walkthrough afterwards.
 import { execFileSync, spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";
@@ -32,8 +32,12 @@ const names = [first, ...others].filter((name) => name !== undefined && !name.st
 const patterns = names.map((name) => `--test-name-pattern=${name}`);
 const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit" });
 if (done.status === 0 && first === "--pictures") {
-    for (const name of fs.readdirSync(path.join(here, "screenshots"))) {
-        fs.copyFileSync(path.join(here, "out", "e2e-output", name), path.join(here, "screenshots", name));
+    for (const folder of ["screenshots", "walkthrough"]) {
+        for (const name of fs.readdirSync(path.join(here, folder))) {
+            const renewed = path.join(here, "out", "e2e-output", name);
+            // With a pattern, only some are taken.
+            if (fs.existsSync(renewed)) fs.copyFileSync(renewed, path.join(here, folder, name));
+        }
     }
 }
 process.exit(done.status ?? 1);

@@ -2,14 +2,16 @@
 /** Puts the parts together. */
 
 import * as vscode from "vscode";
-import { openTranslated, registerCommands } from "./editor/commands";
+import { registerCommands } from "./editor/commands";
 import { Counterexamples } from "./editor/counterexamples";
 import { Documents } from "./editor/documents";
+import { JaniView } from "./editor/janiView";
 import { PicturePanels } from "./editor/picturePanels";
 import { PlainScxmlPreview } from "./editor/plainScxml";
 import { onInterpreterChange } from "./editor/pythonExtensions";
 import { LanguageServer } from "./editor/server";
 import { StatusItem } from "./editor/statusItem";
+import { done, watchMending } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
 import { wanted } from "./editor/wanted";
@@ -20,21 +22,36 @@ let server: LanguageServer | undefined;
 export function activate(context: vscode.ExtensionContext): void {
     const log = vscode.window.createOutputChannel("AS2FM", { log: true });
     server = new LanguageServer(context, log, {
-        onTranslated: openTranslated,
+        onTranslated: ({ uri }) => {
+            done("translated");
+            return jani.open(vscode.Uri.parse(uri), vscode.ViewColumn.Beside);
+        },
         onVerify: (system, names) => tests.verify(system, names),
     });
     const status = new StatusItem(log);
     const documents = new Documents(server);
     const plain = new PlainScxmlPreview(server);
+    const jani = new JaniView(server);
     const pictures = new PicturePanels(context, server, log);
     const tasks = new Tasks(server);
     const tests = new PropertyTests(server, log);
     const counterexamples = new Counterexamples(server, pictures);
-    context.subscriptions.push(log, server, status, documents, plain, pictures, tests, counterexamples);
+    context.subscriptions.push(
+        log,
+        server,
+        status,
+        documents,
+        plain,
+        jani,
+        pictures,
+        tests,
+        counterexamples,
+        watchMending(),
+    );
     server.onState((state) => {
         status.show(state);
     });
-    registerCommands({ context, log, server, status, documents, tasks, plain, pictures, tests, counterexamples });
+    registerCommands({ context, log, server, status, documents, tasks, plain, jani, pictures, tests, counterexamples });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchWishes(context, server, log);
     void start(context, server, log);

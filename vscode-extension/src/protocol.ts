@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /** What client and server say to each other beyond the language server protocol. */
 
-import type { Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
+import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
 import type { Picture, PictureKind, Place } from "./pictures/contract";
 
-export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "";
+export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
 /** What a document is. `systems` are the URIs of the systems that it belongs to, itself if it is one. */
 export interface About {
@@ -37,6 +37,13 @@ export interface PlainScxml {
     readonly problem: string;
 }
 
+/** A JANI file laid out for reading, and the outline of that text. `problem` says why there is none. */
+export interface JaniText {
+    readonly text: string;
+    readonly symbols: DocumentSymbol[];
+    readonly problem: string;
+}
+
 export interface Migration {
     readonly edit: WorkspaceEdit | null;
     /** What changes, one line for each file. */
@@ -47,10 +54,14 @@ export interface Migration {
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
 export const plainScxml = new RequestType<DocumentParams, PlainScxml, void>("as2fm/plainScxml");
+export const janiView = new RequestType<DocumentParams, JaniText, void>("as2fm/janiView");
 export const migrate = new RequestType<DocumentParams, Migration, void>("as2fm/migrate");
 
 /** The server's own command; the client opens what it answers. */
 export const TRANSLATE = "as2fm.translateToJani";
+
+/** The server's own command: the URI of a system. */
+export const SHOW_FIRST_ERROR = "as2fm.showFirstError";
 
 export interface Translated {
     readonly uri: string;

@@ -18,7 +18,8 @@ from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Severity
-from roaml.project.settings import SEVERITIES, ament_prefixes, find_settings
+from roaml.project.configuration import find_settings
+from roaml.project.settings import SEVERITIES, ament_prefixes
 from roaml.rules import BY_CODE, internal_error
 
 _CRASH = internal_error.RULE.code
@@ -40,10 +41,8 @@ def run(options: argparse.Namespace) -> int:
         return _usage(f"there is no rule {', '.join(unknown)}")
     paths = [*options.paths, *([] if stdin is None else [stdin])]
     settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
-    for problem in problems:
-        print(f"as2fm-lsp: {problem}", file=sys.stderr)
-    if problems:
-        return USAGE
+    if problems and not settings.origin:  # else they are among the diagnostics
+        return _usage(problems[0])
     settings = replace(
         settings,
         ament_prefixes=ament_prefixes(),

@@ -17,8 +17,9 @@ from roaml.disk import Problem
 from roaml.ide.format import can_format, format_edits, is_ours
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.project.configuration import find_settings
 from roaml.project.discover import candidates
-from roaml.project.settings import Settings, find_settings
+from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 from roaml.text import SourceFile, apply_edits
 

@@ -22,7 +22,8 @@ from roaml import api
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.model.system_file import Overrides
-from roaml.project.settings import ament_prefixes, find_settings
+from roaml.project.configuration import find_settings
+from roaml.project.settings import ament_prefixes
 from roaml.scxml.model import Network
 from roaml.scxml.writer import write as scxml_texts
 from roaml.views import NOTATIONS, Notation, machine_graph, network_graph, tree_graph

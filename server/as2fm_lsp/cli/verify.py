@@ -33,7 +33,8 @@ from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.system_file import Overrides
-from roaml.project.settings import ament_prefixes, find_settings
+from roaml.project.configuration import find_settings
+from roaml.project.settings import ament_prefixes
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold

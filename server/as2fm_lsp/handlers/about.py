@@ -21,6 +21,7 @@ _KINDS = {
     FileKind.JSON_STRUCTS: "structs",
     FileKind.PROPERTIES: "properties",
     FileKind.INTERFACE: "interface",
+    FileKind.JANI_MODEL: "model",
 }
 
 

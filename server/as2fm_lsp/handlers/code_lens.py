@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers import translate, verify
+from as2fm_lsp.handlers import first_error, translate, verify
 from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.first_error import errors_of
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.shown import shown
 from roaml.ide.lenses import counted, lenses
@@ -32,8 +33,11 @@ def register(server: Server) -> None:
         on = asked(server, params.text_document)
         if on is None:
             return []
-        found = list(translate.lenses(on.snapshot, on.path, on.source, on.convert))
-        found += verify.lenses(server, on)
+        broken = errors_of(on)
+        found = list(first_error.lenses(on, broken))
+        if on.path not in broken:
+            found += translate.lenses(on.snapshot, on.path, on.source, on.convert)
+        found += verify.lenses(server, on, broken)
         if shown(session.client_settings).references:
             for each in lenses(on.analysis, on.path):
                 data = [params.text_document.uri, pack(each.symbol)]
@@ -46,8 +50,9 @@ def register(server: Server) -> None:
         uri, symbol = str(data[0]), unpack(data[1])
         if lens.command is not None or symbol is None:
             return lens
-        analysis = session.moment().snapshot(session.convert.path(uri)).analysis
-        found = counted(analysis, symbol)
+        path = session.convert.path(uri)
+        analysis = session.moment().snapshot(path).analysis
+        found = counted(analysis, symbol, path)
         places = [
             session.convert.location(source, each)
             for each in found.places

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/completion` and `completionItem/resolve`"""
+"""`textDocument/completion` and `completionItem/resolve`
+
+The protocol has no command that asks for completions. A client that has one names it in its initialization options, as
+`triggerSuggest`: it is called after an item has been inserted whose first place to fill in is an empty value.
+"""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -62,6 +67,11 @@ def register(server: Server) -> None:
         return item
 
 
+_EMPTY_VALUE = re.compile(r"""=["']\$1\b""")
+"""The first place of a snippet is an attribute's value for which nothing in particular is likely. Where there are a few
+choices, the editor lists them by itself."""
+
+
 class _Client:
     """Writes items in the way that the client understands."""
 
@@ -72,6 +82,7 @@ class _Client:
         self.tags = bool(asks and asks.tag_support)
         self.formats = asks.documentation_format if asks else None
         self.label_details = bool(asks and asks.label_details_support)
+        self.trigger_suggest = server.trigger_suggest
 
     def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:
         new = item.snippet if self.snippets else plain(item.snippet)
@@ -84,6 +95,8 @@ class _Client:
         if self.snippets and "$" in new:
             made.insert_text_format = types.InsertTextFormat.Snippet
             made.insert_text_mode = types.InsertTextMode.AdjustIndentation
+            if self.trigger_suggest and _EMPTY_VALUE.search(new):
+                made.command = types.Command("Suggest", self.trigger_suggest)
         elif self.snippets:
             made.text_edit = types.TextEdit(range_, plain(new))
         if item.detail and self.label_details and len(item.detail) <= _SHORT:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.first_error import counted
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
@@ -59,8 +60,7 @@ def register(server: Server) -> None:
         try:
             network = api.to_scxml(api.loaded(snapshot, systems[0]))
         except api.ModelError as error:
-            count = len(error.result.diagnostics)
-            return _problem(f"The system has {count} error{'' if count == 1 else 's'}; there is no plain SCXML of it.")
+            return _problem(f"The system has {counted(error.result.diagnostics)}; there is no plain SCXML of it.")
         linked = analysis.system(systems[0])
         automata = linked.automata_of(path) if linked else ()
         if not automata:

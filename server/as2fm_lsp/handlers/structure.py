@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import Asked, asked
+from roaml.ide.document_symbol import DocumentSymbol, SymbolKind
 from roaml.ide.folding import FoldKind, folds
 from roaml.ide.links import links
 from roaml.ide.selection import selections
-from roaml.ide.symbols import DocumentSymbol, SymbolKind, document_symbols
+from roaml.ide.symbols import document_symbols
 from roaml.text import Span
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def register(server: Server) -> None:
             return []
         found = document_symbols(file.analysis, file.path)
         if _takes_nested_symbols(server):
-            return [_symbol(file, symbol) for symbol in found]
+            return [nested(symbol, file.range) for symbol in found]
         return list(_flat(file, found))
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
@@ -85,14 +86,15 @@ def _selection(file: Asked, spans: Sequence[Span]) -> types.SelectionRange:
     return selection
 
 
-def _symbol(file: Asked, symbol: DocumentSymbol) -> types.DocumentSymbol:
+def nested(symbol: DocumentSymbol, range_of: Callable[[Span], types.Range]) -> types.DocumentSymbol:
+    """An entry of an outline with all below it, in terms of the protocol."""
     return types.DocumentSymbol(
         symbol.name,
         _KINDS[symbol.kind],
-        file.range(symbol.span),
-        file.range(symbol.name_span),
+        range_of(symbol.span),
+        range_of(symbol.name_span),
         detail=symbol.detail or None,
-        children=[_symbol(file, child) for child in symbol.children],
+        children=[nested(child, range_of) for child in symbol.children],
     )
 
 

@@ -12,10 +12,12 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.convert import Converter
+from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
 from as2fm_lsp.write import write_file
 from roaml import api
+from roaml.ide.system_names import system_names
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.project.memo import Interrupted
@@ -65,9 +67,9 @@ def register(server: Server) -> None:
                     return None
                 raise
             except api.ModelError as error:
-                count = len(error.result.diagnostics)
-                errors = "1 error" if count == 1 else f"{count} errors"
+                errors = counted(error.result.diagnostics)
                 _tell(server, types.MessageType.Error, f"{name} has {errors} and was not translated.")
+                await show(server, error.result.snapshot, error.result.diagnostics)
                 return None
             except (api.PathError, OutputError) as error:
                 _tell(server, types.MessageType.Error, str(error))
@@ -113,8 +115,8 @@ def _while_wanted(server: Server, pieces: Iterable[str]) -> Iterator[str]:
 
 def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types.CodeAction]:
     """One for each system that a file belongs to; a system file belongs to itself."""
-    for system in snapshot.analysis.memberships.get(path, ()):
-        title = TITLE if system == path else f"Translate {os.path.basename(system)} to JANI"
+    for system, name in system_names(snapshot.analysis.memberships.get(path, ())).items():
+        title = TITLE if system == path else f"Translate {name} to JANI"
         command = types.Command(title, COMMAND, arguments=[convert.uri(system)])
         yield types.CodeAction(title, kind=types.CodeActionKind.Source, command=command)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +18,10 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.handlers.asked import Asked as Document
+from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
+from as2fm_lsp.shown import shown
 from as2fm_lsp.verification import background, stuck
 from as2fm_lsp.verification.choices import under_all_schedulers
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
@@ -31,6 +33,7 @@ from as2fm_lsp.verification.wishes import Wishes, wishes
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.pictures import lit
+from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -80,13 +83,13 @@ def register(server: Server) -> None:
         wanted = wishes(session.client_settings, arguments[2] if len(arguments) > 2 else None)
         for problem in wanted.problems:
             _tell(server, types.MessageType.Warning, problem)
-        async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as shown:
+        async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
             try:
-                with server.requests.cancelled_by(shown.token):
-                    run = _Run(server, shown, path, wanted)
+                with server.requests.cancelled_by(bar.token):
+                    run = _Run(server, bar, path, wanted)
                     return await run.answer([str(name) for name in names] if isinstance(names, Sequence) else [])
             except Interrupted:
-                if shown.is_cancelled:
+                if bar.is_cancelled:
                     return None
                 raise
             finally:
@@ -136,13 +139,15 @@ def register(server: Server) -> None:
         }
 
 
-def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
-    """At each property of a system, and at the system file."""
-    systems = on.analysis.memberships.get(on.path, ())
-    for system in systems:
-        if not os.path.isabs(system):
+def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[types.CodeLens]:
+    """At each property of a system that is not `broken`, and at the system file. Results stand in the hints behind the
+    names, and in the lenses only where no hints are shown."""
+    tells = not _shows_hints(server)
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
+        if system in broken or not os.path.isabs(system):
             continue
-        uri, where = on.convert.uri(system), f" in {os.path.basename(system)}" if len(systems) > 1 else ""
+        uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
         found = verifiable(on.analysis, system)
         file = on.analysis.system_file(system)
         if system == on.path and file is not None and found:
@@ -158,7 +163,8 @@ def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
             if each.path != on.path:
                 continue
             known = server.verified.get(system, each.name)
-            title = " · ".join([f"{TITLE}{where}", *_words(server, on.analysis, system, known)])
+            words = _words(server, on.analysis, system, known) if tells else []
+            title = " · ".join([f"{TITLE}{where}", *words])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
             speaks = known and (missed(known.result) or known.result.stuck)
             if known and server.show_counterexample and speaks and speaking_against(known.result):
@@ -169,7 +175,9 @@ def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
 def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.InlayHint]:
     """What is known, behind the name of each property."""
     span = on.span(within)
-    for system in on.analysis.memberships.get(on.path, ()):
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
+        where = f" in {name}" if len(systems) > 1 else ""
         for each in verifiable(on.analysis, system) if server.verified.has(system) else ():
             known = server.verified.get(system, each.name)
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
@@ -177,10 +185,15 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
             mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
             mark = "⚠" if known.result.stuck else mark
-            text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}"
+            text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
             whole = as_text([known.result], "").strip()
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
+
+
+def _shows_hints(server: Server) -> bool:
+    document = server.client_capabilities.text_document
+    return bool(document and document.inlay_hint) and shown(server.session.client_settings).results
 
 
 def _words(server: Server, analysis: Analysis, system: str, known: Known | None) -> list[str]:
@@ -199,9 +212,9 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
 class _Run:
     """One call of the command."""
 
-    def __init__(self, server: Server, shown: Progress, path: str, wanted: Wishes) -> None:
+    def __init__(self, server: Server, bar: Progress, path: str, wanted: Wishes) -> None:
         self.server = server
-        self.shown = shown
+        self.bar = bar
         self.path = path
         self.wanted = wanted
 
@@ -209,11 +222,12 @@ class _Run:
         server, path = self.server, self.path
         name = os.path.basename(path)
         try:
-            await self.shown.step("checking")
+            await self.bar.step("checking")
             system = api.loaded(server.session.moment().snapshot(path), path)
         except api.ModelError as error:
-            count = len(error.result.diagnostics)
-            self.say_wrong(f"{name} has {'1 error' if count == 1 else f'{count} errors'} and was not verified.")
+            self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
+            if not self.wanted.is_silent:
+                await show(server, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
             self.say_wrong(str(error))
@@ -221,7 +235,7 @@ class _Run:
         texts = fingerprint(system.analysis, path)
         subject = server.verified.subject(texts)
         if subject is None:
-            await self.shown.step("translating")
+            await self.bar.step("translating")
             subject = of_system(system)
             server.verified.keep_subject(texts, subject)
         known = [each.name for each in subject.model.properties]
@@ -230,14 +244,9 @@ class _Run:
         checker: Checker | None = None
         for each in dict.fromkeys(names or known):
             try:
-                await self.shown.step(each)
+                await self.bar.step(each)
                 began = time.monotonic()
-                checker = api.checker(subject.model, [each])
-                for why in checker.refused.values():
-                    raise why
-                asked = self.with_threshold(checker.asked[0])
-                for expected in self.expected(asked):
-                    check_range(expected, asked.question)
+                checker, asked = self.asked(subject, each)
                 answer, choices = await self.traces(checker, asked)
             except FaultError as fault:
                 rows.append({"property": each, "error": self.fault(fault, system.analysis)})
@@ -263,6 +272,21 @@ class _Run:
         look = None if checker is None else await self.look(subject, system.analysis, checker, results, texts)
         return {"results": rows, "errors": [], "stuck": look}
 
+    def asked(self, subject: Subject, name: str) -> tuple[Checker, Asked]:
+        """A property, ready to be answered.
+
+        Raises:
+            PropertyError, FaultError: it cannot be answered.
+            RangeError: no value of it can meet what is expected of it.
+        """
+        checker = api.checker(subject.model, [name])
+        for why in checker.refused.values():
+            raise why
+        asked = self.with_threshold(checker.asked[0])
+        for expected in self.expected(asked):
+            check_range(expected, asked.question)
+        return checker, asked
+
     async def look(
         self, subject: Subject, analysis: Analysis, checker: Checker, results: Sequence[Result], texts: Texts
     ) -> Json | None:
@@ -272,7 +296,7 @@ class _Run:
         known = stuck.Look(None, None, self.wanted.stuck)
         if not any(result.answer and result.answer.question.is_stuck for result in results):
             options, asked = self.wanted.options, checker.stuck
-            await self.shown.step(asked.question.name)
+            await self.bar.step(asked.question.name)
             began = time.monotonic()
             known = await background.in_thread(
                 lambda checked: stuck.look(subject, checker, options, self.wanted.stuck, lambda _, __: checked()),
@@ -295,7 +319,7 @@ class _Run:
     async def traces(self, checker: Checker, asked: Asked) -> tuple[Answer, Choices | None]:
         def tell(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, self.wanted.options, tally), (), 0)
-            self.shown.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
+            self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
         is_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
         checkpoint = self.server.requests.checkpoint

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from roaml.ide.json_tree import members
@@ -11,6 +12,7 @@ from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
 from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
+from roaml.model.typing import STATUSES
 
 _DEPTH = 12
 _LENGTH = 400
@@ -78,6 +80,38 @@ def member(key: Key) -> str:
     title = PROPERTIES.title(key.schema)
     head = (f"**{title}**" if title else "", name(key.name), "required" if key.required else "")
     return paragraphs(" · ".join(filter(None, head)), PROPERTIES.text(key.schema))
+
+
+_STATUS = re.compile(r"bt_\d+_response__status")
+_CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
+_CODES: Mapping[str, str] = {"4": "STATUS_SUCCEEDED", "5": "STATUS_CANCELED", "6": "STATUS_ABORTED"}
+"""`action_msgs/GoalStatus` of ROS 2, as far as results have it."""
+
+_COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
+
+
+def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
+    """What a number stands for that is compared with the status of a node or the code of a result; "" if nothing.
+
+    Args:
+        around: the members of the comparison.
+    """
+    operator = around.get("op")
+    known = BINARY_OPERATORS.get(operator.value) if isinstance(operator, JsonString) else None
+    sides = [around.get("left"), around.get("right")]
+    if known is None or known.symbol not in _COMPARISONS or written not in sides:
+        return ""
+    variable = next((each.value for each in sides if isinstance(each, JsonString)), "")
+    if _STATUS.fullmatch(variable):
+        called = next((name for name, value in STATUSES.items() if str(value) == written.text), "")
+        every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
+        return paragraphs(code(f"{written.text} = {called}") if called else "", f"Answers of tree nodes: {every}")
+    if _CODE.fullmatch(variable):
+        every = ", ".join(f"{value} = {name}" for value, name in _CODES.items())
+        called = _CODES.get(written.text, "")
+        head = code(f"{written.text} = {called}") if called else ""
+        return paragraphs(head, f"Codes of action results (`action_msgs/GoalStatus`): {every}")
+    return ""
 
 
 def global_variable(variable: GlobalVariable) -> str:

@@ -8,18 +8,19 @@ Each is found in the models as they are; what it costs to explain a hint is paid
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide import describe_system
 from roaml.ide.describe import describe
-from roaml.ide.describe_machine import inferred_type, linked_systems
+from roaml.ide.describe_machine import inferred_type
 from roaml.ide.find import systems_of
 from roaml.ide.hover_json import node_of
 from roaml.ide.in_machine import interface_symbol, is_implicit
 from roaml.ide.navigate import definition_of
+from roaml.ide.system_names import grouped
 from roaml.jani.properties import identifiers
 from roaml.model.kinds import FileKind
 from roaml.model.machine import (
@@ -94,16 +95,52 @@ def inlay_hints(
     analysis: Analysis, path: str, within: Span, kinds: frozenset[HintKind] = ALL_HINTS
 ) -> tuple[InlayHint, ...]:
     """The hints in a part of a file, in the order of the text."""
-    kind, machine = analysis.kind(path), analysis.machine(path)
-    found: Iterable[InlayHint] = ()
-    if kind is FileKind.MACHINE and machine is not None:
-        found = _Machine(analysis, path, machine, within).all()
-    elif kind is FileKind.TREE:
-        found = _tree(analysis, path, within)
-    elif kind is FileKind.PROPERTIES:
-        found = _properties(analysis, path, within)
-    chosen = {each for each in found if each.kind in kinds and within.start <= each.offset <= within.end}
+    by_system = {
+        system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
+        for system in systems_of(analysis, path)
+    }
+    found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
+    chosen = (each for each in found if within.start <= each.offset <= within.end)
     return tuple(sorted(chosen, key=lambda each: (each.offset, each.text)))
+
+
+def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> Iterable[InlayHint]:
+    """The hints in a file, seen as a part of one system or alone."""
+    kind, machine = analysis.kind(path), analysis.machine(path)
+    if kind is FileKind.MACHINE and machine is not None:
+        return _Machine(analysis, path, machine, within, system).all()
+    linked = analysis.system(system) if system else None
+    if kind is FileKind.TREE:
+        return _tree(analysis, path, within, linked)
+    if kind is FileKind.PROPERTIES and linked is not None:
+        return _properties(analysis, path, within, linked)
+    return ()
+
+
+def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
+    """What systems that share a file say alike is said once; where they differ, they are named."""
+    at: dict[tuple[int, HintKind], dict[str, InlayHint]] = {}
+    for system, found in by_system.items():
+        for hint in found:
+            at.setdefault((hint.offset, hint.kind), {})[system] = hint
+    merged: set[InlayHint] = set()
+    for (offset, kind), said in at.items():
+        parts: list[Part] = []
+        # A system that says nothing there differs, too.
+        groups = grouped({system: said[system].text if system in said else "" for system in by_system})
+        shown = [(text, names) for text, names in groups if text]
+        for text, names in shown[:_MOST]:
+            own = next(hint.parts for hint in said.values() if hint.text == text)
+            again = bool(parts) and own[0].text.strip() in _LEADS
+            parts += [*([Part("; ")] if parts else []), *own[again:], *([Part(f" in {names}")] if names else [])]
+        if len(shown) > _MOST:
+            parts.append(Part(", …"))
+        merged.add(InlayHint(offset, kind, tuple(parts)))
+    return merged
+
+
+_LEADS = ("", "→", "=", ":")
+"""What hints begin with; it is not repeated."""
 
 
 def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
@@ -134,21 +171,21 @@ def _behind(name: Name) -> int:
 
 
 class _Machine:
-    def __init__(self, analysis: Analysis, path: str, machine: Machine, within: Span) -> None:
+    def __init__(self, analysis: Analysis, path: str, machine: Machine, within: Span, system: str | None) -> None:
         self.analysis = analysis
         self.path = path
         self.machine = machine
         self.within = within
-        self.system = systems_of(analysis, path)[0]
-        self.owner = self.system or path
-        self.typed = analysis.typed_in(path, self.system)
+        self.linked = analysis.system(system) if system else None
+        self.owner = system or path
+        self.typed = analysis.typed_in(path, system)
         self.values: dict[Element, TypedValue] = {
             value.element: value for value in self.typed.values if value.use in (Use.PARAMETER, Use.FIELD)
         }
         self.interfaces: dict[tuple[str, str], dict[Symbol, str]] = {}
-        for system in linked_systems(analysis, path):
-            for automaton in system.automata_of(path):
-                self.take(system, automaton)
+        if self.linked is not None:
+            for automaton in self.linked.automata_of(path):
+                self.take(self.linked, automaton)
 
     def take(self, system: System, automaton: Automaton) -> None:
         for use in automaton.outline.interfaces:
@@ -236,10 +273,9 @@ class _Machine:
 
     def handler(self, handler: Handler) -> Iterator[InlayHint]:
         yield from self.handle(handler)
-        linked = self.analysis.system(self.system) if self.system else None
-        if handler.trigger != "event" or handler.event is None or linked is None:
+        if handler.trigger != "event" or handler.event is None or self.linked is None:
             return
-        event = linked.events.get(handler.event.value)
+        event = self.linked.events.get(handler.event.value)
         members = event.data.members if event else ()
         parts: list[Part] = []
         for name, type_ in members:
@@ -269,9 +305,9 @@ class _Machine:
 # ----------------------------------------------------------- trees and properties
 
 
-def _tree(analysis: Analysis, path: str, within: Span) -> Iterator[InlayHint]:
+def _tree(analysis: Analysis, path: str, within: Span, system: System | None) -> Iterator[InlayHint]:
     file = analysis.tree(path)
-    instances = _instances(analysis, path)
+    instances = _instances(system, path) if system is not None else {}
     for tree in file.trees if file else ():
         if not _touches(within, tree.element):
             continue
@@ -300,26 +336,23 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
             yield InlayHint(_behind(port.value), HintKind.PORTS, (Part(" : "), Part(" or ".join(shown), symbol)))
 
 
-def _instances(analysis: Analysis, path: str) -> dict[tuple[str, int], list[tuple[System, Automaton]]]:
+def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, Automaton]]]:
     """The nodes of executed trees by tree and position in a file."""
     found: dict[tuple[str, int], list[tuple[System, Automaton]]] = {}
-    for system in linked_systems(analysis, path):
-        for automaton in system.automata:
-            source = automaton.instance.source if automaton.instance else None
-            if source is not None and source.path == path:
-                found.setdefault((source.tree, source.position), []).append((system, automaton))
+    for automaton in system.automata:
+        source = automaton.instance.source if automaton.instance else None
+        if source is not None and source.path == path:
+            found.setdefault((source.tree, source.position), []).append((system, automaton))
     return found
 
 
-def _properties(analysis: Analysis, path: str, within: Span) -> Iterator[InlayHint]:
+def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
     """Who the nodes are that events of the tree are numbered by."""
     for each in analysis.properties(path)[0]:
         for identifier, span in identifiers(each.expression):
             if span.start > within.end or span.end < within.start:
                 continue
-            for system in linked_systems(analysis, path):
-                node = node_of(system, identifier)
-                if node is not None and node.instance is not None:
-                    symbol = Symbol(system.path, INSTANCE, str(node.instance.number))
-                    yield InlayHint(span.end + 1, HintKind.NODES, (Part(" "), Part(node.instance.name, symbol)))
-                    break
+            node = node_of(system, identifier)
+            if node is not None and node.instance is not None:
+                symbol = Symbol(system.path, INSTANCE, str(node.instance.number))
+                yield InlayHint(span.end + 1, HintKind.NODES, (Part(" "), Part(node.instance.name, symbol)))

@@ -59,7 +59,7 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
 def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Iterator[tuple[Span, str]]:
     """What else is known. With a name there, only what adds to what the name says."""
     kind = analysis.kind(path)
-    if kind is FileKind.PROPERTIES:
+    if kind in (FileKind.PROPERTIES, FileKind.JANI_MODEL):
         found = global_variable(analysis, path, offset) or (None if has_name else in_json(analysis, path, offset))
         if found is not None:
             yield found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a place in a property file: operators, keys, formulas, global variables."""
+"""What is known of a place in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roaml.ide import describe_properties, describe_system
 from roaml.ide.find import systems_of
 from roaml.ide.json_tree import members
 from roaml.ide.markdown import code, paragraphs
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.json import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
 from roaml.model.system import Automaton, System
 from roaml.project.analysis import Analysis
@@ -48,6 +48,9 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | No
     if value is None:
         return None
     for schema, owner, member in _members_at(value[0], offset):
+        if isinstance(member.value, JsonNumber) and member.value.span.contains(offset):
+            text = describe_properties.number(member.value, members(owner))
+            return (member.value.span, text) if text else None
         known = PROPERTIES.keys(schema, owner).get(member.key)
         if member.key_span.contains(offset):
             return (member.key_span, describe_properties.member(known)) if known else None

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from roaml.diagnostics import Symbol
 from roaml.ide.calls import interfaces_of
 from roaml.ide.describe_system import is_clock, is_main
-from roaml.ide.find import Use, thing
+from roaml.ide.find import Use, systems_of, thing
 from roaml.ide.occurrence import HANDLES, Access
 from roaml.ide.occurrences import uses
+from roaml.ide.system_names import MOST, grouped
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import System
@@ -89,11 +90,22 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 # ---------------------------------------------------------------------- counting
 
 
-def counted(analysis: Analysis, symbol: Symbol) -> Counted:
-    """How much a symbol is used, and where."""
+def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
+    """How much a symbol of a file is used, and where. Systems that share the file are counted one by one, and named
+    where they differ."""
+    systems = systems_of(analysis, path)
+    by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
+    said = grouped({system: found.title for system, found in by_system.items()})
+    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MOST])
+    places = tuple(sorted({place for found in by_system.values() for place in found.places}))
+    return Counted(f"{title} / …" if len(said) > MOST else title, places)
+
+
+def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
+    """The same in one system, or in the file alone."""
     if symbol.kind in HANDLES:
-        return _handle(analysis, symbol)
-    found = thing(analysis, (symbol,)).uses
+        return _handle(analysis, symbol, system)
+    found = _within(analysis, thing(analysis, (symbol,)).uses, system)
     in_trees = [use for use in found if analysis.tree(use.path) is not None]
     match symbol.kind:
         case "event":
@@ -110,6 +122,12 @@ def counted(analysis: Analysis, symbol: Symbol) -> Counted:
     return Counted(_count(places, "use"), _locations(places))
 
 
+def _within(analysis: Analysis, found: Iterable[Use], system: str | None) -> list[Use]:
+    """The uses in the files of a system; all if there is none."""
+    files = frozenset(analysis.files_of(system)) if system else None
+    return [use for use in found if files is None or use.path in files]
+
+
 def _event(analysis: Analysis, found: Iterable[Use]) -> Counted:
     in_machines = [use for use in found if analysis.machine(use.path) is not None]
     sent = [use for use in in_machines if use.occurrence.access is Access.WRITE]
@@ -124,18 +142,15 @@ _SIDES = {
 }
 
 
-def _handle(analysis: Analysis, symbol: Symbol) -> Counted:
+def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     """Both sides of a topic, service or action; of a timer its callbacks."""
     own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
-    interfaces = tuple(dict.fromkeys(interfaces_of(analysis, symbol)))
-    if not interfaces:
+    linked = analysis.system(system) if system else None
+    interfaces = tuple(dict.fromkeys(each for each in interfaces_of(analysis, symbol) if each.path == system))
+    if not interfaces or linked is None:
         return Counted(_count(own, "use"), _locations(own))
-    shown: list[str] = []
-    places: list[Use] = []
-    for interface in interfaces:
-        system = analysis.system(interface.path)
-        shown += [_sides(system, interface)] if system else []
-        places += thing(analysis, (interface,)).uses
+    shown = [_sides(linked, interface) for interface in interfaces]
+    places = [use for interface in interfaces for use in _within(analysis, thing(analysis, (interface,)).uses, system)]
     title = " / ".join(dict.fromkeys(shown))
     if len(interfaces) > 1:
         title = f"{len(interfaces)} {interfaces[0].kind}s: {title}"

@@ -6,10 +6,10 @@ What has no name yet is called as its element is, so that a half-typed file has 
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from roaml.ide.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.jani_symbols import jani_symbols
 from roaml.ide.json_tree import members
 from roaml.json import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
@@ -21,38 +21,6 @@ from roaml.model.tree import TreeFile, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 from roaml.xml import Element
-
-
-class SymbolKind(enum.Enum):
-    MACHINE = "machine"
-    DATAMODEL = "datamodel"
-    VARIABLE = "variable"
-    PORT = "port"
-    ROS = "ROS interface"
-    STATE = "state"
-    TRANSITION = "transition"
-    THREAD = "action thread"
-    TREE = "tree"
-    CONTROL = "inner node of a tree"
-    LEAF = "leaf of a tree"
-    SYSTEM = "system"
-    SECTION = "section of a system file"
-    INPUT = "file of a system"
-    STRUCT = "struct"
-    MEMBER = "member of a struct"
-    PROPERTY = "property"
-
-
-@dataclass(frozen=True, slots=True)
-class DocumentSymbol:
-    """`detail` stands behind the name; `name_span`, a part of `span`, is what is shown when it is chosen."""
-
-    name: str
-    detail: str
-    kind: SymbolKind
-    span: Span
-    name_span: Span
-    children: tuple[DocumentSymbol, ...] = ()
 
 
 def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...]:
@@ -68,6 +36,8 @@ def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...
         return tuple(_struct(each) for each in analysis.struct_declarations(path))
     if kind is FileKind.PROPERTIES:
         return tuple(_properties(analysis, path))
+    if kind is FileKind.JANI_MODEL and (json := analysis.json(path)):
+        return tuple(jani_symbols(json[0]))
     return ()
 
 

@@ -18,6 +18,7 @@ class FileKind(enum.Enum):
     PROPERTIES = "property file"
     JANI_MODEL = "JANI model"
     INTERFACE = "ROS interface definition"
+    CONFIGURATION = "configuration of as2fm"
     SPECIFICATION = "specification of another tool"
     UNKNOWN = "file of another kind"
 
@@ -28,6 +29,12 @@ PROJECT_EXTENSION = ".btproj"
 """Projects of Groot2, which list files of trees. They are read where a tree beside them is, and never changed."""
 EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
 """Files with other extensions are looked at only when they are named."""
+
+CONFIG_FILE = "as2fm.toml"
+PROJECT_FILE = "pyproject.toml"
+"""May hold a configuration in its table `tool.as2fm`."""
+
+CONFIG_FILES = (CONFIG_FILE, PROJECT_FILE)
 
 _ROOTS = {
     **dict.fromkeys(HL_SCXML.roots, FileKind.MACHINE),
@@ -41,6 +48,7 @@ _SKIPPED = re.compile(r"<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<!DOCTYPE[^>\[]*(?:\[
 _TREE_MARK = re.compile(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|main_tree_to_execute")
 _JANI_MODEL = re.compile(r'"(?:jani-version|automata)"\s*:')
 _JSON_SCHEMA = re.compile(r'"type"\s*:\s*"object"')
+_OUR_TABLE = re.compile(r"^\s*\[.*\bas2fm\b|^\s*tool\b.*\bas2fm\b", re.MULTILINE)
 _HEAD = 20_000
 
 
@@ -59,6 +67,9 @@ def root_name(text: str) -> str:
 
 def kind_of(path: str, text: str) -> FileKind:
     """What the file is by itself. What a system lists it as may say more (`roaml.project.analysis`)."""
+    name = path.replace("\\", "/").rpartition("/")[2]
+    if name == CONFIG_FILE or (name == PROJECT_FILE and _OUR_TABLE.search(text)):
+        return FileKind.CONFIGURATION
     extension = f".{path.rpartition('.')[2].lower()}"
     if extension in INTERFACE_EXTENSIONS:
         return FileKind.INTERFACE

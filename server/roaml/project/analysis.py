@@ -51,6 +51,7 @@ from roaml.model.system_file import (
 )
 from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
+from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile, Span
@@ -152,6 +153,9 @@ class Analysis:
 
     def json(self, path: str) -> tuple[JsonValue, tuple[Finding, ...]] | None:
         return self._of("json", path, lambda source: parse_json(source.text))
+
+    def configuration(self, path: str) -> Configuration | None:
+        return self._of("configuration", path, read_configuration)
 
     def properties(self, path: str) -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
         """The properties in a file, and what is wrong with their form."""

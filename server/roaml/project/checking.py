@@ -29,13 +29,14 @@ from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.configuration import missing_folders
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
-from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
+from roaml.rules import BY_CODE, RULES, file_too_large, invalid_setting, toml_syntax, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
 from roaml.rules.rule import (
     FileContext,
@@ -55,6 +56,7 @@ MAX_FINDINGS = 1000
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
+_OF_CONFIGURATION = (toml_syntax.RULE.code, invalid_setting.RULE.code)
 
 _GRAMMARS: dict[FileKind, Grammar] = {
     FileKind.SYSTEM: SYSTEM,
@@ -147,7 +149,11 @@ class Checker:
 
     def _wanted(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
-        return code == _CRASH or (code not in settings.ignore and (not settings.select or code in settings.select))
+        if code == _CRASH:
+            return True
+        # A choice of rules must not hide that it was not understood.
+        chosen = not settings.select or code in settings.select or code in _OF_CONFIGURATION
+        return chosen and code not in settings.ignore
 
     def _publish(self, path: str, finding: Finding) -> Diagnostic:
         severity = self.settings.severities.get(finding.code)
@@ -240,6 +246,8 @@ class _Run:
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
+            case FileKind.CONFIGURATION:
+                return (*parts, self._configuration_findings())
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
@@ -308,6 +316,8 @@ class _Run:
                 return FileContext(self.source, findings)
             case FileKind.INTERFACE:
                 return FileContext(self.source, self._interface_findings())
+            case FileKind.CONFIGURATION:
+                return FileContext(self.source, self._configuration_findings())
         document = self.analysis.document(self.path)
         assert document is not None
         grammar = self._grammar()
@@ -319,6 +329,10 @@ class _Run:
         kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
         package = self.path.replace("\\", "/").split("/")[-3:-2]
         return parse_interface(self.source.text, package[0] if package else "package", name, kind)[1]
+
+    def _configuration_findings(self) -> tuple[Finding, ...]:
+        configuration = self.analysis.configuration(self.path)
+        return (*configuration.findings, *missing_folders(configuration)) if configuration else ()
 
     def _grammar(self) -> Grammar | None:
         if self.kind is FileKind.MACHINE:

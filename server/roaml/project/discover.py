@@ -12,7 +12,7 @@ import os
 from collections.abc import Iterable, Iterator
 
 from roaml.disk import Problem, Roots, read, status_of
-from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
+from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, FileKind, kind_of
 from roaml.project.files import Files
 from roaml.text import decode
 
@@ -23,7 +23,7 @@ _HEAD = 65_536
 
 
 def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Roots | None = None) -> Iterator[str]:
-    """All files below the roots that by their extension may be ours, sorted within each folder, each once.
+    """All files below the roots that by their name may be ours, sorted within each folder, each once.
 
     Args:
         within: links out of these are not followed; out of any if not given.
@@ -40,7 +40,7 @@ def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Root
             names[:] = sorted(name for name in names if not _is_skipped(name))
             for name in sorted(files):
                 path = os.path.join(folder, name)
-                if name.lower().endswith(EXTENSIONS) and not _is_excluded(path, root, exclude):
+                if _may_be_ours(name) and not _is_excluded(path, root, exclude):
                     yield path
                     count += 1
                     if count >= MAX_FILES:
@@ -52,7 +52,7 @@ def is_candidate(path: str, roots: Iterable[str], exclude: tuple[str, ...] = ())
     for root in roots:
         if is_inside(path, root):
             *folders, name = os.path.relpath(path, root).split(os.sep)
-            if not any(map(_is_skipped, folders)) and name.lower().endswith(EXTENSIONS):
+            if not any(map(_is_skipped, folders)) and _may_be_ours(name):
                 return not _is_excluded(path, root, exclude)
     return False
 
@@ -60,6 +60,10 @@ def is_candidate(path: str, roots: Iterable[str], exclude: tuple[str, ...] = ())
 def is_inside(path: str, folder: str) -> bool:
     """Whether a path lies somewhere below a folder."""
     return path.startswith(os.path.join(folder, ""))
+
+
+def _may_be_ours(name: str) -> bool:
+    return name.lower().endswith(EXTENSIONS) or name in CONFIG_FILES
 
 
 def _is_skipped(folder_name: str) -> bool:

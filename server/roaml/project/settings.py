@@ -1,31 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the user has configured, the same for editor and CI.
 
-Read from `as2fm.toml` or `[tool.as2fm]` of a `pyproject.toml` in the root folder. A mistake in it is a message; what is
-right is still used.
+Read from `as2fm.toml` or `[tool.as2fm]` of a `pyproject.toml` in the root folder. What is wrong in it is reported in
+that file (`roaml.project.configuration`); what is right is still used.
 """
 
 from __future__ import annotations
 
 import glob
 import os
-import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
-from roaml.disk import MAX_CONFIGURATION, NotReadableError, Problem, required
+from roaml.model.kinds import CONFIG_FILE
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
+from roaml.rules.rule import close_names, did_you_mean
+from roaml.toml import Path
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-CONFIG_FILE = "as2fm.toml"
 SCHEDULERS = ("uniform",)
 SEVERITIES = {severity.label: severity for severity in Severity}
 
@@ -43,6 +38,7 @@ class Settings:
         or maximum over all schedulers; else empty.
     limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
+    origin: path of the configuration file that they were read from, "" if there is none.
     """
 
     roots: tuple[str, ...] = ()
@@ -56,6 +52,7 @@ class Settings:
     scheduler: str = ""
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
+    origin: str = ""
 
 
 def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ...]:
@@ -63,61 +60,52 @@ def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ..
     return tuple(part for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
 
 
-def read_settings(folder: str, base: Settings) -> tuple[Settings, tuple[str, ...]]:
-    """`base` with what the configuration in `folder` says, and what is wrong with it (sentences with the file)."""
-    for name, keys in ((CONFIG_FILE, ()), ("pyproject.toml", ("tool", "as2fm"))):
-        path = os.path.join(folder, name)
-        try:
-            table: Any = tomllib.loads(required(path, MAX_CONFIGURATION).decode("utf-8").replace("\r\n", "\n"))
-        except NotReadableError as error:
-            if error.problem is Problem.MISSING:
-                continue
-            return base, (str(error),)
-        except (ValueError, RecursionError) as error:
-            if name == CONFIG_FILE:
-                words = "brackets are nested too deep" if isinstance(error, RecursionError) else str(error)
-                return base, (f"{path}: {words}",)
-            continue
-        for key in keys:
-            table = table.get(key) if isinstance(table, dict) else None
-        if isinstance(table, dict):
-            return settings_from(table, folder, base, path)
-    return base, ()
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """What is wrong in a configuration table.
+
+    Attributes:
+        path: where in the table: keys of tables and indexes of lists.
+        message: what is wrong and what to do.
+        is_key: whether the key is meant and not its value.
+        instead: names that may be meant in place of what is written.
+    """
+
+    path: Path
+    message: str
+    is_key: bool = False
+    instead: tuple[str, ...] = ()
 
 
-def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
-    """The configuration in the nearest folder around `path` that has one, and what is wrong with it."""
-    for folder in _folders_above(path):
-        settings, problems = read_settings(folder, Settings())
-        if problems or settings != Settings():
-            return settings, problems
-    return Settings(), ()
+@dataclass(frozen=True, slots=True)
+class Folder:
+    """A folder that a configuration names: as written at `path` of the table, and in full."""
+
+    path: Path
+    written: str
+    full: str
 
 
-def settings_from(
-    table: Mapping[str, Any], folder: str, base: Settings, origin: str
-) -> tuple[Settings, tuple[str, ...]]:
-    """`base` with the values of a configuration table; paths in it are relative to `folder`."""
-    problems: list[str] = []
+def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[Mistake, ...]]:
+    """`base` with the values of a configuration table, and the mistakes in it.
+
+    Args:
+        folder: what paths in the table are relative to.
+    """
+    mistakes: list[Mistake] = []
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in _KEYS:
-            problems.append(f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}")
+            close = close_names(key, _KEYS)
+            known = did_you_mean(close) if close else f"; there are {', '.join(sorted(_KEYS))}"
+            mistakes.append(Mistake((key,), f"there is no setting `{key}`{known}", is_key=True, instead=close))
             continue
-        if key == "verify":
-            problems += _verify_problems(value, origin)
-            if isinstance(value, dict) and value.get("scheduler") in SCHEDULERS:
-                changes["scheduler"] = value["scheduler"]
-            continue
-        read = _KEYS[key](value)
+        read = _KEYS[key]((key,), value, mistakes)
         if read is None:
-            problems.append(f"{origin}: `{key}` is not {_WANTED[key]}")
             continue
-        if key in _OF_CODES:
-            problems += [f"{origin}: `{key}` names `{code}`, and there is no such rule" for code in _unknown(read)]
         name = _FIELDS.get(key, key.replace("-", "_"))
-        if key in ("roots", "ros-path"):
-            read = tuple(os.path.normpath(os.path.join(folder, path)) for path in read)
+        if key in _FOLDERS:
+            read = tuple(_full(folder, path) for path in read)
         if key == "exclude":
             read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
         if key in _LIMITS:
@@ -125,78 +113,133 @@ def settings_from(
             continue
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
-    return replace(base, **changes), tuple(problems)
+    return replace(base, **changes), tuple(mistakes)
 
 
-def _verify_problems(value: Any, origin: str) -> Iterator[str]:
-    """What is wrong with the table `[verify]`."""
-    if not isinstance(value, dict):
-        yield f"{origin}: `verify` is not a table"
-        return
-    for key, said in value.items():
-        if key != "scheduler":
-            yield f"{origin}: unknown setting `verify.{key}`; there is scheduler"
-        elif said not in SCHEDULERS:
-            yield f"{origin}: `verify.scheduler` is not {' or '.join(SCHEDULERS)}"
+def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
+    """The folders that a configuration table names."""
+    for key in _FOLDERS:
+        value = table.get(key)
+        if isinstance(value, str):
+            yield Folder((key,), value, _full(folder, value))
+        elif isinstance(value, list):
+            for index, each in enumerate(value):
+                if isinstance(each, str):
+                    yield Folder((key, index), each, _full(folder, each))
 
 
-def _strings(value: Any) -> tuple[str, ...] | None:
+def _full(folder: str, path: str) -> str:
+    return os.path.normpath(os.path.join(folder, path.replace("\0", "\ufffd")))
+
+
+_Reader = Callable[[Path, Any, list[Mistake]], Any]
+"""Reads the value at a path; notes what is wrong, and gives None for a value of which nothing can be used."""
+
+
+def _strings(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
     if isinstance(value, str):
         return (value,)
-    return tuple(value) if isinstance(value, list) and all(isinstance(v, str) for v in value) else None
+    if isinstance(value, list) and all(isinstance(each, str) for each in value):
+        return tuple(value)
+    mistakes.append(Mistake(path, f"`{path[0]}` must be a list of strings"))
+    return None
 
 
-def _severities(value: Any) -> dict[str, Severity] | None:
-    if not isinstance(value, dict) or not all(isinstance(v, str) and v in SEVERITIES for v in value.values()):
+def _codes(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+    read = _strings(path, value, mistakes)
+    if read is None:
         return None
-    return {code: SEVERITIES[label] for code, label in value.items()}
+    places = [path] if isinstance(value, str) else [(*path, index) for index in range(len(read))]
+    for place, code in zip(places, read, strict=True):
+        if code not in BY_CODE:
+            mistakes.append(_no_rule(place, code))
+    return tuple(code for code in read if code in BY_CODE)
 
 
-def _boolean(value: Any) -> bool | None:
-    return value if isinstance(value, bool) else None
+def _no_rule(place: Path, code: str, is_key: bool = False) -> Mistake:
+    close = close_names(code, BY_CODE)
+    return Mistake(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
 
 
-def _count(value: Any) -> int | None:
-    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else None
+def _severities(path: Path, value: Any, mistakes: list[Mistake]) -> dict[str, Severity] | None:
+    if not isinstance(value, dict):
+        mistakes.append(Mistake(path, f"`{path[0]}` must be a table of rule codes and severities"))
+        return None
+    found = {}
+    for code, label in value.items():
+        if code not in BY_CODE:
+            mistakes.append(_no_rule((*path, code), code, is_key=True))
+        elif not isinstance(label, str) or label not in SEVERITIES:
+            known = ", ".join(f"`{each}`" for each in SEVERITIES)
+            close = close_names(label, SEVERITIES) if isinstance(label, str) else ()
+            text = f"the severity of `{code}` must be one of {known}{did_you_mean(close)}"
+            mistakes.append(Mistake((*path, code), text, instead=close))
+        else:
+            found[code] = SEVERITIES[label]
+    return found
 
 
-def _unknown(codes: Iterable[str]) -> list[str]:
-    return [code for code in codes if code not in BY_CODE]
+def _boolean(path: Path, value: Any, mistakes: list[Mistake]) -> bool | None:
+    if isinstance(value, bool):
+        return value
+    mistakes.append(Mistake(path, f"`{path[0]}` must be true or false"))
+    return None
+
+
+def _count(path: Path, value: Any, mistakes: list[Mistake]) -> int | None:
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+        return value
+    mistakes.append(Mistake(path, f"`{path[0]}` must be a whole number above 0"))
+    return None
+
+
+def _scheduler(path: Path, value: Any, mistakes: list[Mistake]) -> str | None:
+    """The scheduler that the table `verify` names."""
+    if not isinstance(value, dict):
+        mistakes.append(Mistake(path, f"`{path[0]}` must be a table"))
+        return None
+    scheduler = None
+    for key, said in value.items():
+        if key != "scheduler":
+            close = close_names(key, ("scheduler",))
+            message = f"there is no setting `verify.{key}`; there is `scheduler`"
+            mistakes.append(Mistake((*path, key), message, is_key=True, instead=close))
+        elif said not in SCHEDULERS:
+            message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"
+            mistakes.append(Mistake((*path, key), message))
+        else:
+            scheduler = said
+    return scheduler
 
 
 _SETS = ("select", "ignore")
 _LIMITS = {"max-cells": "cells", "max-parts": "parts"}
-_OF_CODES = (*_SETS, "severity")
-_FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
-_KEYS: dict[str, Any] = {
+_FOLDERS = ("roots", "ros-path")
+_FIELDS = {"ros-path": "ros_paths", "severity": "severities", "verify": "scheduler"}
+_KEYS: dict[str, _Reader] = {
     "roots": _strings,
     "ros-path": _strings,
     "exclude": _strings,
-    "select": _strings,
-    "ignore": _strings,
+    "select": _codes,
+    "ignore": _codes,
     "severity": _severities,
     "warnings-as-errors": _boolean,
-    "verify": None,
+    "verify": _scheduler,
     "max-cells": _count,
     "max-parts": _count,
-}
-_WANTED = {
-    **dict.fromkeys(("roots", "ros-path", "exclude", "select", "ignore"), "a list of texts"),
-    "severity": "a table of codes with " + ", ".join(SEVERITIES),
-    "warnings-as-errors": "true or false",
-    **dict.fromkeys(_LIMITS, "a whole number above 0"),
 }
 
 
 def enclosing_root(path: str) -> str | None:
     """The nearest folder around `path` that is a repository or holds our configuration."""
-    for folder in _folders_above(path):
+    for folder in folders_above(path):
         if any(os.path.exists(os.path.join(folder, mark)) for mark in (".git", ".hg", CONFIG_FILE)):
             return folder
     return None
 
 
-def _folders_above(path: str) -> Iterator[str]:
+def folders_above(path: str) -> Iterator[str]:
+    """A folder, or the folder of a file, and all folders around it."""
     folder = path if os.path.isdir(path) else os.path.dirname(path)
     while True:
         yield folder

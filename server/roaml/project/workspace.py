@@ -55,6 +55,8 @@ class Snapshot:
         for path in self._listed:
             if path not in found and analysis.kind(path) not in _NOT_BY_THEMSELVES:
                 found[path] = None
+        if origin := self.checker.settings.origin:  # wherever it lies
+            found[origin] = None
         return tuple(path for path in found if analysis.source(path) is not None)
 
     def candidates(self) -> tuple[str, ...]:

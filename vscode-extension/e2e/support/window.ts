@@ -152,15 +152,22 @@ export class Window {
         }
     }
 
-    /** Kept as output of the tests, and for the README. */
-    async screenshot(name: string): Promise<void> {
+    /** Kept as output of the tests, for the README and for the walkthrough: the window, or a part of it. */
+    async screenshot(name: string, clip?: Clip): Promise<void> {
         fs.mkdirSync(OUTPUT, { recursive: true });
-        await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`) });
+        await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`), ...(clip ? { clip } : {}) });
     }
 
     async close(): Promise<void> {
         await this.page.context().close();
     }
+}
+
+export interface Clip {
+    readonly x: number;
+    readonly y: number;
+    readonly width: number;
+    readonly height: number;
 }
 
 /** In milliseconds, for whatever is waited for. */

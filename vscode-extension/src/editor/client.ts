@@ -28,6 +28,8 @@ const SELECTOR: DocumentSelector = [
         { scheme: "untitled", language },
     ]),
     { scheme: "file", pattern: "**/*.{msg,srv,action}" },
+    // Mistakes in the configuration are shown as they are typed.
+    { scheme: "file", pattern: "**/{as2fm,pyproject}.toml" },
 ];
 
 /** The command with which the server's lenses show places; its arguments are in terms of the protocol. */
@@ -116,6 +118,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
             showCounterexample: SHOW_COUNTEREXAMPLE,
+            triggerSuggest: "editor.action.triggerSuggest",
         },
         progressOnInitialization: false,
         initializationFailedHandler: () => false,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as vscode from "vscode";
 import type { Location, Position } from "vscode-languageserver-protocol";
-import { migrate, TRANSLATE, type Translated } from "../protocol";
+import { migrate, TRANSLATE } from "../protocol";
 import { thisMachine } from "../server/machine";
 import { pythons } from "../server/python";
 import { SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
 import type { Counterexamples } from "./counterexamples";
 import type { Documents } from "./documents";
+import type { JaniView } from "./janiView";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
@@ -25,6 +26,7 @@ export interface Parts {
     readonly documents: Documents;
     readonly tasks: Tasks;
     readonly plain: PlainScxmlPreview;
+    readonly jani: JaniView;
     readonly pictures: PicturePanels;
     readonly tests: PropertyTests;
     readonly counterexamples: Counterexamples;
@@ -34,6 +36,8 @@ export function registerCommands(parts: Parts): void {
     const { context, log, server, status, pictures } = parts;
     const commands: Record<string, () => unknown> = {
         translate: trusted(() => translate(parts)),
+        verifySystem: trusted(() => verify(parts)),
+        showJani: () => withEditor((editor) => parts.jani.open(editor.document.uri, vscode.ViewColumn.Active)),
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
         showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
@@ -81,15 +85,20 @@ function trusted(run: () => unknown): () => unknown {
     return () => (isTrusted() ? run() : undefined);
 }
 
-/** Open a translation, wherever it was asked for. */
-export async function openTranslated(translated: Translated): Promise<void> {
-    const document = await vscode.workspace.openTextDocument(vscode.Uri.parse(translated.uri));
-    await vscode.window.showTextDocument(document, { preview: true, viewColumn: vscode.ViewColumn.Beside });
-}
-
 async function translate({ server, documents }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     if (system) await vscode.commands.executeCommand(TRANSLATE, server.client?.code2ProtocolConverter.asUri(system));
+}
+
+async function verify({ documents, server, tests }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    const uri = system && server.client?.code2ProtocolConverter.asUri(system);
+    if (uri === undefined) return;
+    // First: what is run may lead to an error, which then keeps the focus.
+    await vscode.commands.executeCommand("workbench.view.testing.focus");
+    if (await tests.verify(uri, [])) return;
+    const name = vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
+    void vscode.window.showInformationMessage(vscode.l10n.t("{0} lists no properties that can be verified.", name));
 }
 
 async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {

@@ -5,6 +5,7 @@ import * as vscode from "vscode";
 import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
 import {
     properties,
+    SHOW_FIRST_ERROR,
     STUCK,
     VERIFY,
     type Property,
@@ -16,6 +17,7 @@ import { outcomeOf, type Outcome } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE } from "./client";
 import type { LanguageServer } from "./server";
+import { done } from "./steps";
 import { isTrusted } from "./trust";
 
 const PAUSE = 300;
@@ -59,17 +61,20 @@ export class PropertyTests implements vscode.Disposable {
         ];
     }
 
-    /** Run properties of a system, as from the lenses; all if none are named. */
-    async verify(system: string, names: readonly string[]): Promise<void> {
+    /** Run properties of a system, as from the lenses; all if none are named. Whether there are any. */
+    async verify(system: string, names: readonly string[]): Promise<boolean> {
         await this.refresh();
         const suite = this.controller.items.get(system);
-        if (!suite) return;
+        if (!suite) return false;
         const named = names
             .map((name) => suite.children.get(testId(system, name)))
             .filter((item) => item !== undefined);
         const none = new vscode.CancellationTokenSource();
         await this.run(new vscode.TestRunRequest(named.length > 0 ? named : [suite]), none.token);
         none.dispose();
+        // Leads to the first error of a system that has some, wherever it is; else it does nothing.
+        await vscode.commands.executeCommand(SHOW_FIRST_ERROR, system);
+        return true;
     }
 
     /** The property that a test stands for. */
@@ -196,6 +201,7 @@ export class PropertyTests implements vscode.Disposable {
             run.errored(item, new vscode.TestMessage(outcome.message));
             return;
         }
+        done("verified");
         const { short, milliseconds, stuck } = outcome;
         const brief = stuck === undefined ? short : `${short}, ${vscode.l10n.t("gets stuck")}`;
         item.description = brief;

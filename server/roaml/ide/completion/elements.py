@@ -17,6 +17,9 @@ from roaml.ide.occurrence import HANDLES
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.rules.thread_element_outside_thread import INSIDE as INSIDE_THREADS
+from roaml.rules.thread_element_outside_thread import OUTSIDE as OUTSIDE_THREADS
+from roaml.rules.thread_element_outside_thread import UNUSUAL as UNUSUAL_IN_THREADS
 from roaml.xml import Element
 
 _MOST_CHOICES = 20
@@ -45,12 +48,25 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
         yield from _tree_nodes(request, parents, bare=bare)
         return
     for name, occurrence in parent.type.children.items():
+        if not _has_effect(request, parents, name):
+            continue
         if sum(child.name == name for child in parent.element.elements) < occurrence.most or not bare:
             type_child = request.file.grammar.child(parent.type, name)
             if type_child is not None:
                 if bare:
                     yield from sending(request, type_child)
                 yield _item(request, type_child, parents, bare=bare)
+
+
+def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool:
+    """Whether an element that the schema allows is not reported there at once (`tree-element-in-node`,
+    `thread-element-outside-thread`)."""
+    if name.startswith("bt_"):
+        sections = request.sections
+        return "node_models" not in sections or "behavior_tree" in sections
+    if any(parent.element.name == "ros_action_thread" for parent in parents):
+        return name not in (*OUTSIDE_THREADS, *UNUSUAL_IN_THREADS)
+    return name not in INSIDE_THREADS
 
 
 def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:

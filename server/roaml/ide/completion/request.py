@@ -57,6 +57,12 @@ class Request:
         return tuple(system for system in found if system is not None)
 
     @cached_property
+    def sections(self) -> frozenset[str]:
+        """The sections of system files in which the file is listed."""
+        listed = (each for system in self.systems for each in self.analysis.listed(system.path))
+        return frozenset(each.input.section for each in listed if each.path == self.path)
+
+    @cached_property
     def all_systems(self) -> tuple[System, ...]:
         """All systems of the workspace, the file's own first."""
         others = (self.analysis.system(path) for path in self.analysis.system_paths)

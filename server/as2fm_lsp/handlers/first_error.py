@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm.showFirstError`: systems with errors are neither translated nor verified; lenses say so and lead to the cause.
+
+The client shows the place if it can (`window/showDocument`); a message names it in any case.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+from as2fm_lsp.handlers.asked import Asked
+from roaml.diagnostics import Diagnostic
+from roaml.ide.system_names import system_names
+from roaml.ide.verifiable import verifiable
+from roaml.project.workspace import Snapshot
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+COMMAND = "as2fm.showFirstError"
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.command(COMMAND)
+    async def show_first_error(ls: LanguageServer, *arguments: object) -> types.Location | None:
+        """Show the first error of a system, in whichever file it is.
+
+        Args:
+            ls: the server; pygls gives it to a function that takes any number of arguments.
+            arguments: the URI of the system file.
+
+        Returns:
+            The place; null if the system has no errors any more.
+        """
+        if len(arguments) != 1 or not isinstance(arguments[0], str):
+            text = f"{COMMAND} takes the URI of a system file."
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Error, text))
+            return None
+        system = session.convert.path(arguments[0])
+        snapshot = session.moment().snapshot(system)
+        errors = snapshot.checker.errors(system)
+        place = await show(server, snapshot, errors) if errors else None
+        if place is not None:
+            where = f"{os.path.basename(errors[0].path)}:{place.range.start.line + 1}"
+            text = f"{where}: {errors[0].message}"
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Error, text))
+        return place
+
+
+async def show(server: Server, snapshot: Snapshot, errors: Sequence[Diagnostic]) -> types.Location | None:
+    """Let the client show the place of the first error, if it can; the place."""
+    source = snapshot.analysis.source(errors[0].path)
+    if source is None:
+        return None
+    convert = server.session.convert
+    place = types.Location(convert.uri(errors[0].path), convert.range(source, errors[0].span))
+    window = server.client_capabilities.window
+    if window is not None and window.show_document is not None and window.show_document.support:
+        params = types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range)
+        await server.window_show_document_async(params)
+    return place
+
+
+def counted(errors: tuple[Diagnostic, ...]) -> str:
+    return "1 error" if len(errors) == 1 else f"{len(errors)} errors"
+
+
+def errors_of(on: Asked) -> dict[str, tuple[Diagnostic, ...]]:
+    """The systems of a file that have errors, with these."""
+    systems = on.analysis.memberships.get(on.path, ())
+    found = {system: on.snapshot.checker.errors(system) for system in systems if os.path.isabs(system)}
+    return {system: errors for system, errors in found.items() if errors}
+
+
+def lenses(on: Asked, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
+    """At a system file that has errors, and at the properties of such systems."""
+    names = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, errors in broken.items():
+        arguments = [on.convert.uri(system)]
+        file = on.analysis.system_file(system)
+        if system == on.path and file is not None:
+            title = f"{counted(errors)}: cannot be translated or verified"
+            yield types.CodeLens(on.range(file.element.name_span), types.Command(title, COMMAND, arguments=arguments))
+            continue
+        for each in verifiable(on.analysis, system):
+            if each.path == on.path:
+                title = f"{counted(errors)} in {names[system]}: cannot be verified"
+                yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=arguments))

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm/janiView`: a JANI file laid out for reading, with the outline of that text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypedDict
+
+from lsprotocol import types
+
+from as2fm_lsp.handlers.structure import nested
+from as2fm_lsp.verification import background
+from roaml.disk import Problem
+from roaml.ide.jani_view import JaniView, jani_view
+from roaml.text import SourceFile
+
+if TYPE_CHECKING:
+    from as2fm_lsp.server import Server
+
+METHOD = "as2fm/janiView"
+MAX_CHARACTERS = 4_000_000
+"""Larger files are not laid out: editors do not fold or colour texts of that size either."""
+
+
+class View(TypedDict):
+    """`problem` tells why there is no text; else it is empty."""
+
+    text: str
+    symbols: list[types.DocumentSymbol]
+    problem: str
+
+
+def register(server: Server) -> None:
+    session = server.session
+
+    @server.feature(METHOD)
+    async def view(params: Any) -> View:
+        path = session.convert.path(params.textDocument.uri)
+        source = session.moment().snapshot(path).analysis.files.read(path)
+        if isinstance(source, Problem):
+            return _problem(f"This file cannot be shown: {source.value}.")
+        if len(source.text) > MAX_CHARACTERS:
+            return _problem(f"This file is too large to be laid out ({len(source.text) / 1e6:.0f} MB).")
+        return await background.in_thread(lambda _: _converted(path, jani_view(source.text)), lambda: None)
+
+    def _converted(path: str, found: JaniView) -> View:
+        source = SourceFile(path, found.text)
+        symbols = [nested(each, lambda span: session.convert.range(source, span)) for each in found.symbols]
+        return {"text": found.text, "symbols": symbols, "problem": ""}
+
+
+def _problem(text: str) -> View:
+    return {"text": "", "symbols": [], "problem": text}

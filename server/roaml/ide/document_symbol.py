@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One entry of an outline, and the kinds of what it stands for."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.text import Span
+
+
+class SymbolKind(enum.Enum):
+    MACHINE = "machine"
+    DATAMODEL = "datamodel"
+    VARIABLE = "variable"
+    PORT = "port"
+    ROS = "ROS interface"
+    STATE = "state"
+    TRANSITION = "transition"
+    THREAD = "action thread"
+    TREE = "tree"
+    CONTROL = "inner node of a tree"
+    LEAF = "leaf of a tree"
+    SYSTEM = "system"
+    SECTION = "section of a system file"
+    INPUT = "file of a system"
+    STRUCT = "struct"
+    MEMBER = "member of a struct"
+    PROPERTY = "property"
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentSymbol:
+    """`detail` stands behind the name; `name_span`, a part of `span`, is what is shown when it is chosen."""
+
+    name: str
+    detail: str
+    kind: SymbolKind
+    span: Span
+    name_span: Span
+    children: tuple[DocumentSymbol, ...] = ()

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A JANI model for people: laid out, with an outline. The file itself, written by a translator, stays compact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roaml.ide.document_symbol import DocumentSymbol
+from roaml.ide.format_json import gaps
+from roaml.ide.jani_symbols import jani_symbols
+from roaml.ide.layout import Layout, edits
+from roaml.json import parse
+from roaml.text import apply_edits
+
+_LAYOUT = Layout(width=2)
+
+
+@dataclass(frozen=True, slots=True)
+class JaniView:
+    """A text, and its outline with places in it."""
+
+    text: str
+    symbols: tuple[DocumentSymbol, ...]
+
+
+def jani_view(text: str) -> JaniView:
+    """Lay out the text of a JANI file: one member or item a line, and on one line what fits on one line.
+
+    Args:
+        text: of the file; what is not sound JSON stays as it is.
+    """
+    value, findings = parse(text)
+    if any(finding.code == "json-syntax" for finding in findings):
+        return JaniView(text, tuple(jani_symbols(value)))
+    laid_out = apply_edits(text, tuple(edits(text, gaps(text, _LAYOUT))))
+    return JaniView(laid_out, tuple(jani_symbols(parse(laid_out)[0])))

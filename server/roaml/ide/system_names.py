@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How systems are told apart where something is said about several of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TypeVar
+
+MOST = 3
+"""More systems than this are not listed."""
+
+T = TypeVar("T")
+
+
+def system_names(paths: Iterable[str]) -> dict[str, str]:
+    """A short name for each system file: as many of its last folders as it takes to tell it from the others."""
+    parts = {path: path.replace("\\", "/").split("/") for path in dict.fromkeys(paths)}
+
+    def name(path: str) -> str:
+        own = parts[path]
+        others = [other for each, other in parts.items() if each != path]
+        for count in range(1, len(own)):
+            if all(other[-count:] != own[-count:] for other in others):
+                return "/".join(own[-count:])
+        return path
+
+    return {path: name(path) for path in parts}
+
+
+def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
+    """What is said of each system, each once, with the names of the systems that it is said of.
+
+    Args:
+        said: by the path of the system; hashable.
+
+    Returns:
+        In the order of the systems. The names are "" if the same is said of all.
+    """
+    names = system_names(said)
+    groups: dict[T, list[str]] = {}
+    for path, each in said.items():
+        groups.setdefault(each, []).append(names[path])
+    if len(groups) == 1:
+        return [(next(iter(groups)), "")]
+    return [(each, _listed(found)) for each, found in groups.items()]
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
+    return ", ".join(names[:MOST]) + more

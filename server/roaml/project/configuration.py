@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Configuration files: what they say, and what is wrong in them with its place.
+
+- `as2fm.toml` goes before `[tool.as2fm]` of a `pyproject.toml` in the same folder. A `pyproject.toml` that is not TOML,
+  or says nothing of this tool, is somebody else's.
+- Files are read as models are: regular files of a bounded size only (`roaml.project.files`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from roaml.diagnostics import Finding, Fix
+from roaml.disk import Problem
+from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
+from roaml.project.files import MAX_CHARACTERS, DiskFiles
+from roaml.project.settings import Folder, Mistake, Settings, folders_above, folders_in, settings_from
+from roaml.rules import invalid_setting, missing_folder, toml_syntax
+from roaml.text import SourceFile, Span, TextEdit
+from roaml.toml import Path, Places, TomlError, loads, places
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """What a configuration file says.
+
+    Attributes:
+        table: its values; None if they cannot be read.
+        findings: what is wrong, whatever lies on the disk.
+        folders: the folders that it names, with their places.
+    """
+
+    table: Mapping[str, Any] | None
+    findings: tuple[Finding, ...] = ()
+    folders: tuple[tuple[Span, Folder], ...] = ()
+
+
+def read_configuration(source: SourceFile) -> Configuration:
+    """A pure function of the text and its path."""
+    is_ours = os.path.basename(source.path) == CONFIG_FILE
+    prefix: Path = () if is_ours else ("tool", "as2fm")
+    if len(source.text) > MAX_CHARACTERS:
+        return Configuration(None)  # told by `file-too-large`
+    if is_ours and source.encoding != "utf-8":
+        text = f"this file is encoded as {source.encoding}, but TOML is written in UTF-8"
+        return Configuration(None, (toml_syntax.RULE.at(Span(0, min(1, len(source.text))), text),))
+    try:
+        table: Any = loads(source.text)
+    except TomlError as error:
+        message = str(error)
+        syntax = (toml_syntax.RULE.at(error.span, f"{message[:1].lower()}{message[1:]}"),)
+        return Configuration(None, syntax if is_ours else ())
+    for key in prefix:
+        table = table.get(key) if isinstance(table, dict) else None
+    if table is None:
+        return Configuration(None)
+    known = places(source.text)
+    if not isinstance(table, dict):
+        message = "`tool.as2fm` must be a table of settings"
+        return Configuration(None, (invalid_setting.RULE.at(_span(source, known, prefix), message),))
+    _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
+    found = tuple(_finding(source, known, prefix, each) for each in mistakes)
+    folders = folders_in(table, os.path.dirname(source.path))
+    return Configuration(table, found, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
+
+
+def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
+    """The folders that are not there at this moment."""
+    return tuple(
+        missing_folder.finding(span, folder.written)
+        for span, folder in configuration.folders
+        if not os.path.isdir(folder.full)
+    )
+
+
+def _finding(source: SourceFile, known: Places, prefix: Path, mistake: Mistake) -> Finding:
+    path = (*prefix, *mistake.path)
+    span = known.keys.get(path) if mistake.is_key else None
+    span = span or _span(source, known, path)
+    quotes = source.text[span.start : span.start + 1]
+    quotes = quotes if quotes in ("'", '"') else ""
+    fixes = (
+        Fix(f"Change to `{name}`", (TextEdit(span, f"{quotes}{name}{quotes}"),), preferred=number == 0)
+        for number, name in enumerate(mistake.instead)
+    )
+    return invalid_setting.RULE.at(span, mistake.message, *fixes)
+
+
+def _span(source: SourceFile, known: Places, path: Path) -> Span:
+    """The place of a value, or of the nearest one around it that has a place."""
+    while path:
+        for spans in (known.values, known.keys):
+            if path in spans:
+                return spans[path]
+        path = path[:-1]
+    return Span(0, min(1, len(source.text)))
+
+
+def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
+    """The configuration in the nearest folder around `path` that has one.
+
+    Returns:
+        The settings, and sentences on what is wrong with the configuration. If `Settings.origin` is set, the same is
+        among the diagnostics of that file.
+    """
+    disk = DiskFiles()
+    for folder in folders_above(path):
+        for name in CONFIG_FILES:
+            file = os.path.join(folder, name)
+            source = disk.read(file)
+            if isinstance(source, Problem):
+                if name == CONFIG_FILE and source is not Problem.MISSING:
+                    return Settings(), (f"{file}: {source.value}",)
+                continue
+            found = read_configuration(source)
+            if name == PROJECT_FILE and found.table is None and not found.findings:
+                continue
+            settings, _ = settings_from(found.table or {}, folder, Settings())
+            return replace(settings, origin=file), tuple(_sentence(source, finding) for finding in found.findings)
+    return Settings(), ()
+
+
+def _sentence(source: SourceFile, finding: Finding) -> str:
+    start = source.lines.position(finding.span.start)
+    return f"{source.path}:{start.line + 1}:{start.column + 1}: {finding.message}"

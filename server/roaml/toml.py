@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""TOML with places: what Python's own parser does not keep.
+
+`tomllib` decides what is valid and gives the values. The scanner here walks over the same text once more and notes
+where keys and values are; it relies on the text being valid.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from roaml.text import LineIndex, Position, Span
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+Path: TypeAlias = "tuple[str | int, ...]"
+"""Keys of tables and indexes of arrays, from the outside to the inside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the keys and the values of a document are. A table with a header of its own has that as its value."""
+
+    keys: Mapping[Path, Span]
+    values: Mapping[Path, Span]
+
+
+class TomlError(ValueError):
+    """A text is not TOML: the message of the parser, without its place, and the place."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.span = span
+
+
+_WHERE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)\Z")
+
+
+def loads(text: str) -> dict[str, Any]:
+    """The values of a document.
+
+    Raises:
+        TomlError: the text is not TOML, or is nested too deeply for the parser.
+    """
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise TomlError("Values are nested too deeply", Span(0, min(1, len(text)))) from None
+    except ValueError as error:
+        message = str(error)
+        where = _WHERE.search(message)
+        last = at = max(0, len(text.rstrip()) - 1)
+        if where is not None:
+            message = message[: where.start()]
+            if where[1] is not None:
+                # The parser turns `\r\n` into `\n`, which changes neither lines nor columns.
+                at = LineIndex(text).offset(Position(int(where[1]) - 1, int(where[2]) - 1))
+        start = min(at, last)
+        raise TomlError(message, Span(start, min(start + 1, len(text)))) from None
+
+
+_DEEPEST = 8
+"""Values that are nested more deeply have no places of their own."""
+
+_SPACE = re.compile(r"[ \t]*")
+_BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*'""")
+_STRING = re.compile(
+    r'"""(?:[^\\]|\\.)*?"{3,5}(?!")' r"|'''.*?'{3,5}(?!')" r'|"(?:[^"\\\n]|\\.)*"' r"|'[^'\n]*'",
+    re.DOTALL,
+)
+_BARE = re.compile(r"[^,\]}#\n]*")
+_WORD = re.compile(r"[^,=\[\]{}#\s\"']+")
+
+
+def places(text: str) -> Places:
+    """The places in a valid document."""
+    scanner = _Scanner(text)
+    scanner.document()
+    return Places(scanner.keys, scanner.values)
+
+
+class _Scanner:
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.at = 0
+        self.keys: dict[Path, Span] = {}
+        self.values: dict[Path, Span] = {}
+
+    def document(self) -> None:
+        table: Path = ()
+        counts: dict[Path, int] = {}
+        while self._blank():
+            if not self._sees("["):
+                self._pair(table, 0)
+                continue
+            start = self.at
+            is_element = self._sees("[[")
+            self.at += 2 if is_element else 1
+            table = ()
+            for part, span in self._key():
+                table = (*table, part)
+                self.keys.setdefault(table, span)
+                if table in counts:
+                    table = (*table, counts[table])
+            if is_element:
+                array = table[:-1] if table[-1:] and isinstance(table[-1], int) else table
+                counts[array] = counts.get(array, -1) + 1
+                table = (*array, counts[array])
+            self.at = self.text.index("]", self.at) + (2 if is_element else 1)
+            header = Span(start, self.at)
+            self.values.setdefault(table, header)
+            if is_element:
+                self.values.setdefault(table[:-1], header)
+
+    def _sees(self, mark: str) -> bool:
+        return self.text.startswith(mark, self.at)
+
+    def _blank(self) -> bool:
+        """Go over white space and comments; whether anything follows."""
+        found = _BLANK.match(self.text, self.at)
+        assert found is not None
+        self.at = found.end()
+        return self.at < len(self.text)
+
+    def _space(self) -> None:
+        found = _SPACE.match(self.text, self.at)
+        assert found is not None
+        self.at = found.end()
+
+    def _key(self) -> Iterator[tuple[str, Span]]:
+        """The parts of a dotted key."""
+        while True:
+            self._space()
+            found = _KEY.match(self.text, self.at)
+            if found is None:  # only in a text that is not TOML
+                return
+            self.at = found.end()
+            yield _decoded(found[0]), Span(found.start(), found.end())
+            self._space()
+            if not self._sees("."):
+                return
+            self.at += 1
+
+    def _pair(self, table: Path, depth: int) -> None:
+        path = table
+        for part, span in self._key():
+            path = (*path, part)
+            self.keys.setdefault(path, span)
+        self.at = self.text.index("=", self.at) + 1
+        self._space()
+        self._value(path, depth)
+
+    def _value(self, path: Path, depth: int) -> None:
+        start = self.at
+        if depth >= _DEEPEST:
+            self._skip()
+        elif self._sees("["):
+            self._items(path, "]", depth)
+        elif self._sees("{"):
+            self._items(path, "}", depth)
+        else:
+            self._scalar()
+        self.values[path] = Span(start, self.at)
+
+    def _items(self, path: Path, end: str, depth: int) -> None:
+        """What stands between brackets, separated by commas."""
+        self.at += 1
+        index = 0
+        while self._blank() and not self._sees(end):
+            if end == "]":
+                self._value((*path, index), depth + 1)
+                index += 1
+            else:
+                self._pair(path, depth + 1)
+            self._blank()
+            if self._sees(","):
+                self.at += 1
+        self.at += 1
+
+    def _scalar(self) -> None:
+        found = _STRING.match(self.text, self.at)
+        if found is not None:
+            self.at = found.end()
+            return
+        bare = _BARE.match(self.text, self.at)
+        assert bare is not None
+        self.at += max(1, len(bare[0].rstrip()))
+
+    def _skip(self) -> None:
+        """Go over a value, without recursion."""
+        depth = 0
+        while self._blank():
+            character = self.text[self.at]
+            if character in "[{":
+                depth += 1
+                self.at += 1
+            elif character in "]}":
+                depth -= 1
+                self.at += 1
+            elif character in ",=":
+                self.at += 1
+            else:
+                found = _STRING.match(self.text, self.at) or _WORD.match(self.text, self.at)
+                self.at = found.end() if found else self.at + 1
+            if depth <= 0:
+                return
+
+
+def _decoded(key: str) -> str:
+    if key[0] == "'":
+        return key[1:-1]
+    if key[0] == '"':
+        return str(next(iter(tomllib.loads(f"{key} = 0")))) if "\\" in key else key[1:-1]
+    return key

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The readable form of JANI models, and their outline."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from ide_case import analysis_of, path_of
+
+from fuzz.corpus import ROOT
+from roaml import api
+from roaml.ide.document_symbol import DocumentSymbol
+from roaml.ide.jani_view import jani_view
+from roaml.ide.symbols import document_symbols
+from roaml.jani.writer import write
+
+RANGE = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 9}
+REACHED = {"op": "F", "exp": {"op": "=", "left": "a", "right": 1}}
+GUARD = {"op": "∧", "left": {"op": "≤", "left": "a", "right": 3}, "right": True}
+MODEL = {
+    "jani-version": 1,
+    "name": "m",
+    "actions": [{"name": "go"}],
+    "variables": [
+        {
+            "name": "a",
+            "type": {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 9},
+            "initial-value": 0,
+        },
+        {"name": "b", "type": {"kind": "array", "base": "bool"}},
+    ],
+    "automata": [
+        {
+            "name": "A",
+            "locations": [{"name": "l"}, {"name": "k"}],
+            "initial-locations": ["l"],
+            "edges": [
+                {"location": "l", "action": "go", "guard": {"exp": GUARD}, "destinations": [{"location": "k"}]},
+                {"location": "k", "destinations": [{"location": "l"}, {"location": "k"}]},
+            ],
+        }
+    ],
+    "properties": [{"name": "p", "expression": {"op": "Pmax", "exp": REACHED}}],
+    "system": {"elements": [{"automaton": "A"}]},
+}
+OUTLINE = """
+actions 1
+  go
+variables 2
+  a int[0..9]
+  b bool[]
+automata 1
+  A
+    l
+    k
+    go l → k [(a ≤ 3) ∧ true]
+    τ k → l, k
+properties 1
+  p Pmax(F (a = 1))
+""".strip()
+
+
+def outline(symbols: tuple[DocumentSymbol, ...], depth: int = 0) -> list[str]:
+    found = []
+    for each in symbols:
+        found += [f"{'  ' * depth}{each.name} {each.detail}".rstrip(), *outline(each.children, depth + 1)]
+    return found
+
+
+def test_laid_out_with_an_outline() -> None:
+    compact = json.dumps(MODEL, separators=(",", ":"), ensure_ascii=False)
+    view = jani_view(compact)
+    assert json.loads(view.text) == MODEL
+    assert max(map(len, view.text.splitlines())) <= 100
+    assert '      "initial-locations": ["l"],\n' in view.text
+    assert '    { "name": "b", "type": { "kind": "array", "base": "bool" } }\n' in view.text
+    assert outline(view.symbols) == OUTLINE.splitlines()
+    for each in everything(view.symbols):
+        assert each.span.start <= each.name_span.start < each.name_span.end <= each.span.end
+    edge = next(each for each in everything(view.symbols) if each.name == "go" and each.children == () and each.detail)
+    assert view.text[edge.name_span.start : edge.name_span.end] == "go"
+    assert view.text[edge.span.start : edge.span.end].startswith('{\n          "location": "l"')
+
+
+def test_the_file_itself_has_the_outline() -> None:
+    compact = json.dumps(MODEL, ensure_ascii=False)
+    analysis = analysis_of({"m.jani": compact})
+    assert outline(document_symbols(analysis, path_of("m.jani"))) == OUTLINE.splitlines()
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", '{"automata": [{"edges": [{}, 1]}, 2], "variables": {}}', '{"automata": [']
+)
+def test_what_is_no_model(text: str) -> None:
+    assert "".join(jani_view(text).text.split()) == "".join(text.split())
+
+
+def test_translations() -> None:
+    system = api.load(str(min((ROOT / "examples").glob("*/main.xml"))))
+    compact = "".join(write(api.to_jani(system)))
+    view = jani_view(compact)
+    assert json.loads(view.text) == json.loads(compact)
+    assert len(view.text.splitlines()) > 50
+    assert {each.name for each in view.symbols} >= {"variables", "automata", "properties"}
+
+
+def everything(symbols: tuple[DocumentSymbol, ...]) -> list[DocumentSymbol]:
+    return [each for symbol in symbols for each in (symbol, *everything(symbol.children))]

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+/** What the walkthrough shows, in each kind of theme: its pictures are taken here (`npm run e2e -- --pictures`). */
+
+import * as path from "node:path";
+import { MEND, sample, type Stage } from "./support/stage";
+import { write } from "./support/workbench";
+
+const THEMES = {
+    light: "Default Light Modern",
+    dark: "Default Dark Modern",
+    "hc-light": "Default High Contrast Light",
+    "hc-dark": "Default High Contrast",
+};
+/** A verification takes its time where no compiler has made the kernel fast. */
+const PATIENCE = 120_000;
+
+export function themes(stage: Stage): void {
+    stage.use();
+
+    for (const [theme, name] of Object.entries(THEMES)) {
+        const settings = JSON.stringify({
+            "workbench.colorTheme": name,
+            "workbench.secondarySideBar.defaultVisibility": "hidden",
+            "as2fm.verify.epsilon": 0.05,
+            "as2fm.verify.expectations": { never_empty: ">= 0.9" },
+        });
+        const broken = () => {
+            const folder = sample();
+            write(path.join(folder, ".vscode/settings.json"), settings);
+            return folder;
+        };
+        const sound = () => {
+            const folder = sample({ ...MEND, "tree.xml": (text) => text.replace('level="30"', 'level="0"') });
+            write(path.join(folder, ".vscode/settings.json"), settings);
+            return folder;
+        };
+
+        stage.test(`the walkthrough's pictures of a mistake, ${theme}`, broken, async (window) => {
+            const { page } = window;
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.squiggles.first().waitFor();
+            await window.screenshot(`server-${theme}`, { x: 640, y: 560, width: 640, height: 200 });
+            await window.screenshot(`open-${theme}`, { x: 0, y: 35, width: 800, height: 500 });
+            await window.goBehind("nodes/battery.ascxml", 'location="levl');
+            await window.press("Control+.");
+            await page.locator(".action-widget .monaco-list-row", { hasText: "level" }).first().waitFor();
+            await window.screenshot(`fix-${theme}`, { x: 348, y: 260, width: 800, height: 500 });
+            await window.press("Enter");
+            await window.squiggles.first().waitFor({ state: "detached" });
+            await window.run("AS2FM: Add Check to CI");
+            await page.locator(".quick-input-list", { hasText: "GitHub" }).waitFor();
+            await window.press("Enter");
+            await page.locator('.tab.active[data-resource-name="as2fm.yml"]').waitFor();
+            await window.editor.locator(".view-line", { hasText: "as2fm-lsp" }).first().waitFor();
+            await window.screenshot(`ci-${theme}`, { x: 348, y: 35, width: 800, height: 500 });
+        });
+
+        stage.test(`the walkthrough's pictures of a system, ${theme}`, sound, async (window) => {
+            const { page } = window;
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: Show ROS Graph");
+            const picture = await window.picture();
+            await picture.locator('.node[data-label="/hand_over"]').waitFor();
+            await window.run("View: Close Primary Side Bar");
+            await window.screenshot(`graph-${theme}`, { x: 480, y: 35, width: 800, height: 500 });
+            await page.locator(".tab", { hasText: "ROS Graph" }).locator(".codicon-close").click();
+            await window.openFile("main.xml");
+            await window.run("AS2FM: Translate to JANI");
+            await page.locator('.tab[data-resource-name="main (laid out).jani"]').waitFor();
+            await page.locator(".view-line", { hasText: '"jani-version"' }).waitFor();
+            await window.notification("Wrote main.jani").waitFor();
+            await window.run("Notifications: Clear All Notifications");
+            await page.locator('.tab[data-resource-name="main (laid out).jani"]').click();
+            await window.run("View: Close Primary Side Bar");
+            await window.run("Explorer: Focus on Outline View");
+            await page.locator(".outline-pane .monaco-list-row", { hasText: "automata" }).waitFor();
+            await window.screenshot(`translate-${theme}`, { x: 0, y: 35, width: 1280, height: 700 });
+            await page.locator('.tab[data-resource-name="main (laid out).jani"] .codicon-close').click();
+            await window.openFile("properties.jani");
+            await window.run("AS2FM: Verify");
+            const row = page.locator(".test-explorer-tree .monaco-list-row", { hasText: "never_empty" });
+            await row.locator(".codicon-testing-failed-icon").waitFor({ timeout: PATIENCE });
+            await page
+                .locator(".view-line", { hasText: /never_empty.*✗/ })
+                .first()
+                .waitFor();
+            await window.screenshot(`verify-${theme}`, { x: 0, y: 35, width: 800, height: 500 });
+        });
+    }
+}

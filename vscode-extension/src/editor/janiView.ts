@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/** A JANI file laid out for reading, with an outline. Read-only: the file itself stays as its translator has written it. */
+
+import * as vscode from "vscode";
+import { janiView } from "../protocol";
+import type { LanguageServer } from "./server";
+
+const SCHEME = "as2fm-jani";
+
+export class JaniView implements vscode.TextDocumentContentProvider, vscode.DocumentSymbolProvider, vscode.Disposable {
+    private readonly changes = new vscode.EventEmitter<vscode.Uri>();
+    readonly onDidChange = this.changes.event;
+    private readonly outlines = new Map<string, vscode.DocumentSymbol[]>();
+    private readonly subscriptions: vscode.Disposable[];
+
+    constructor(private readonly server: LanguageServer) {
+        const files = vscode.workspace.createFileSystemWatcher("**/*.jani");
+        this.subscriptions = [
+            files,
+            files.onDidChange((uri) => {
+                this.refresh(uri);
+            }),
+            files.onDidCreate((uri) => {
+                this.refresh(uri);
+            }),
+            vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
+            vscode.languages.registerDocumentSymbolProvider({ scheme: SCHEME }, this),
+            vscode.workspace.onDidCloseTextDocument(({ uri }) => this.outlines.delete(uri.toString())),
+        ];
+    }
+
+    async open(file: vscode.Uri, viewColumn: vscode.ViewColumn): Promise<void> {
+        const uri = viewOf(file);
+        this.refresh(file);
+        const document = await vscode.workspace.openTextDocument(uri);
+        await vscode.window.showTextDocument(document, { preview: true, viewColumn });
+    }
+
+    async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
+        const found = await this.server.ask(janiView, { textDocument: { uri: uri.query } });
+        if (!found) return "";
+        const convert = this.server.client?.protocol2CodeConverter;
+        this.outlines.set(uri.toString(), (await convert?.asDocumentSymbols(found.symbols)) ?? []);
+        return found.problem === "" ? found.text : `${found.problem}\n`;
+    }
+
+    async provideDocumentSymbols({ uri }: vscode.TextDocument): Promise<vscode.DocumentSymbol[]> {
+        // After a reload of the window the text is there before anything has been asked.
+        if (!this.outlines.has(uri.toString())) await this.provideTextDocumentContent(uri);
+        return this.outlines.get(uri.toString()) ?? [];
+    }
+
+    dispose(): void {
+        this.changes.dispose();
+        for (const each of this.subscriptions) each.dispose();
+    }
+
+    /** A file has been written anew. */
+    private refresh(file: vscode.Uri): void {
+        const uri = viewOf(file);
+        if (vscode.workspace.textDocuments.some((each) => each.uri.toString() === uri.toString()))
+            this.changes.fire(uri);
+    }
+}
+
+function viewOf(file: vscode.Uri): vscode.Uri {
+    const path = file.path.replace(/\.jani$/, " (laid out).jani");
+    return vscode.Uri.from({ scheme: SCHEME, path, query: file.toString() });
+}

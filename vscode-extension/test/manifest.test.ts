@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+/** What package.json promises: characters that are not suspicious, pictures that are there, steps that are marked. */
+
+import assert from "node:assert/strict";
+import * as fs from "node:fs";
+import { test } from "node:test";
+
+interface Step {
+    readonly id: string;
+    readonly description: string;
+    readonly media: { readonly image: Readonly<Record<string, string>>; readonly altText: string };
+    readonly completionEvents: readonly string[];
+}
+
+interface Manifest {
+    readonly contributes: {
+        readonly configurationDefaults: Readonly<Record<string, Readonly<Record<string, unknown>>>>;
+        readonly walkthroughs: readonly [{ readonly steps: readonly Step[] }];
+        readonly commands: readonly { readonly command: string }[];
+        readonly menus: Readonly<Record<string, readonly { readonly command: string; readonly when: string }[]>>;
+    };
+}
+
+const { contributes } = JSON.parse(fs.readFileSync("package.json", "utf8")) as Manifest;
+const texts = JSON.parse(fs.readFileSync("package.nls.json", "utf8")) as Readonly<Record<string, string>>;
+const steps = contributes.walkthroughs[0].steps;
+
+test("no operator of JANI is called suspicious", () => {
+    const source = fs.readFileSync("../server/roaml/jani/operators.py", "utf8");
+    const operators = [...source.matchAll(/^ {4}[A-Z_]+ = "([^"]+)"/gm)].map(([, symbol]) => symbol ?? "");
+    const unusual = Array.from(`${operators.join("")}∀∃`).filter((character) => character > "\u007f");
+    assert.ok(unusual.length > 6);
+    for (const language of ["[ascxml]", "[scxml]", "[jani]"]) {
+        const allowed = contributes.configurationDefaults[language]?.["editor.unicodeHighlight.allowedCharacters"];
+        for (const character of unusual) {
+            assert.equal((allowed as Record<string, boolean> | undefined)?.[character], true, character);
+        }
+    }
+});
+
+test("each step of the walkthrough has a picture for each kind of theme", () => {
+    for (const { id, media } of steps) {
+        assert.deepEqual(Object.keys(media.image).sort(), ["dark", "hc", "hcLight", "light"], id);
+        for (const file of Object.values(media.image)) {
+            assert.equal(fs.readFileSync(file).subarray(1, 4).toString(), "PNG", file);
+        }
+        assert.ok(texts[media.altText.replaceAll("%", "")], media.altText);
+    }
+});
+
+test("each step is marked by something that the extension says, and the last one is the verification", () => {
+    const commands = new Set(contributes.commands.map(({ command }) => command));
+    const source = ["steps.ts", "documents.ts", "server.ts"].map((name) =>
+        fs.readFileSync(`src/editor/${name}`, "utf8"),
+    );
+    const contexts = ["running", "inSystem", "mended", "translated", "verified"];
+    for (const { id, completionEvents } of steps) {
+        assert.ok(completionEvents.length > 0, id);
+        for (const event of completionEvents) {
+            const [kind, name = ""] = event.split(":");
+            if (kind === "onCommand") assert.ok(commands.has(name), event);
+            else {
+                const context = name.replace("as2fm.", "");
+                assert.ok(contexts.includes(context) && source.some((text) => text.includes(context)), event);
+            }
+        }
+    }
+    const last = steps.at(-1);
+    assert.equal(last?.id, "verify");
+    assert.match(texts["walkthrough.verify.description"] ?? "", /command:as2fm\.verifySystem/);
+    const palette = contributes.menus["commandPalette"]?.find(({ command }) => command === "as2fm.verifySystem");
+    assert.match(palette?.when ?? "", /isWorkspaceTrusted/);
+});
