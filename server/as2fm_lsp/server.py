@@ -9,6 +9,8 @@ nobody waits for it any more.
 from __future__ import annotations
 
 import asyncio
+import functools
+import json
 import logging
 import os
 import sys
@@ -20,14 +22,17 @@ from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcRequ
 from pygls.io_ import StdoutWriter
 from pygls.lsp.server import LanguageServer
 
+from as2fm_lsp import parent
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import register
 from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.protocol import Protocol, error_response, is_answered
 from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
-from as2fm_lsp.tcp import accepted
+from as2fm_lsp.sockets import Client
+from as2fm_lsp.trust import DID_CHANGE, Trust
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
 from roaml.model.kinds import CONFIG_FILES, EXTENSIONS
@@ -41,20 +46,25 @@ SECTION = "as2fm"
 class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
-    `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
+    `is_shut_down` tells whether the client has asked it to shut down. `has_parent` tells whether the client has started
+    this process, so that the server ends with it. `show_references` is the command of the
     client that shows places, `show_counterexample` the one that shows why a property fails, `trigger_suggest` the one
     that asks for completions; "" if it has none.
-    `verified` is what is known of properties.
+    `verified` is what is known of properties. `trust` says whether the user trusts the workspace.
     """
 
+    protocol: Protocol
+
     def __init__(self) -> None:
-        super().__init__("as2fm-lsp", __version__)
+        super().__init__("as2fm-lsp", __version__, protocol_cls=Protocol)
         self.is_shut_down = False
+        self.has_parent = False
         self.show_references = ""
         self.show_counterexample = ""
         self.trigger_suggest = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
+        self.trust = Trust()
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
         self.verified = Verified()
@@ -65,23 +75,45 @@ class Server(LanguageServer):
         register = super().feature(feature_name, options)
         return lambda handler: register(self.requests.guarded(feature_name, handler))
 
-    def command(self, command_name: str) -> Callable[[Any], Any]:
+    def command(self, command_name: str, *, needs_trust: bool = True) -> Callable[[Any], Any]:
+        """Most commands write files or work for long: they need a workspace that is trusted."""
         register = super().command(command_name)
-        return lambda handler: register(self.requests.guarded(command_name, handler))
+
+        def wrapped(handler: Callable[..., Any]) -> Any:
+            allowed = self.trusted_only(command_name, handler) if needs_trust else handler
+            return register(self.requests.guarded(command_name, allowed))
+
+        return wrapped
+
+    def trusted_only(self, name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
+        """A handler that refuses its work in a workspace that is not trusted."""
+        if asyncio.iscoroutinefunction(handler):
+
+            @functools.wraps(handler)
+            async def answer_later(*arguments: Any) -> Any:
+                self.trust.require(name)
+                return await handler(*arguments)
+
+            return answer_later
+
+        @functools.wraps(handler)
+        def answer(*arguments: Any) -> Any:
+            self.trust.require(name)
+            return handler(*arguments)
+
+        return answer
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
+        self.has_parent = True
         # A reader of our own: Python's is locked while a thread reads it, and the process could not end.
         source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
         self.serve(source, stdout or sys.stdout.buffer)
 
-    def start_tcp(self, host: str, port: int) -> None:
-        """Serve the first client that connects.
-
-        Raises:
-            OSError: nobody can be listened for there.
-        """
-        with accepted(host, port) as connection:
-            self.serve(connection.makefile("rb"), connection.makefile("wb"))
+    def serve_client(self, client: Client) -> None:
+        """Serve a client that has connected to a socket."""
+        self.inbox.put(json.dumps(client.first).encode())
+        with client.connection:
+            self.serve(client.source, client.target)
 
     def serve(self, source: BinaryIO, target: BinaryIO) -> None:
         """Serve one client, until it tells the server to exit or has no more to say."""
@@ -100,19 +132,22 @@ class Server(LanguageServer):
         self.inbox.fill_from(source)
         async for message in self.inbox:
             try:
-                self.protocol.handle_message(self.protocol.structure_message(message))
+                self.protocol.receive(message)
             except BrokenPipeError:
                 raise
-            except Exception as error:  # what is no message must not end the session
+            except JsonRpcException as error:
                 self._refuse(message, error)
+            except Exception as error:  # whatever the client sends, the session goes on
+                log.exception("a message cannot be handled")
+                self._refuse(message, JsonRpcInternalError(f"{type(error).__name__} in the server"))
             await asyncio.sleep(0)
 
-    def _refuse(self, message: Any, error: Exception) -> None:
-        """A message that cannot be understood; whoever waits for an answer gets one."""
-        log.error("this is no message that is understood: %.200r", message, exc_info=error)
-        if isinstance(message, dict) and "id" in message and "method" in message:
-            answer = error if isinstance(error, JsonRpcException) else JsonRpcInternalError()
-            self.protocol._send_response(message["id"], error=answer.to_response_error())
+    def _refuse(self, message: object, error: JsonRpcException) -> None:
+        """A message that is not understood, or not now; whoever waits for an answer gets one."""
+        if is_answered(message):
+            self.protocol._send_data(error_response(message, error))
+        else:
+            log.warning("a message is ignored: %s", error)
 
     def _checkpoint(self) -> None:
         """
@@ -152,6 +187,7 @@ def create() -> Server:
     server = Server()
     _documents(server)
     _workspace(server)
+    _trust(server)
     register(server)
     return server
 
@@ -200,12 +236,13 @@ def _workspace(server: Server) -> None:
 
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
-        session.convert = Converter(str(server.workspace.position_encoding))
+        session.convert = Converter(types.PositionEncodingKind(server.workspace.position_encoding))
+        if server.has_parent and params.process_id is not None:
+            parent.watch(params.process_id, server.inbox.end)
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
+        server.trust.set(options.get("trusted", True))
         session.configure(options.get("settings") or {})
-        server.show_references = str(options.get("showReferences") or "")
-        server.show_counterexample = str(options.get("showCounterexample") or "")
-        server.trigger_suggest = str(options.get("triggerSuggest") or "")
+        _name_commands(server, options)
         general = params.capabilities.general
         if general is not None and general.stale_request_support is not None:
             server.requests.asked_again = frozenset(general.stale_request_support.retry_on_content_modified)
@@ -260,6 +297,12 @@ def _workspace(server: Server) -> None:
         diagnostics.schedule()
 
 
+def _trust(server: Server) -> None:
+    @server.feature(DID_CHANGE)
+    def did_change_trust(params: Any) -> None:
+        server.trust.set(getattr(params, "trusted", None))
+
+
 def _pull(server: Server) -> None:
     """Let the client ask for diagnostics."""
     session, diagnostics = server.session, server.diagnostics
@@ -273,6 +316,13 @@ def _pull(server: Server) -> None:
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> types.WorkspaceDiagnosticReport:
         return await diagnostics.workspace_report(params.previous_result_ids)
+
+
+def _name_commands(server: Server, options: dict[str, Any]) -> None:
+    """The commands of the client that lenses and completions call."""
+    server.show_references = str(options.get("showReferences") or "")
+    server.show_counterexample = str(options.get("showCounterexample") or "")
+    server.trigger_suggest = str(options.get("triggerSuggest") or "")
 
 
 async def _fetch_settings(server: Server) -> bool:

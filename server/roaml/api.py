@@ -282,23 +282,31 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
     """A model made ready to be verified.
 
     Args:
-        properties: the names of those that will be asked about; all if not given.
+        properties: the names of those that will be asked about; all if not given. `stuck` asks whether traces get
+            stuck (`roaml.smc.end.End.STUCK`), which every translated system can be asked.
 
     Raises:
         PropertyError: the model has no property of a name.
         FaultError: the model or a property is of a kind that cannot be run; see `roaml.smc.fault`.
     """
-    from roaml.smc.model import Checker  # noqa: PLC0415 - checking and translating start faster without it
+    from roaml.smc.goal import STUCK_PROPERTY  # noqa: PLC0415 - checking and translating start faster without it
+    from roaml.smc.model import Checker  # noqa: PLC0415
+    from roaml.views.ends import marks  # noqa: PLC0415
 
-    found = model.properties
+    found, ends = model.properties, marks(model)
+    asks_stuck = False
     if properties is not None:
         by_name = {each.name: each for each in found}
-        for name in (properties := tuple(dict.fromkeys(properties))):
+        names = list(dict.fromkeys(properties))
+        if STUCK_PROPERTY in names and STUCK_PROPERTY not in by_name and ends:
+            asks_stuck = True
+            names.remove(STUCK_PROPERTY)
+        for name in names:
             if name not in by_name:
-                known = ", ".join(by_name) or "none"
+                known = ", ".join([*by_name, *([STUCK_PROPERTY] if ends else [])]) or "none"
                 raise PropertyError(f"there is no property {name}; the model has: {known}")
-        found = tuple(by_name[name] for name in properties)
-    return Checker(model, found)
+        found = tuple(by_name[name] for name in names)
+    return Checker(model, found, ends, asks_stuck=asks_stuck)
 
 
 def verify(

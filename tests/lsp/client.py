@@ -190,6 +190,20 @@ class RawServer:
             message["id"] = id_
         self.send(frame(message))
 
+    async def said(self, text: str) -> str:
+        """Wait until it has said something with this text; all that it has said since it was last listened to."""
+        assert self._process.stdout is not None
+        found = b""
+        while text.encode() not in found:
+            piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), 30)
+            assert piece, f"it ends and has not said {text}"
+            found += piece
+        return found.decode()
+
+    async def ended(self) -> int:
+        """Wait for its end, while its input is open; its exit status."""
+        return await asyncio.wait_for(self._process.wait(), 30)
+
     async def end(self) -> tuple[int, list[dict[str, object]], str]:
         """Close its input and wait: its exit status, what it said, and its log."""
         assert self._process.stdin is not None

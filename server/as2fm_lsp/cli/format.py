@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import argparse
-import difflib
-import io
 import os
 import sys
 from collections.abc import Iterator, Sequence
 
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.write import write_file
@@ -97,9 +96,7 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
 
 def _diff(source: SourceFile, text: str) -> Iterator[str]:
     name = shown_path(source.path)
-    before, after = (list(io.StringIO(each, newline="\n")) for each in (source.text, text))
-    for line in difflib.unified_diff(before, after, name, name):
-        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+    return unified(source.text, text, name, name)
 
 
 def _fail(message: str) -> int:

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import os
 import shutil
 import sys
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.write import write_file
@@ -55,10 +55,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _diff(migration: Migration) -> str:
-    before, after = (text.splitlines(keepends=True) for text in (migration.before, migration.after))
     names = shown_path(migration.path), shown_path(migration.new_path)
-    lines = list(difflib.unified_diff(before, after, *names)) or [f"--- {names[0]}\n", f"+++ {names[1]}\n"]
-    return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)
+    return "".join(unified(migration.before, migration.after, *names)) or f"--- {names[0]}\n+++ {names[1]}\n"
 
 
 def _write(migrations: Sequence[Migration]) -> None:

@@ -19,6 +19,7 @@ from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.verification import stuck
 from as2fm_lsp.verification.bar import Bar
 from as2fm_lsp.verification.expectations import Expectation, judge, parse
 from as2fm_lsp.verification.report import Result, as_json, as_junit, as_text
@@ -30,11 +31,11 @@ from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, with_threshold
+from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, METHODS, SPRT, Options, Tally, summary
+from roaml.smc.run import ADAPTIVE, METHODS, SPRT, Answer, Options, Tally, summary
 from roaml.text import Location, SourceFile, Span
 
 EXAMPLES = """\
@@ -44,13 +45,16 @@ examples:
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
   as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability, by sampling schedulers
+  as2fm-lsp verify main.xml --property stuck --explain   does time stand still, and who waits for whom then?
   as2fm-lsp verify main.xml --exact                      the same by Storm, if there are few states
 
 A trace resolves nondeterminism at random: at each step, each edge without action and each combination of edges of a
 synchronisation is one choice, and all enabled choices are equally probable. It ends where nothing is enabled or no
-choice changes anything; then F and U are false, G and W true.
+choice changes anything; then F and U are false, G and W true. Why it ended is counted. Traces in which everybody waits
+for somebody else are stuck, which is told with an example; --property stuck asks how probable that is.
 
-exit status: 0 all expectations are met, 1 one is not or the model has errors, 2 wrong use, 3 a failure of the tool
+exit status: 0 all expectations are met, 1 one is not, the model has errors or gets stuck (--stuck
+error), 2 wrong use, 3 a failure of the tool
 itself, 130 interrupted
 """
 INTERRUPTED = 130
@@ -88,9 +92,11 @@ def _run(options: argparse.Namespace) -> int:
             names = options.property or None
             if names is not None:
                 names = [*names, *(each.name for each in expectations)]
-            known = {each.name for each in subject.model.properties}
+            known = [each.name for each in subject.model.properties]
+            if names is None and any(each.name == STUCK_PROPERTY for each in expectations):
+                names = [*known, STUCK_PROPERTY]
             for each in expectations:
-                if each.name not in known:
+                if each.name not in (*known, STUCK_PROPERTY):
                     raise api.PropertyError(f"there is no property {each.name}, of which something is expected")
             progress.stage("compiling")
             checker = api.checker(subject.model, names)
@@ -124,6 +130,7 @@ class _Verification:
             seed=options.seed,
             method=options.method,
         )
+        self.look: stuck.Look | None = None
         self.state = None if options.resume is None else State(options.resume, self.limits)
         self.results: list[Result] = []
 
@@ -132,6 +139,7 @@ class _Verification:
         interrupted = False
         try:
             with _executor(self.options.dask) as (executor, workers), Bar() as bar:
+                asks_stuck = any(each.question.is_stuck for each in asked)
                 for each in asked:
                     with Pool(workers or self.options.jobs, executor) as pool:
                         result = self._answer(each, pool, bar)
@@ -139,10 +147,13 @@ class _Verification:
                     if result.is_interrupted:
                         interrupted = True
                         break
+                if not interrupted and not self.options.exact and stuck.can_be_stuck(self.checker):
+                    self.look = self._look(None if asks_stuck else bar)
         except FaultError as fault:
             return _fault(self.options, self.subject, fault, self.results)
         self._print()
-        status = INTERRUPTED if interrupted else CLEAN if all(r.is_met for r in self.results) else FOUND
+        is_met = all(r.is_met for r in self.results) and (self.look is None or self.look.is_met)
+        status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
             self._tell(asked)
         return status
@@ -184,7 +195,10 @@ class _Verification:
         try:
             if self.options.scheduler == "lss":
                 extremes = self.checker.extremes(asked, self.limits, pool, pulse=bar.pulse)
-                return Result(name, None, (), time.monotonic() - began, extremes=extremes)
+                found = [self._stuck(asked, extremes.least, extremes.least_by)]
+                found.append(self._stuck(asked, extremes.greatest, extremes.greatest_by))
+                took = time.monotonic() - began
+                return Result(name, None, (), took, extremes=extremes, stuck=stuck.shortest(found))
             answer = self.checker.answer(asked, self.limits, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
             if self.options.scheduler == "lss":
@@ -194,7 +208,22 @@ class _Verification:
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
         verdicts = tuple(judge(each, answer) for each in self._expected(asked))
-        return Result(name, answer, verdicts, time.monotonic() - began, interrupted)
+        stuck_traces = self._stuck(asked, answer)
+        return Result(name, answer, verdicts, time.monotonic() - began, interrupted, stuck=stuck_traces)
+
+    def _stuck(self, asked: Asked, answer: Answer, scheduler: int = 0) -> stuck.Stuck | None:
+        return stuck.stuck_in(self.subject, self.checker, asked, self.limits, answer, scheduler)
+
+    def _look(self, bar: Bar | None) -> stuck.Look:
+        """What is known of getting stuck; with a bar, traces are made for it."""
+        answer, own = None, None
+        if bar is not None:
+            options = stuck.look_options(self.limits)
+            with Pool(1) as pool:
+                answer = self.checker.answer(self.checker.stuck, options, pool, pulse=bar.pulse)
+            own = stuck.stuck_in(self.subject, self.checker, self.checker.stuck, options, answer)
+        example = stuck.shortest([own, *(result.stuck for result in self.results)])
+        return stuck.Look(answer, example, self.options.stuck)
 
     def _exact(self, asked: Asked, began: float) -> Result:
         from as2fm_lsp.verification.exactly import ExactError, exactly, judged  # noqa: PLC0415
@@ -213,15 +242,25 @@ class _Verification:
 
     def _text(self) -> str:
         if self.options.format == "json":
-            return as_json(self.results)
+            row = None if self.look is None else stuck.as_row(self.look, self._place_row)
+            return as_json(self.results, stuck=row)
+        about_stuck = "" if self.look is None else stuck.as_text(self.look, self._place)
         if self.options.format == "junit":
-            return as_junit(self.results, shown_path(self.options.main))
+            return as_junit(self.results, shown_path(self.options.main), self.look, about_stuck)
         note = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
         if self.options.exact:
             note = "computed by Storm over all ways to resolve nondeterminism"
         elif self.options.scheduler == "lss":
             note = f"{self.limits.confidence:g} confidence for each scheduler found; there may be better ones"
-        return as_text(self.results, note)
+        return as_text(self.results, "") + about_stuck + f"{note}\n"
+
+    def _place(self, origin: Location) -> str:
+        path, line, _ = self.subject.place(origin) or ("", 0, 0)
+        return f"{shown_path(path)}:{line}"
+
+    def _place_row(self, origin: Location) -> dict[str, Any]:
+        path, line, column = self.subject.place(origin) or ("", 0, 0)
+        return {"file": shown_path(path), "line": line, "column": column}
 
     def _tell(self, asked: Sequence[Asked]) -> None:
         """Write traces and stories."""
@@ -251,16 +290,12 @@ class _Verification:
         from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
         from roaml.views.story import as_text as story_text  # noqa: PLC0415
 
-        def place_of(origin: Location) -> str:
-            path, line, _ = self.subject.place(origin) or ("", 0, 0)
-            return f"{shown_path(path)}:{line}"
-
         if target.endswith(".html"):
-            text = as_html(stories, place_of, shown_path(self.options.main))
+            text = as_html(stories, self._place, shown_path(self.options.main))
         elif target.endswith(".mmd"):
-            text = "\n".join(as_mermaid(story, place_of) for story in stories)
+            text = "\n".join(as_mermaid(story, self._place) for story in stories)
         else:
-            text = "\n".join(story_text(story, place_of) for story in stories)
+            text = "\n".join(story_text(story, self._place) for story in stories)
         if target == STANDARD_OUTPUT:
             # Programs read standard output; the story is for people.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
@@ -311,6 +346,8 @@ def parser() -> argparse.ArgumentParser:
         "or by schedulers that make the probability small or great")  # fmt: skip
     add("--exact", action="store_true", help="compute the least and greatest probability with Storm (needs stormpy)")
     add("--max-states", type=_positive, default=200_000, metavar="N", help="with --exact: refuse more states (200000)")
+    add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="what it is that traces get stuck: a warning, or "
+        "an error, with exit status 1")  # fmt: skip
     add("--resume", metavar="FILE", help="keep what is known in FILE, and go on from it if it is there")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON")
     add("--traces-limit", type=_natural, default=10, metavar="N", help="so many of each verdict (10)")

@@ -19,25 +19,26 @@ from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.handlers.asked import Asked as Document
 from as2fm_lsp.handlers.first_error import counted, show
+from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.shown import shown
-from as2fm_lsp.verification import background
+from as2fm_lsp.verification import background, stuck
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
 from as2fm_lsp.verification.expectations import Expectation, judge
 from as2fm_lsp.verification.report import Result, as_text, row
-from as2fm_lsp.verification.subject import of_system
+from as2fm_lsp.verification.subject import Subject, of_system
 from as2fm_lsp.verification.verified import Known, missed, short
 from as2fm_lsp.verification.wishes import Wishes, wishes
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.pictures import lit
 from roaml.ide.system_names import system_names
-from roaml.ide.verifiable import Verifiable, fingerprint, verifiable
+from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, with_threshold
+from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
 from roaml.smc.model import Checker
 from roaml.smc.pool import WorkersLostError
 from roaml.smc.run import Answer, Tally, summary
@@ -68,7 +69,8 @@ def register(server: Server) -> None:
 
         Returns:
             `results`, one for each property as `as2fm-lsp verify --format json` writes them, or with an `error` in
-            place of the numbers; and `errors`, those of the model. null if the user does not want it any more.
+            place of the numbers; `stuck`, what is known of getting stuck, in the same form, null if nothing is; and
+            `errors`, those of the model. null if the user does not want it any more.
         """
         if not _are_arguments(arguments):
             text = f"{COMMAND} takes the URI of a system file, a list of names, and options."
@@ -106,18 +108,21 @@ def register(server: Server) -> None:
     @server.feature(COUNTEREXAMPLE)
     async def why(params: Any) -> Json | None:
         """The shortest trace that speaks against a property; null if none is known."""
-        path = session.convert.path(params.textDocument.uri)
-        known = server.verified.get(path, params.property)
+        path = session.convert.path(document_uri(params))
+        known = server.verified.get(path, string(params, "property"))
         seen = speaking_against(known.result) if known else None
         if known is None or seen is None:
             return None
 
-        def place_of(origin: Location) -> str:
-            place = known.subject.place(origin)
-            return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
-
         found = await background.in_thread(
-            lambda _: counterexample(known.subject, known.checker, known.asked, known.options, seen, place_of),
+            lambda _: counterexample(
+                known.subject,
+                known.checker,
+                known.asked,
+                known.options,
+                seen,
+                lambda origin: _place_in_words(known.subject, origin),
+            ),
             server.requests.checkpoint,
         )
         analysis = session.moment().snapshot(path).analysis
@@ -146,6 +151,12 @@ def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[ty
         if system == on.path and file is not None and found:
             command = types.Command("Verify all", COMMAND, arguments=[uri])
             yield types.CodeLens(on.range(file.element.name_span), command)
+            stuck_known = server.verified.get(system, STUCK_PROPERTY)
+            if server.show_counterexample and stuck_known and stuck_known.result.stuck:
+                stale = ", stale" if server.verified.is_stale(stuck_known, on.analysis, system) else ""
+                title = f"Gets stuck{stale}: show who waits for whom"
+                show = types.Command(title, server.show_counterexample, arguments=[uri, STUCK_PROPERTY])
+                yield types.CodeLens(on.range(file.element.name_span), show)
         for each in found:
             if each.path != on.path:
                 continue
@@ -153,7 +164,8 @@ def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[ty
             words = _words(server, on.analysis, system, known) if tells else []
             title = " · ".join([f"{TITLE}{where}", *words])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
-            if known and server.show_counterexample and missed(known.result) and speaking_against(known.result):
+            speaks = known and (missed(known.result) or known.result.stuck)
+            if known and server.show_counterexample and speaks and speaking_against(known.result):
                 show = types.Command("Show counterexample", server.show_counterexample, arguments=[uri, each.name])
                 yield types.CodeLens(on.range(each.name_span), show)
 
@@ -169,6 +181,7 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
                 continue
             mark = "✗" if missed(known.result) else "✓" if known.result.verdicts else "="
+            mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
             whole = as_text([known.result], "").strip()
@@ -185,6 +198,8 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
         return []
     wrong = missed(known.result)
     parts = [short(known.result), *([f"not {wrong}"] if wrong else [])]
+    if known.result.stuck is not None:
+        parts.append(f"{known.result.stuck.count:,} traces got stuck")
     if server.verified.is_stale(known, analysis, system):
         parts.append("stale")
     return [", ".join(parts)]
@@ -221,6 +236,8 @@ class _Run:
             server.verified.keep_subject(texts, subject)
         known = [each.name for each in subject.model.properties]
         rows: list[Json] = []
+        results: list[Result] = []
+        checker: Checker | None = None
         for each in dict.fromkeys(names or known):
             try:
                 await self.bar.step(each)
@@ -237,14 +254,42 @@ class _Run:
                 self.say_wrong(str(error))
                 continue
             verdicts = tuple(judge(expected, answer) for expected in self.expected(asked))
-            result = Result(each, answer, verdicts, time.monotonic() - began)
             options = self.wanted.options
+            gets_stuck = stuck.stuck_in(subject, checker, asked, options, answer)
+            result = Result(each, answer, verdicts, time.monotonic() - began, stuck=gets_stuck)
+            results.append(result)
             server.verified.put(path, Known(result, subject, system.analysis, checker, asked, options, texts))
             rows.append({**row(result), "short": short(result), "counterexample": speaking_against(result) is not None})
             server.refresh.look()
             if not self.wanted.is_silent:
                 _tell(server, types.MessageType.Info, as_text([result], "").strip())
-        return {"results": rows, "errors": []}
+        look = None if checker is None else await self.look(subject, system.analysis, checker, results, texts)
+        return {"results": rows, "errors": [], "stuck": look}
+
+    async def look(
+        self, subject: Subject, analysis: Analysis, checker: Checker, results: Sequence[Result], texts: Texts
+    ) -> Json | None:
+        """What is known of getting stuck, by traces that are made for it if it was not asked."""
+        if not stuck.can_be_stuck(checker):
+            return None
+        answer, found = None, [result.stuck for result in results]
+        if not any(result.answer and result.answer.question.is_stuck for result in results):
+            options, asked = stuck.look_options(self.wanted.options), checker.stuck
+            await self.bar.step(asked.question.name)
+            began = time.monotonic()
+            answer = await background.answer(checker, asked, options, self.server.requests.checkpoint, lambda _: None)
+            found.append(stuck.stuck_in(subject, checker, asked, options, answer))
+            result = Result(asked.question.name, answer, (), time.monotonic() - began, stuck=found[-1])
+            if all(each.name != asked.question.name for each in subject.model.properties):
+                self.server.verified.put(self.path, Known(result, subject, analysis, checker, asked, options, texts))
+            self.server.refresh.look()
+        known = stuck.Look(answer, stuck.shortest(found), self.wanted.stuck)
+        text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
+        if known.stuck is not None and not self.wanted.is_silent:
+            kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
+            _tell(self.server, kind, text.strip())
+        row = stuck.as_row(known, lambda origin: _place(self.server, analysis, origin))
+        return {**row, "text": text.strip()}
 
     async def traces(self, checker: Checker, asked: Asked) -> Answer:
         def tell(tally: Tally) -> None:
@@ -303,6 +348,11 @@ def _step(server: Server, known: Known, system: str, line: Line) -> Json:
         **(_place(server, known.analysis, origin) if origin is not None else {}),
         "lit": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
     }
+
+
+def _place_in_words(subject: Subject, origin: Location) -> str:
+    place = subject.place(origin)
+    return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
 
 
 def _place(server: Server, analysis: Analysis, location: Location) -> Json:

@@ -11,7 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from as2fm_lsp.verification import ends
 from as2fm_lsp.verification.expectations import Verdict
+from as2fm_lsp.verification.stuck import NOT_STUCK, Look, Stuck
 from roaml.smc.lss import Extremes
 from roaml.smc.run import Answer
 
@@ -35,6 +37,7 @@ class Result:
         answer: by traces; None if only exact values were asked for.
         seconds: how long it took.
         is_interrupted: whether somebody could not wait.
+        stuck: its traces that got stuck, if any did.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Result:
     seconds: float
     is_interrupted: bool = False
     extremes: Extremes | None = None
+    stuck: Stuck | None = None
     exact: Exact | None = None
 
     @property
@@ -96,12 +100,15 @@ def _estimate(answer: Answer) -> str:
 def _remarks(result: Result) -> list[str]:
     answer = result.answer
     assert answer is not None
-    lines = []
+    lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach what the reward is counted to")
     if answer.tally.undecided:
         steps = f"{answer.options.max_steps:,}"
         lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
+    if result.stuck is not None and not answer.question.is_stuck:
+        count = answer.tally.traces
+        lines.append(f"  {result.stuck.count:,} of {count:,} traces got stuck, and say nothing about the property")
     if result.is_interrupted:
         lines.append("  interrupted; this is what was known by then")
     elif not answer.is_complete:
@@ -115,9 +122,13 @@ def _number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def as_json(results: Sequence[Result], errors: Sequence[dict[str, Any]] = ()) -> str:
-    """For programs."""
+def as_json(
+    results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
+) -> str:
+    """For programs; `stuck` is what is known of getting stuck."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
+    if stuck is not None:
+        value["stuck"] = stuck
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
@@ -153,6 +164,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "passed": tally.successes,
         "failed": answer.failures,
         "undecided": tally.undecided,
+        "ends": ends.as_row(tally),
         "steps": tally.steps,
         "complete": answer.is_complete,
         "confidence": answer.options.confidence,
@@ -170,10 +182,11 @@ def _finite(value: float) -> float | str | None:
     return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"
 
 
-def as_junit(results: Sequence[Result], title: str) -> str:
-    """A test for each property; it fails if an expectation is not met."""
-    failures = sum(not result.is_met for result in results)
-    counts = {"tests": str(len(results)), "failures": str(failures), "errors": "0"}
+def as_junit(results: Sequence[Result], title: str, look: Look | None = None, stuck: str = "") -> str:
+    """A test for each property; it fails if an expectation is not met. One more tells whether the system gets stuck:
+    it fails if that is an error; `stuck` is its text."""
+    failures = sum(not result.is_met for result in results) + (look is not None and not look.is_met)
+    counts = {"tests": str(len(results) + (look is not None)), "failures": str(failures), "errors": "0"}
     suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
     for result in results:
@@ -185,6 +198,10 @@ def as_junit(results: Sequence[Result], title: str) -> str:
         else:
             missed = [v.expectation.text for v in result.verdicts if not v.is_met]
             ET.SubElement(case, "failure", {"message": f"expected {' and '.join(missed)}"}).text = text
+    if look is not None:
+        case = ET.SubElement(suite, "testcase", {"classname": _clean(title), "name": NOT_STUCK})
+        told = ET.SubElement(case, "system-out") if look.is_met else ET.SubElement(case, "failure", message="stuck")
+        told.text = _clean(stuck)
     ET.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
 

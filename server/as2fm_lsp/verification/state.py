@@ -16,7 +16,7 @@ from as2fm_lsp.write import write_file
 from roaml.smc.batch import Payload
 from roaml.smc.run import Options, Tally
 
-VERSION = 1
+VERSION = 2
 PAUSE = 1.0
 """Seconds between two times of writing."""
 

@@ -8,13 +8,14 @@ one file only.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
     CallChild,
     Communicate,
@@ -128,14 +129,14 @@ class PluginOutline:
 class MachineOutline:
     """
     Attributes:
-        sound: all ROS types, handles, fields and ports in it are known: it says what it means to say.
+        gaps: what it may say besides, where it cannot be read.
         all_ports: `ports` are all that it means to declare.
     """
 
     name: str
     root: str
     plain: bool
-    sound: bool
+    gaps: frozenset[Gap]
     ports: tuple[PortOutline, ...]
     interfaces: tuple[InterfaceUse, ...]
     sent: tuple[EventSent, ...]
@@ -159,14 +160,15 @@ class MachineOutline:
         return next((port for port in self.ports if port.key == key), None)
 
 
-def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
+def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
+    """The outline of a machine whose gaps are `gaps`."""
     types = {value.element: value.sent for value in typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
     reads = _reads(typed)
     return MachineOutline(
         machine.name.value if machine.name else "",
         machine.root,
         machine.plain,
-        _is_sound(machine, typed),
+        frozenset(placed.gap for placed in gaps),
         _ports(machine, typed),
         _interfaces(machine, typed, types),
         tuple(
@@ -207,32 +209,6 @@ def _executed(machine: Machine) -> Iterator[Statement]:
         yield from chart.executed
 
 
-def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
-    users = [s for chart in machine.charts for s in chart.statements if isinstance(s, Communicate)]
-    declarations = [find_handle(machine, user) for user in users]
-    if any(
-        d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)
-    ):
-        return False
-    declared = {port.key.value for port in machine.ports if port.key}
-    if any(key is None or key.value not in declared for key in _port_keys(machine, typed)):
-        return False
-    # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
-    return all(value.wanted is not None and value.wanted != UNKNOWN for value in typed.values if value.use is Use.FIELD)
-
-
-def _port_keys(machine: Machine, typed: TypedMachine) -> Iterator[Name | None]:
-    """The keys of all ports that it reads or writes; None where one is missing."""
-    yield from (read.key for read in _reads_of_ports(machine, typed))
-    yield from (s.key for chart in machine.charts for s in chart.statements if isinstance(s, SetOutput))
-
-
-def _reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
-    values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
-    values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
-    yield from (value for value in values if isinstance(value, PortRead))
-
-
 def _declares_all_ports(machine: Machine) -> bool:
     """Whether no declaration lacks its key, and none is misspelled."""
     strange = [e for e in machine.element.elements if e.name not in HL_SCXML.elements and not e.prefix]
@@ -240,7 +216,7 @@ def _declares_all_ports(machine: Machine) -> bool:
 
 
 def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
-    read = {value.key.value for value in _reads_of_ports(machine, typed) if value.key}
+    read = {value.key.value for value in reads_of_ports(machine, typed) if value.key}
     written = {s.key.value for s in _executed(machine) if isinstance(s, SetOutput) and s.key}
     return tuple(
         PortOutline(

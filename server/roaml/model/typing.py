@@ -8,7 +8,7 @@ One walk over the machine; the rules, hover and completion read its result. What
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -67,6 +67,23 @@ class Use(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class BranchConditions:
+    """Conditions of the enclosing `<if>` parts, with whether they hold; those before share their memory, as each part
+    of an `<if>` knows the conditions of all parts before it."""
+
+    condition: Expression
+    holds: bool
+    before: BranchConditions | None
+
+    def __iter__(self) -> Iterator[tuple[Expression, bool]]:
+        """The innermost and last first."""
+        node: BranchConditions | None = self
+        while node is not None:
+            yield node.condition, node.holds
+            node = node.before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Place:
     """Where a value stands.
 
@@ -74,7 +91,7 @@ class Place:
         part: "data", "cond", "body", "onentry" or "onexit".
         late: something was sent, or a condition evaluated, between the arrival of the event and this value, so the
             event data may be newer (spec/01 §12.2).
-        branch_conditions: conditions of the enclosing `<if>` parts, with whether they hold here.
+        branch_conditions: what is known to hold, or not to hold, by the enclosing `<if>` parts; None for nothing.
     """
 
     chart: Chart
@@ -82,7 +99,7 @@ class Place:
     handler: Handler | None
     part: str
     late: bool = False
-    branch_conditions: tuple[tuple[Expression, bool], ...] = ()
+    branch_conditions: BranchConditions | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -398,17 +415,16 @@ class _Body:
         """The first condition is evaluated in a step of its own, so even it is late."""
         before = self.place
         self.later()
-        outer = self.place.branch_conditions
-        failed: tuple[tuple[Expression, bool], ...] = ()
+        outer = known = self.place.branch_conditions
         for branch in statement.branches:
             self.value(Use.BRANCH, branch.cond, BOOL, branch.element)
-            holds = ((branch.cond, True),) if branch.cond else ()
-            self.place = replace(self.place, branch_conditions=(*outer, *failed, *holds))
+            holds = BranchConditions(branch.cond, True, known) if branch.cond else known
+            self.place = replace(self.place, branch_conditions=holds)
             self.run(branch.body)
-            failed = (*failed, *(((branch.cond, False),) if branch.cond else ()))
+            known = BranchConditions(branch.cond, False, known) if branch.cond else known
             self.place = replace(self.place, branch_conditions=outer)
         if statement.otherwise is not None:
-            self.place = replace(self.place, branch_conditions=(*outer, *failed))
+            self.place = replace(self.place, branch_conditions=known)
             self.run(statement.otherwise.body)
         self.place = replace(before, late=True)
 

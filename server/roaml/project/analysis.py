@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
@@ -23,10 +23,11 @@ from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
 from roaml.json import parse as parse_json
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, Grammar
-from roaml.language.validate import Violation, has_misfits, validate
+from roaml.language import BEHAVIOR_TREE, Grammar
+from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
+from roaml.model.gaps import ANYTHING, NODE, Gap, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
@@ -49,7 +50,7 @@ from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
 from roaml.project.memo import Memo
-from roaml.text import SourceFile
+from roaml.text import SourceFile, Span
 from roaml.xml import Document
 from roaml.xml import parse as parse_xml
 
@@ -69,6 +70,9 @@ class Structs:
     types: Mapping[str, Type]
     complete: bool
 
+
+BROKEN = ("xml-syntax", "json-syntax", "nesting-too-deep")
+"""Findings that say that a tree is not all that the text is."""
 
 NO_STRUCTS = Structs((), {}, complete=True)
 
@@ -114,6 +118,7 @@ class Analysis:
         self._systems: dict[str, System | None] = {}
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
         self._structs: dict[str, Structs] = {}
+        self._gaps: dict[str, tuple[tuple[str, PlacedGap], ...]] = {}
 
     # ---------------------------------------------------------- single files
 
@@ -148,11 +153,13 @@ class Analysis:
         found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
         return found or ()
 
-    def has_misfits(self, path: str, grammar: Grammar) -> bool:
-        """Whether a file has elements that the grammar does not know, or not where they stand."""
-        return bool(
-            self._of_document(f"misfits {grammar.schema}", path, lambda document: has_misfits(document, grammar))
-        )
+    def misfits(self, path: str, grammar: Grammar) -> tuple[Misfit, ...]:
+        """The elements of a file that the grammar does not know, or not where they stand."""
+
+        def find(document: Document) -> tuple[Misfit, ...]:
+            return tuple(misfits(document.root, document.namespaces, grammar))
+
+        return self._of_document(f"misfits {grammar.schema}", path, find) or ()
 
     def machine(self, path: str) -> Machine | None:
         return self._of_document("machine", path, build_machine)
@@ -327,7 +334,7 @@ class Analysis:
         structs = self.structs(path)
         trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
-        complete = self._is_complete(path, listed) and self._has_whole_tree(path, file, listed, trees)
+        gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
         events: Mapping[str, Struct] = {}
@@ -335,7 +342,7 @@ class Analysis:
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
-            known = (complete, plugins_known, observed)
+            known = (gaps, plugins_known, observed)
             key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
             make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
             system = self.memo.get("system", path, key, make)
@@ -352,7 +359,7 @@ class Analysis:
         plugins: tuple[tuple[str, MachineOutline], ...],
         trees: tuple[TreeFileOutline, ...],
         structs: Structs,
-        known: tuple[bool, bool, frozenset[str]],
+        known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
         instances = expand(trees)
@@ -364,20 +371,63 @@ class Analysis:
         properties = [each for path in paths for each in self.properties(path)[0]]
         return frozenset(name for each in properties for name, _ in identifiers(each.expression))
 
-    def _is_complete(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
-        """Whether everything that the system names is there, well-formed and of known elements."""
-        file = self.system_file(path)
-        if file is None or file.unread - {"properties"}:
-            return False
-        if not all(f.usable for f in listed if f.wanted is not FileKind.PROPERTIES):
-            return False
-        paths = {f.path for f in listed if f.wanted in (FileKind.MACHINE, FileKind.TREE)} | set(self.tree_paths(path))
-        if not all(self._is_well_formed(each) for each in (path, *paths)):
-            return False
-        machines = [f.path for f in listed if f.wanted is FileKind.MACHINE]
-        if any(self.has_misfits(machine, HL_SCXML) for machine in machines):
-            return False
-        return all(self.tree(p) is not None for t in self.tree_paths(path) for p in self.includes(t))
+    def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
+        """What a system file, its trees and the files that cannot be read may say: file, gap and place."""
+        if path not in self._gaps:
+            file = self.system_file(path)
+            self._gaps[path] = tuple(self._find_gaps(path, file, self.listed(path))) if file else ()
+        return self._gaps[path]
+
+    def _find_gaps(
+        self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]
+    ) -> Iterator[tuple[str, PlacedGap]]:
+        root = file.element.name_span
+        broken = self._broken(path)
+        if broken is not None:
+            yield path, PlacedGap(Gap(ANYTHING), broken)
+        if "node_models" in file.unread:
+            yield path, PlacedGap(Gap(ANYTHING), root)
+        if "behavior_tree" in file.unread:
+            yield path, PlacedGap(Gap(NODE), root)
+        for each in listed:
+            if each.input.section == "node_models" and not each.usable:
+                yield path, PlacedGap(Gap(ANYTHING), each.span)
+        yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
+
+    def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
+        """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
+        listed_trees = [f for f in listed if f.wanted is FileKind.TREE]
+        section = file.element.find("behavior_tree")
+        if not listed_trees:
+            if section is not None:
+                yield path, section.name_span
+            return
+        yield from ((path, each.span) for each in listed_trees if not each.usable)
+        paths = self.tree_paths(path)
+        clear = True
+        for tree_path in paths:
+            tree, broken = self.tree(tree_path), self._broken(tree_path)
+            assert tree is not None
+            spans = [] if broken is None else [broken]
+            spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
+            spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
+            for include in tree.includes:
+                if include.path and self.tree(self.include_path(tree_path, include.path.value)) is None:
+                    spans.append(include.path.span)
+            clear = clear and not spans
+            yield from ((tree_path, span) for span in spans)
+        if clear and paths:
+            outlines = tuple(self.tree_outline(each) for each in paths)
+            if not self.memo.get("whole tree", path, outlines, lambda: is_whole(outlines)):
+                first = self.tree(paths[0])
+                assert first is not None
+                yield paths[0], first.element.name_span
+
+    def _broken(self, path: str) -> Span | None:
+        """Where a file stops being well-formed; None if it is."""
+        document = self.document(path)
+        findings = document.findings if document else ()
+        return next((finding.span for finding in findings if finding.code in BROKEN), None)
 
     def _is_well_formed(self, path: str) -> bool:
         """Whether a file is read as a whole."""
@@ -386,7 +436,7 @@ class Analysis:
         else:
             document = self.document(path)
             findings = document.findings if document else None
-        return findings is not None and not any(f.code in ("xml-syntax", "json-syntax") for f in findings)
+        return findings is not None and not any(f.code in BROKEN for f in findings)
 
     def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
         """Whether all plugins are known that the system lists, or would list were it not for a mistake."""
@@ -400,19 +450,6 @@ class Analysis:
                     return False
         return True
 
-    def _has_whole_tree(
-        self, path: str, file: SystemFile, listed: tuple[ListedFile, ...], trees: tuple[TreeFileOutline, ...]
-    ) -> bool:
-        """Whether all nodes of the tree are known that is executed, if the system is to have one."""
-        if not any(f.wanted is FileKind.TREE for f in listed):
-            return file.element.find("behavior_tree") is None
-        if any(self.has_misfits(tree.path, BEHAVIOR_TREE) for tree in trees):
-            return False
-        written = (tree for outline in trees if (found := self.tree(outline.path)) for tree in found.trees)
-        if any(len(tree.roots) != 1 for tree in written):
-            return False
-        return self.memo.get("whole tree", path, trees, lambda: is_whole(trees))
-
     def tree_outline(self, path: str) -> TreeFileOutline:
         file = self.tree(path)
         assert file is not None
@@ -425,7 +462,22 @@ class Analysis:
         machine = self.machine(path)
         assert machine is not None
         typed = self.typed(path, system, structs, events)
-        return self.memo.get("outline", (path, system), typed, lambda: outline(machine, typed))
+        make = functools.partial(self._make_outline, path, machine, typed)
+        return self.memo.get("outline", (path, system), typed, make)
+
+    def _make_outline(self, path: str, machine: Machine, typed: TypedMachine) -> MachineOutline:
+        return outline(machine, typed, self.machine_gaps(path, machine, typed))
+
+    def machine_gaps(self, path: str, machine: Machine, typed: TypedMachine) -> tuple[PlacedGap, ...]:
+        """What a machine may say where it cannot be read, with the places."""
+        document = self.document(path)
+        assert document is not None
+        found = machine_gaps(machine, typed, document.namespaces, self._has_type)
+        broken = self._broken(path)
+        return found if broken is None else (*found, PlacedGap(Gap(ANYTHING), broken))
+
+    def _has_type(self, kind: str, name: str) -> bool:
+        return isinstance(self.interface(kind, name), InterfaceType)
 
     def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
         """A machine with its types. `events` are the data of plain events, as far as they are known."""

@@ -15,6 +15,7 @@ from typing import Any
 
 from roaml.diagnostics import Severity
 from roaml.model.kinds import CONFIG_FILE
+from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
 from roaml.rules.rule import close_names, did_you_mean
@@ -32,6 +33,7 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
     origin: path of the configuration file that they were read from, "" if there is none.
     """
@@ -44,6 +46,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
     origin: str = ""
 
@@ -101,6 +104,9 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             read = tuple(_full(folder, path) for path in read)
         if key == "exclude":
             read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
+        if key in _LIMITS:
+            changes["limits"] = replace(changes.get("limits", base.limits), **{_LIMITS[key]: read})
+            continue
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
     return replace(base, **changes), tuple(mistakes)
@@ -176,8 +182,16 @@ def _boolean(path: Path, value: Any, mistakes: list[Mistake]) -> bool | None:
     return None
 
 
+def _count(path: Path, value: Any, mistakes: list[Mistake]) -> int | None:
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+        return value
+    mistakes.append(Mistake(path, f"`{path[0]}` must be a whole number above 0"))
+    return None
+
+
 _SETS = ("select", "ignore")
 _FOLDERS = ("roots", "ros-path")
+_LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
 _KEYS: dict[str, _Reader] = {
     "roots": _strings,
@@ -187,6 +201,8 @@ _KEYS: dict[str, _Reader] = {
     "ignore": _codes,
     "severity": _severities,
     "warnings-as-errors": _boolean,
+    "max-cells": _count,
+    "max-parts": _count,
 }
 
 

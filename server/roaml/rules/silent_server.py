@@ -10,7 +10,7 @@ from roaml.expr.types import leaves
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.model.typing import find_handle
 from roaml.rules.interfaces import declared, find_use, name_span
 from roaml.rules.layout import last_in
@@ -18,16 +18,24 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete:
+    if context.system is None:
         return
     for declaration, automaton, channel in declared(context, "service-server"):
         clients = [c for c in channel.users if "request" in c.use.sends]
-        if clients:
+        if clients and not _may_do_more(context.system, automaton, "service-server", channel):
             yield from _service(context, declaration, automaton, channel, clients)
     for declaration, automaton, channel in declared(context, "action-server"):
         clients = [c for c in channel.users if "goal" in c.use.sends]
-        if clients:
+        if clients and not _may_do_more(context.system, automaton, "action-server", channel):
             yield from _action(declaration, automaton, channel, clients)
+
+
+def _may_do_more(system: System, automaton: Automaton, kind: str, channel: Channel) -> bool:
+    """Whether a server may answer where its machine cannot be read."""
+    return any(system.may(f"{kind} {part}", channel.name, automaton) for part in _PARTS)
+
+
+_PARTS = ("request", "response", "goal", "goal-accepted", "goal-rejected", "result")
 
 
 def _service(

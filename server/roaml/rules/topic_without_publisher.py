@@ -13,11 +13,11 @@ from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for naming in named_here(context, "subscriber"):
         topic = naming.channel
-        if has_publisher(system, topic) or not naming.use.receives:
+        if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
             continue
         # A topic that is declared on both sides is hardly misspelled.
         others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]

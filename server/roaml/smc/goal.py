@@ -26,6 +26,7 @@ from roaml.jani.properties import (
     PathBounds,
     Predicate,
     Probability,
+    ProbabilityOperator,
     ProperFormula,
     Property,
     StatePredicate,
@@ -40,7 +41,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.program import Goal
 from roaml.smc.registers import Operand
 
-TRUE, FALSE, DEADLOCK, NO_DEADLOCK = -1, -2, -3, -4
+TRUE, FALSE, DEADLOCK, NO_DEADLOCK, STUCK = -1, -2, -3, -4, -5
 NOT, AND, OR = -1, -2, -3
 
 _MIRRORED = {
@@ -80,6 +81,7 @@ class Question:
         is_reward: whether an expected reward is asked for, not a probability.
         threshold: what the value is compared with, if it is.
         variables: what the property reads.
+        is_stuck: whether it is asked whether traces get stuck (`ask_stuck`).
     """
 
     name: str
@@ -87,6 +89,7 @@ class Question:
     is_reward: bool
     threshold: Threshold | None
     variables: tuple[str, ...]
+    is_stuck: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +108,32 @@ def ask(compilation: Compilation, property_: Property) -> Asked:
         FaultError: it is of a kind that sampling cannot answer, or not supported.
     """
     return _Writer(compilation, property_).asked()
+
+
+STUCK_PROPERTY = "stuck"
+"""The name of the property that every model has: that a trace gets stuck, whatever else is asked about it."""
+
+
+def ask_stuck(compilation: Compilation) -> Asked:
+    """How probable it is that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
+    ever change. Every trace runs to its end."""
+    # JANI has no word for it; this is what comes nearest.
+    path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
+    states = Predicate(StatePredicate.INITIAL)
+    formula = Filter(FilterFunction.VALUES, Probability(ProbabilityOperator.PMAX, path), states)
+    goal = Goal(
+        seen=array("i", [0] * len(compilation.watched)),
+        left=array("i", [TRUE]),
+        right=array("i", [STUCK]),
+        lower=array("q", [0]),
+        upper=array("q", [-1]),
+        formula=array("i", [0]),
+        is_bounded=0,
+        step_reward=-1,
+        exit_reward=-1,
+    )
+    question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, (), is_stuck=True)
+    return Asked(Property(STUCK_PROPERTY, formula), question, goal)
 
 
 class _Writer:

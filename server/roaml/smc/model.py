@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
+from types import MappingProxyType
 
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.smc.batch import Payload, Problem, pack
 from roaml.smc.compile import Compilation, Legend
+from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, ask
+from roaml.smc.goal import Asked, ask, ask_stuck
 from roaml.smc.lss import Extremes, extremes
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse
@@ -25,11 +27,26 @@ DEPTH = 15_000
 class Checker:
     """A model, compiled for some of its properties.
 
+    Args:
+        marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        asks_stuck: whether `stuck` is among the questions, as the last one.
+
+    Attributes:
+        asked: a question for each property.
+        stuck: the question whether traces get stuck.
+
     Raises:
         FaultError: the model or a property cannot be run.
     """
 
-    def __init__(self, model: Model, properties: Iterable[Property] | None = None) -> None:
+    def __init__(
+        self,
+        model: Model,
+        properties: Iterable[Property] | None = None,
+        marks: Marks = MappingProxyType({}),
+        *,
+        asks_stuck: bool = False,
+    ) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
         depth = sys.getrecursionlimit()
@@ -37,7 +54,10 @@ class Checker:
         try:
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
             self.asked: tuple[Asked, ...] = tuple(ask(self._compilation, property_) for property_ in chosen)
-            self.program: Program = self._compilation.program()
+            self.stuck: Asked = ask_stuck(self._compilation)
+            if asks_stuck:
+                self.asked += (self.stuck,)
+            self.program: Program = self._compilation.program(marks)
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
         finally:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.smc.batch import Outcome, Payload, Problem, Task
+from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
@@ -60,12 +61,21 @@ class Seen(NamedTuple):
 
 
 @dataclass(slots=True)
+class Ended:
+    """The traces that have ended for one reason: how many, and the shortest one."""
+
+    count: int
+    shortest: Seen
+
+
+@dataclass(slots=True)
 class Tally:
     """What is known after some batches; all that is needed to go on.
 
     Attributes:
         accepted: what a sequential test has decided.
         examples: for each verdict the first traces; shortest: for each the shortest one.
+        ends: why traces have ended; for each reason that there was.
     """
 
     traces: int = 0
@@ -77,6 +87,11 @@ class Tally:
     is_finished: bool = False
     examples: dict[int, list[Seen]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
     shortest: dict[int, Seen] = field(default_factory=dict)
+    ends: dict[End, Ended] = field(default_factory=dict)
+
+    def ended(self, *reasons: End) -> int:
+        """How many traces have ended for one of these reasons."""
+        return sum(self.ends[reason].count for reason in reasons if reason in self.ends)
 
     def to_json(self) -> dict[str, object]:
         """As a value for JSON."""
@@ -90,6 +105,7 @@ class Tally:
             "finished": self.is_finished,
             "examples": {str(verdict): seen for verdict, seen in self.examples.items()},
             "shortest": {str(verdict): seen for verdict, seen in self.shortest.items()},
+            "ends": {end.name.lower(): [ended.count, *ended.shortest] for end, ended in self.ends.items()},
         }
 
     @staticmethod
@@ -109,6 +125,10 @@ class Tally:
             is_finished=bool(value["finished"]),
             examples={int(v): [Seen(*each) for each in seen] for v, seen in value["examples"].items()},
             shortest={int(v): Seen(*each) for v, each in value["shortest"].items()},
+            ends={
+                End[name.upper()]: Ended(int(count), Seen(int(trace), int(steps)))
+                for name, (count, trace, steps) in value["ends"].items()
+            },
         )
 
 
@@ -229,7 +249,8 @@ def _tasks(payload: Payload, options: Options, done: int, first: int, scheduler:
 
 def _add(tally: Tally, outcome: Outcome, question: Question, options: Options, first: int) -> None:
     ratio = ratio_of(question, options)
-    for verdict, steps, reward in zip(outcome.verdicts, outcome.steps, outcome.rewards, strict=True):
+    rows = zip(outcome.verdicts, outcome.ends, outcome.steps, outcome.rewards, strict=True)
+    for verdict, reason, steps, reward in rows:
         trace = first + tally.traces
         tally.traces += 1
         tally.steps += steps
@@ -244,12 +265,23 @@ def _add(tally: Tally, outcome: Outcome, question: Question, options: Options, f
             examples.append(Seen(trace, steps))
         if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
             tally.shortest[verdict] = Seen(trace, steps)
+        _add_end(tally, reason, Seen(trace, steps))
         if ratio is not None and question.threshold is not None:
             good = tally.successes + (0 if question.threshold.is_lower else tally.undecided)
             above = ratio.decision(good, tally.traces)
             if above is not None:
                 tally.accepted = above is question.threshold.is_lower
                 return
+
+
+def _add_end(tally: Tally, reason: int, seen: Seen) -> None:
+    ended = tally.ends.get(reason)  # type: ignore[call-overload]
+    if ended is None:
+        tally.ends[End(reason)] = Ended(1, seen)
+        return
+    ended.count += 1
+    if seen.steps < ended.shortest.steps:
+        ended.shortest = seen
 
 
 def ratio_of(question: Question, options: Options) -> Ratio | None:

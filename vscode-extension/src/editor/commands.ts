@@ -10,11 +10,12 @@ import type { Documents } from "./documents";
 import type { JaniView } from "./janiView";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
-import type { LanguageServer } from "./server";
+import { untrustedFolders, type LanguageServer } from "./server";
 import type { StatusItem } from "./statusItem";
 import { Tasks } from "./tasks";
 import type { PropertyTests } from "./tests";
 import { newMachine, newSystem, openSample, addToCi } from "./templates";
+import { isTrusted } from "./trust";
 import { tellOrigin } from "./wording";
 
 export interface Parts {
@@ -34,20 +35,20 @@ export interface Parts {
 export function registerCommands(parts: Parts): void {
     const { context, log, server, status, pictures } = parts;
     const commands: Record<string, () => unknown> = {
-        translate: () => translate(parts),
-        verifySystem: () => verify(parts),
+        translate: trusted(() => translate(parts)),
+        verifySystem: trusted(() => verify(parts)),
         showJani: () => withEditor((editor) => parts.jani.open(editor.document.uri, vscode.ViewColumn.Active)),
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
         showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
         showRosGraph: () => withEditor((editor) => showOfSystem(parts, "ros", editor.document)),
-        checkWorkspace: () => checkWorkspace(parts),
-        newSystem: () => newSystem(server),
-        newNode: () => newMachine(context, "node"),
-        newPlugin: () => newMachine(context, "plugin"),
-        migrate: () => migrateSystem(parts),
-        addToCi: () => addToCi(context),
-        openSample: () => openSample(context),
+        checkWorkspace: trusted(() => checkWorkspace(parts)),
+        newSystem: trusted(() => newSystem(server)),
+        newNode: trusted(() => newMachine(context, "node")),
+        newPlugin: trusted(() => newMachine(context, "plugin")),
+        migrate: trusted(() => migrateSystem(parts)),
+        addToCi: trusted(() => addToCi(context)),
+        openSample: trusted(() => openSample(context)),
         restart: () => server.start(),
         install: () => server.install(),
         selectInterpreter: () => selectInterpreter(),
@@ -77,6 +78,11 @@ export function registerCommands(parts: Parts): void {
     for (const [name, run] of Object.entries(commands)) {
         context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
     }
+}
+
+/** A command that writes files or starts programs. */
+function trusted(run: () => unknown): () => unknown {
+    return () => (isTrusted() ? run() : undefined);
 }
 
 async function translate({ server, documents }: Parts): Promise<void> {
@@ -146,7 +152,7 @@ async function selectInterpreter(): Promise<void> {
     const browse = { label: vscode.l10n.t("$(folder) Browse…"), path: "" };
     const automatic = { label: vscode.l10n.t("$(search) Find one automatically"), path: "" };
     const items = [browse, automatic];
-    for await (const python of pythons(thisMachine, [])) {
+    for await (const python of pythons(thisMachine, [], untrustedFolders())) {
         items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });
     }
     const title = vscode.l10n.t("The Python that the language server is started with, or installed for");
