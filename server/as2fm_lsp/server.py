@@ -80,10 +80,15 @@ class Server(LanguageServer):
         register = super().feature(feature_name, options)
         return lambda handler: register(self.requests.guarded(feature_name, handler))
 
-    def command(self, command_name: str) -> Callable[[Any], Any]:
-        """Commands write files or work for long: they need a workspace that is trusted."""
+    def command(self, command_name: str, *, needs_trust: bool = True) -> Callable[[Any], Any]:
+        """Most commands write files or work for long: they need a workspace that is trusted."""
         register = super().command(command_name)
-        return lambda handler: register(self.requests.guarded(command_name, self.trusted_only(command_name, handler)))
+
+        def wrapped(handler: Callable[..., Any]) -> Any:
+            allowed = self.trusted_only(command_name, handler) if needs_trust else handler
+            return register(self.requests.guarded(command_name, allowed))
+
+        return wrapped
 
     def trusted_only(self, name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
         """A handler that refuses its work in a workspace that is not trusted."""

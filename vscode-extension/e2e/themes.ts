@@ -63,7 +63,6 @@ export function themes(stage: Stage): void {
             await window.run("AS2FM: Show ROS Graph");
             const picture = await window.picture();
             await picture.locator('.node[data-label="/hand_over"]').waitFor();
-            await window.run("View: Close Primary Side Bar");
             await window.screenshot(`graph-${theme}`, { x: 480, y: 35, width: 800, height: 500 });
             await page.locator(".tab", { hasText: "ROS Graph" }).locator(".codicon-close").click();
             await window.openFile("main.xml");
@@ -73,7 +72,6 @@ export function themes(stage: Stage): void {
             await window.notification("Wrote main.jani").waitFor();
             await window.run("Notifications: Clear All Notifications");
             await page.locator('.tab[data-resource-name="main (laid out).jani"]').click();
-            await window.run("View: Close Primary Side Bar");
             await window.run("Explorer: Focus on Outline View");
             await page.locator(".outline-pane .monaco-list-row", { hasText: "automata" }).waitFor();
             await window.screenshot(`translate-${theme}`, { x: 0, y: 35, width: 1280, height: 700 });

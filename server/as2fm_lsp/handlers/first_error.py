@@ -28,7 +28,7 @@ COMMAND = "as2fm.showFirstError"
 def register(server: Server) -> None:
     session = server.session
 
-    @server.command(COMMAND)
+    @server.command(COMMAND, needs_trust=False)
     async def show_first_error(ls: LanguageServer, *arguments: object) -> types.Location | None:
         """Show the first error of a system, in whichever file it is.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.parameters import document_uri
 from as2fm_lsp.handlers.structure import nested
 from as2fm_lsp.verification import background
 from roaml.disk import Problem
@@ -34,7 +35,7 @@ def register(server: Server) -> None:
 
     @server.feature(METHOD)
     async def view(params: Any) -> View:
-        path = session.convert.path(params.textDocument.uri)
+        path = session.convert.path(document_uri(params))
         source = session.moment().snapshot(path).analysis.files.read(path)
         if isinstance(source, Problem):
             return _problem(f"This file cannot be shown: {source.value}.")

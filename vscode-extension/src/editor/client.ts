@@ -11,7 +11,7 @@ import {
     type DocumentSelector,
     type LanguageClientOptions,
 } from "vscode-languageclient/node";
-import { TRANSLATE, VERIFY, type Translated } from "../protocol";
+import { SHOW_FIRST_ERROR, TRANSLATE, VERIFY, type Translated } from "../protocol";
 import type { Server } from "../server/server";
 import type { Exit, Session } from "../server/supervisor";
 import { safeFolder, safeVariables } from "../server/surroundings";
@@ -132,7 +132,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
                 next(uri, isXml(uri) && ownsWellFormedness() ? diagnostics.filter(isOurs) : diagnostics);
             },
             async executeCommand(command, args, next) {
-                if (!isTrusted()) return undefined;
+                if (command !== SHOW_FIRST_ERROR && !isTrusted()) return undefined;
                 if (command === VERIFY && typeof args[0] === "string") {
                     await listener.onVerify(args[0], Array.isArray(args[1]) ? args[1].map(String) : []);
                     return undefined;
