@@ -115,10 +115,19 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("ingore = []", "unknown setting `ingore`; there are exclude, ignore, "),
+        ("ingore = []", "unknown setting `ingore`; did you mean `ignore`?"),
+        ("colour = true", "unknown setting `colour`; there are exclude, ignore, "),
         ("ignore = 1", "`ignore` is not a list of texts"),
         ('ignore = ["undeclared-variable", 1]', "`ignore` is not a list of texts"),
         ('ignore = ["no-such-rule"]', "`ignore` names `no-such-rule`, and there is no such rule"),
+        (
+            'ignore = ["unknwn-type"]',
+            "`ignore` names `unknwn-type`, and there is no such rule; did you mean `unknown-type`?",
+        ),
+        (
+            'severity = { unknwn-type = "hint" }',
+            "`severity` names `unknwn-type`, and there is no such rule; did you mean",
+        ),
         ('select = ["no-such-rule"]', "`select` names `no-such-rule`, and there is no such rule"),
         ('severity = { no-such-rule = "hint" }', "`severity` names `no-such-rule`, and there is no such rule"),
         ('severity = { undeclared-variable = "fatal" }', "`severity` is not a table of codes with hint, information"),

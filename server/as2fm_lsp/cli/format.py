@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import argparse
 import difflib
 import io
 import os
-import sys
 from collections.abc import Iterator, Sequence
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml.ide.format import can_format, format_edits, is_ours
 from roaml.model.kinds import FileKind
@@ -39,7 +38,7 @@ def run(arguments: Sequence[str]) -> int:
         if source is None:
             continue
         if source.undecodable is not None or not can_format(analysis, path):
-            print(f"as2fm-lsp: {shown_path(path)}: not well-formed, so it stays as it is", file=sys.stderr)
+            complain(f"{shown_path(path)}: not well-formed, so it stays as it is")
             status = FOUND
             continue
         text = apply_edits(source.text, format_edits(analysis, path))
@@ -60,8 +59,8 @@ def run(arguments: Sequence[str]) -> int:
     return status
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp format",
         description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
         "space is changed, so never what a file means.",
@@ -102,5 +101,5 @@ def _diff(source: SourceFile, text: str) -> Iterator[str]:
 
 
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import argparse
 import difflib
 import os
 import shutil
-import sys
 from collections.abc import Sequence
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.project.migrate import Migration
@@ -33,17 +32,17 @@ def run(arguments: Sequence[str]) -> int:
     try:
         _write(migrations)
     except OSError as error:
-        return _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+        return _fail(f"{shown_path(str(error.filename))}: {error.strerror or error}")
     for migration in migrations:
         renamed = f" -> {shown_path(migration.new_path)}" if migration.new_path != migration.path else ""
         print_text(f"migrated {shown_path(migration.path)}{renamed}\n")
     if not migrations:
-        print("nothing to migrate")
+        print_text("nothing to migrate\n")
     return CLEAN
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp migrate",
         description="Move systems of an older dialect to the current one, keeping comments and layout.",
         epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 wrong use",
@@ -73,5 +72,5 @@ def _write(migrations: Sequence[Migration]) -> None:
 
 
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

@@ -7,6 +7,7 @@ import logging
 import sys
 
 from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.output import complain
 from as2fm_lsp.server import create
 
 UNEXPECTED_END = 1
@@ -36,5 +37,5 @@ def run(tcp: str | None) -> int:
 
 
 def _usage(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

@@ -22,11 +22,13 @@ class Subject:
     """A model, and the texts in which its places are.
 
     Attributes:
+        files: those that were read, the one that was named first.
         source_of: the text of a file that an origin names.
         clock: the variables for seconds and nanoseconds, if the model has them.
     """
 
     path: str
+    files: tuple[str, ...]
     model: Model
     source_of: Callable[[str], SourceFile]
     clock: tuple[str, str] | None
@@ -51,7 +53,7 @@ def load(
     """
     if path.endswith(".jani"):
         model, source = api.read_jani(path)
-        return Subject(path, model, lambda _: source, _clock(model))
+        return Subject(path, (path,), model, lambda _: source, _clock(model))
     return of_system(api.load(path, ros_paths, settings, overrides=overrides))
 
 
@@ -64,7 +66,7 @@ def of_system(system: api.LoadedSystem) -> Subject:
         return found
 
     model = api.to_jani(system)
-    return Subject(system.path, model, source_of, _clock(model))
+    return Subject(system.path, system.files, model, source_of, _clock(model))
 
 
 def _clock(model: Model) -> tuple[str, str] | None:

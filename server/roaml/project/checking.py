@@ -96,7 +96,7 @@ class Checker:
             if each.codes is None or unused_suppression.RULE.code not in each.codes:
                 used = {finding.code for finding in found if each.hides(finding)}
                 codes = None if each.codes is None else sorted(each.codes)
-                yield from unused_suppression.finding(source.text, each.comment, codes, used)
+                yield from unused_suppression.finding(source.text, each.comment, codes, used, BY_CODE)
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting

@@ -17,6 +17,7 @@ from typing import Any
 from roaml.diagnostics import Severity
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
+from roaml.rules.rule import close_names, did_you_mean
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -92,14 +93,22 @@ def settings_from(
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in _KEYS:
-            problems.append(f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}")
+            close = close_names(key, _KEYS)
+            problems.append(
+                f"{origin}: unknown setting `{key}`{did_you_mean(close)}"
+                if close
+                else f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}"
+            )
             continue
         read = _KEYS[key](value)
         if read is None:
             problems.append(f"{origin}: `{key}` is not {_WANTED[key]}")
             continue
         if key in _OF_CODES:
-            problems += [f"{origin}: `{key}` names `{code}`, and there is no such rule" for code in _unknown(read)]
+            problems += [
+                f"{origin}: `{key}` names `{code}`, and there is no such rule{did_you_mean(close_names(code, BY_CODE))}"
+                for code in _unknown(read)
+            ]
         name = _FIELDS.get(key, key.replace("-", "_"))
         if key in ("roots", "ros-path"):
             read = tuple(os.path.normpath(os.path.join(folder, path)) for path in read)
