@@ -20,9 +20,11 @@ from roaml.project.migrate import Migration
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
-        migrations = api.migrate(options.paths, options.ros_path)
+        migrations = api.migrate(options.paths, options.ros_path, with_related=options.with_related)
     except api.PathError as error:
         return _fail(str(error))
+    except api.SharedFileError as error:
+        return _fail(_shared(error))
     if options.diff:
         print_text("".join(_diff(migration) for migration in migrations))
         return FOUND if migrations else CLEAN
@@ -49,6 +51,11 @@ def parser() -> ArgumentParser:
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
     result.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    result.add_argument(
+        "--with-related",
+        action="store_true",
+        help="migrate the systems that would break, too: they share a file",
+    )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
     return result
 
@@ -69,6 +76,17 @@ def _write(migrations: Sequence[Migration]) -> None:
     for migration in migrations:
         if migration.new_path != migration.path:
             os.unlink(migration.path)
+
+
+def _shared(error: api.SharedFileError) -> str:
+    """What keeps systems from being migrated alone, and what to do."""
+    path, systems = next(iter(error.shared.items()))
+    more = f", and {len(error.shared) - 1} more" if len(error.shared) > 1 else ""
+    owners = ", ".join(map(shown_path, systems))
+    return (
+        f"{shown_path(path)}{more} would change, which breaks {owners}; nothing was changed; add --with-related to "
+        f"migrate {', '.join(map(shown_path, error.systems))}, too"
+    )
 
 
 def _fail(message: str) -> int:

@@ -42,7 +42,7 @@ def register(server: Server) -> None:
     def migrate(params: Any) -> Migrated:
         path = session.convert.path(params.textDocument.uri)
         try:
-            migrations = api.migrate([path], settings=session.settings_of(path))
+            migrations = api.migrate([path], settings=session.settings_of(path), with_related=True)
         except api.PathError as error:
             return {"edit": None, "files": [], "problem": str(error)}
         taken = [each.new_path for each in migrations if each.new_path != each.path and os.path.exists(each.new_path)]
