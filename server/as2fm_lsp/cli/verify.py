@@ -277,7 +277,7 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
-        raise UsageError("--dask needs the package distributed: pip install 'as2fm-lsp[dask]'") from None
+        raise UsageError("--dask needs the package distributed: pip install distributed") from None
     try:
         client = distributed.Client(address, timeout=10)
     except OSError as error:
