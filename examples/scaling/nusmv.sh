@@ -10,7 +10,7 @@ done
 mkdir -p "$1"
 cd "$1"
 target=$PWD
-python3 -m pip download --quiet --no-deps --no-binary :all: --no-build-isolation pynusmv==1.0rc8 ||
+python3 -m pip download --quiet --no-deps --no-binary :all: pynusmv==1.0rc8 ||
     { echo "the source package of pynusmv cannot be had from the package index" >&2; exit 1; }
 tar xzf pynusmv-1.0rc8.tar.gz
 tar xzf pynusmv-1.0rc8/dependencies/NuSMV/NuSMV-2.5.4.tar.gz
