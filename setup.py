@@ -37,7 +37,8 @@ def translated_kernel() -> list[Extension]:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv"]
+    # Without contraction: multiplying and adding in one instruction would round otherwise than Python does.
+    flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv", "-ffp-contract=off"]
     kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags)
     (made,) = cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython", quiet=True)
     made.optional = True  # Cython does not keep that of `kernel`.

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Between the library's plain data and the protocol's types. The only place that knows columns in UTF-8 and UTF-16.
+"""Between the library's plain data and the protocol's types.
+
+Columns in UTF-8 and UTF-16 are known here and in `buffer` only.
 
 - A document without a file (`untitled:…`) has its URI as its path.
 - Documents are named back to the client by the very URI that it used.
@@ -15,16 +17,11 @@ from lsprotocol import types
 from pygls import uris
 
 import roaml.rules
+from as2fm_lsp.buffer import MARK, Units
 from roaml.diagnostics import Diagnostic, Severity, Tag
-from roaml.text import Location, Position, SourceFile, Span, TextEdit
+from roaml.text import Location, SourceFile, Span, TextEdit
 
 SOURCE = "as2fm"
-
-_UTF8, _UTF16, _UTF32 = (
-    types.PositionEncodingKind.Utf8,
-    types.PositionEncodingKind.Utf16,
-    types.PositionEncodingKind.Utf32,
-)
 
 _SEVERITIES: Mapping[Severity, types.DiagnosticSeverity] = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
@@ -39,18 +36,19 @@ _TAGS: Mapping[Tag, types.DiagnosticTag] = {
 
 
 class Converter:
-    """Converts in the position encoding that was agreed on with the client."""
+    """Converts in the position encoding that was agreed on with the client: `utf-8`, `utf-16` or `utf-32`."""
 
-    def __init__(self, encoding: str = _UTF16) -> None:
-        self._encoding = encoding
+    def __init__(self, encoding: str = types.PositionEncodingKind.Utf16) -> None:
+        self.units = Units(encoding)
         self._uris: dict[str, str] = {}
+        self._marked: set[str] = set()
 
     # ----------------------------------------------------------------- paths
 
     def path(self, uri: str) -> str:
-        """The path of a document. The URI is remembered as the name of that path."""
-        path = uris.to_fs_path(uri) if uri.startswith("file:") else uri
-        path = os.path.normpath(path) if path and uri.startswith("file:") else uri
+        """The path of a document; its URI if no file can have that name. The URI is remembered as the name of that
+        path."""
+        path = _file(uri) or uri
         self._uris[path] = uri
         return path
 
@@ -60,10 +58,16 @@ class Converter:
 
     # ------------------------------------------------------------- positions
 
+    def mark(self, path: str, is_marked: bool) -> None:
+        """Whether the client has a byte order mark before the text of a document. It counts in the columns of the first
+        line and is not part of the text."""
+        (self._marked.add if is_marked else self._marked.discard)(path)
+
     def position(self, source: SourceFile, offset: int) -> types.Position:
         found = source.lines.position(offset)
         start = source.lines.line_start(found.line)
-        return types.Position(found.line, self._units(source.text[start : start + found.column]))
+        column = self.units.count(source.text[start : start + found.column])
+        return types.Position(found.line, column + self._hidden(source, found.line))
 
     def range(self, source: SourceFile, span: Span) -> types.Range:
         return types.Range(self.position(source, span.start), self.position(source, span.end))
@@ -72,46 +76,28 @@ class Converter:
         """The line and the first and last column of each span; none goes over the end of a line. Quicker than `range`,
         for whole files."""
         text, lines = source.text, source.lines
-        units = len if text.isascii() else self._units
-        line = begin = following = 0
+        units = len if text.isascii() else self.units.count
+        line = begin = following = hidden = 0
         for start, end in spans:
             if not begin <= start < following:
                 line, column = lines.position(start)
                 begin, following = start - column, lines.line_end(line)
-            first = units(text[begin:start])
+                hidden = self._hidden(source, line)
+            first = hidden + units(text[begin:start])
             yield line, first, first + units(text[start:end])
 
     def offset(self, source: SourceFile, position: types.Position) -> int:
         """The offset of a position; positions behind the end of a line or of the text are moved back to it."""
-        lines = source.lines
-        if position.line >= lines.line_count:
-            return len(source.text)
-        start, end = lines.line_start(position.line), lines.line_end(position.line)
-        line = source.text[start:end].rstrip("\r\n")
-        return lines.offset(Position(position.line, self._column(line, position.character)))
+        column = max(0, position.character - self._hidden(source, position.line))
+        return self.units.place(source.text, source.lines, types.Position(position.line, column))[0]
 
     def span(self, source: SourceFile, range_: types.Range) -> Span:
         start, end = self.offset(source, range_.start), self.offset(source, range_.end)
         return Span(min(start, end), max(start, end))
 
-    def _units(self, text: str) -> int:
-        """How many units of the encoding `text` has."""
-        if self._encoding == _UTF32 or text.isascii():
-            return len(text)
-        if self._encoding == _UTF8:
-            return len(text.encode("utf-8", "surrogatepass"))
-        return len(text) + sum(character > "\uffff" for character in text)
-
-    def _column(self, line: str, units: int) -> int:
-        """The column in code points at `units` units of the encoding; inside a character, its beginning."""
-        if self._encoding == _UTF32 or line.isascii():
-            return min(units, len(line))
-        done = 0
-        for column, character in enumerate(line):
-            done += self._units(character)
-            if done > units:
-                return column
-        return len(line)
+    def _hidden(self, source: SourceFile, line: int) -> int:
+        """How many units the client has before the text of a line."""
+        return self.units.count(MARK) if line == 0 and source.path in self._marked else 0
 
     # ----------------------------------------------------------- diagnostics
 
@@ -143,6 +129,18 @@ class Converter:
 
     def edit(self, source: SourceFile, edit: TextEdit) -> types.TextEdit:
         return types.TextEdit(self.range(source, edit.span), edit.new_text)
+
+
+def _file(uri: str) -> str:
+    """The absolute path of the file that a URI names; empty if it names none."""
+    if not uri.startswith("file:"):
+        return ""
+    try:
+        path = os.path.normpath(uris.to_fs_path(uri) or "")
+        os.fsencode(path)
+    except ValueError:  # no URI after all, or what no system can encode
+        return ""
+    return path if os.path.isabs(path) and "\0" not in path else ""
 
 
 def rule_uri(code: str) -> str:

@@ -10,17 +10,31 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import re
 import threading
 from collections import deque
-from collections.abc import Iterator
-from typing import Any, BinaryIO
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, BinaryIO, TypeGuard
 
 from lsprotocol import types
 
-_LENGTH = re.compile(rb"Content-Length:[ \t]*(\d+)\s*", re.IGNORECASE)
+log = logging.getLogger(__name__)
+
+_LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
+"""Also behind the rest of what is no message, so that the message after it is found."""
+
+_FIELD = re.compile(rb"[A-Za-z-]+:")
+"""How a line of a header begins."""
+
+LONGEST_MESSAGE = 1 << 28
+"""Bytes of one message. What claims to be longer is no message."""
+
+_LONGEST_LINE = 1 << 16
+_PIECE = 1 << 20
 _CHANGES = (types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
-_CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
+CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
 
 
 class Inbox:
@@ -32,6 +46,7 @@ class Inbox:
         self._cancelled: set[object] = set()
         self._news = asyncio.Event()
         self._ended = False
+        self._tell: Callable[[], None] = lambda: None
 
     # ---------------------------------------------------------------- filling
 
@@ -45,21 +60,29 @@ class Inbox:
             except RuntimeError:  # the loop is closed: nobody is left to be told
                 return
 
+        self._tell = tell
+
         def read() -> None:
             try:
                 for body in bodies(stream):
                     self.put(body)
                     tell()
+            except (OSError, ValueError) as error:  # the connection is lost, or the stream was closed
+                log.debug("the client cannot be read any more: %s", error)
             finally:
-                self._ended = True
-                tell()
+                self.end()
 
         threading.Thread(target=read, name="inbox", daemon=True).start()
+
+    def end(self) -> None:
+        """Nothing more comes, in whatever thread that is found out."""
+        self._ended = True
+        self._tell()
 
     def put(self, body: bytes) -> None:
         try:
             message = json.loads(body)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             message = error
         cancelled = _cancelled(message)
         if cancelled is not None:
@@ -109,16 +132,26 @@ class Inbox:
 def bodies(stream: BinaryIO) -> Iterator[bytes]:
     """The bodies of the messages in a stream; what is no message is passed over."""
     length = 0
-    for line in iter(stream.readline, b""):
+    for line in iter(partial(stream.readline, _LONGEST_LINE), b""):
         match = _LENGTH.fullmatch(line)
         if match:
             length = int(match[1])
-        elif length and not line.strip():
-            body = stream.read(length)
-            if len(body) < length:
-                return
-            yield body
+        elif line.strip():
+            length = length if _FIELD.match(line) else 0  # the header has ended without an end
+        elif length:
+            if length <= LONGEST_MESSAGE:
+                body = b"".join(_pieces(stream, length))
+                if len(body) < length:
+                    return
+                yield body
             length = 0
+
+
+def _pieces(stream: BinaryIO, length: int) -> Iterator[bytes]:
+    """Memory is taken for what is there, not for what is announced."""
+    while length and (piece := stream.read(min(length, _PIECE))):
+        length -= len(piece)
+        yield piece
 
 
 def _params(message: object, *methods: str) -> dict[str, Any] | None:
@@ -131,11 +164,16 @@ def _params(message: object, *methods: str) -> dict[str, Any] | None:
 
 def _cancelled(message: object) -> str | int | None:
     """The id or token of what a message cancels."""
-    params = _params(message, *_CANCELLATIONS)
+    params = _params(message, *CANCELLATIONS)
     if params is None or not isinstance(message, dict):
         return None
-    found = params.get(_CANCELLATIONS[message["method"]])
-    return found if isinstance(found, (str, int)) else None
+    found = params.get(CANCELLATIONS[message["method"]])
+    return found if is_id(found) else None
+
+
+def is_id(value: object) -> TypeGuard[int | str]:
+    """Whether a request can have this id, or work this token."""
+    return isinstance(value, (int, str)) and not isinstance(value, bool)
 
 
 def _changes(message: object, uri: str) -> bool:

@@ -9,6 +9,8 @@ nobody waits for it any more.
 from __future__ import annotations
 
 import asyncio
+import functools
+import json
 import logging
 import os
 import sys
@@ -20,17 +22,20 @@ from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcRequ
 from pygls.io_ import StdoutWriter
 from pygls.lsp.server import LanguageServer
 
+from as2fm_lsp import parent
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import register
 from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.protocol import Protocol, error_response, is_answered
 from as2fm_lsp.refresh import Refresh
 from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
-from as2fm_lsp.tcp import accepted
+from as2fm_lsp.sockets import Client
+from as2fm_lsp.trust import DID_CHANGE, Trust
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
-from roaml.model.kinds import EXTENSIONS
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
 from roaml.project.settings import CONFIG_FILE
 
 log = logging.getLogger(__name__)
@@ -42,18 +47,23 @@ SECTION = "as2fm"
 class Server(LanguageServer):
     """`session` is what the server knows, `diagnostics` what it says by itself.
 
-    `is_shut_down` tells whether the client has asked it to shut down. `show_references` is the command of the
+    `is_shut_down` tells whether the client has asked it to shut down. `has_parent` tells whether the client has started
+    this process, so that the server ends with it. `show_references` is the command of the
     client that shows places, `show_counterexample` the one that shows why a property fails; "" if it has none.
-    `verified` is what is known of properties.
+    `verified` is what is known of properties. `trust` says whether the user trusts the workspace.
     """
 
+    protocol: Protocol
+
     def __init__(self) -> None:
-        super().__init__("as2fm-lsp", __version__)
+        super().__init__("as2fm-lsp", __version__, protocol_cls=Protocol)
         self.is_shut_down = False
+        self.has_parent = False
         self.show_references = ""
         self.show_counterexample = ""
         self.inbox = Inbox()
         self.requests = Requests(self.inbox, lambda: self.protocol.msg_id)
+        self.trust = Trust()
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
         self.verified = Verified()
@@ -65,22 +75,39 @@ class Server(LanguageServer):
         return lambda handler: register(self.requests.guarded(feature_name, handler))
 
     def command(self, command_name: str) -> Callable[[Any], Any]:
+        """Commands write files or work for long: they need a workspace that is trusted."""
         register = super().command(command_name)
-        return lambda handler: register(self.requests.guarded(command_name, handler))
+        return lambda handler: register(self.requests.guarded(command_name, self.trusted_only(command_name, handler)))
+
+    def trusted_only(self, name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
+        """A handler that refuses its work in a workspace that is not trusted."""
+        if asyncio.iscoroutinefunction(handler):
+
+            @functools.wraps(handler)
+            async def answer_later(*arguments: Any) -> Any:
+                self.trust.require(name)
+                return await handler(*arguments)
+
+            return answer_later
+
+        @functools.wraps(handler)
+        def answer(*arguments: Any) -> Any:
+            self.trust.require(name)
+            return handler(*arguments)
+
+        return answer
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
+        self.has_parent = True
         # A reader of our own: Python's is locked while a thread reads it, and the process could not end.
         source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
         self.serve(source, stdout or sys.stdout.buffer)
 
-    def start_tcp(self, host: str, port: int) -> None:
-        """Serve the first client that connects.
-
-        Raises:
-            OSError: nobody can be listened for there.
-        """
-        with accepted(host, port) as connection:
-            self.serve(connection.makefile("rb"), connection.makefile("wb"))
+    def serve_client(self, client: Client) -> None:
+        """Serve a client that has connected to a socket."""
+        self.inbox.put(json.dumps(client.first).encode())
+        with client.connection:
+            self.serve(client.source, client.target)
 
     def serve(self, source: BinaryIO, target: BinaryIO) -> None:
         """Serve one client, until it tells the server to exit or has no more to say."""
@@ -99,19 +126,22 @@ class Server(LanguageServer):
         self.inbox.fill_from(source)
         async for message in self.inbox:
             try:
-                self.protocol.handle_message(self.protocol.structure_message(message))
+                self.protocol.receive(message)
             except BrokenPipeError:
                 raise
-            except Exception as error:  # what is no message must not end the session
+            except JsonRpcException as error:
                 self._refuse(message, error)
+            except Exception as error:  # whatever the client sends, the session goes on
+                log.exception("a message cannot be handled")
+                self._refuse(message, JsonRpcInternalError(f"{type(error).__name__} in the server"))
             await asyncio.sleep(0)
 
-    def _refuse(self, message: Any, error: Exception) -> None:
-        """A message that cannot be understood; whoever waits for an answer gets one."""
-        log.error("this is no message that is understood: %.200r", message, exc_info=error)
-        if isinstance(message, dict) and "id" in message and "method" in message:
-            answer = error if isinstance(error, JsonRpcException) else JsonRpcInternalError()
-            self.protocol._send_response(message["id"], error=answer.to_response_error())
+    def _refuse(self, message: object, error: JsonRpcException) -> None:
+        """A message that is not understood, or not now; whoever waits for an answer gets one."""
+        if is_answered(message):
+            self.protocol._send_data(error_response(message, error))
+        else:
+            log.warning("a message is ignored: %s", error)
 
     def _checkpoint(self) -> None:
         """
@@ -126,7 +156,8 @@ class Server(LanguageServer):
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
         """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
         if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
-            log.error("%s", source.__name__, exc_info=error)
+            known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
+            log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)
 
     def ask_to_pull(self) -> None:
         """Diagnostics have changed that the client fetches by itself."""
@@ -151,6 +182,7 @@ def create() -> Server:
     server = Server()
     _documents(server)
     _workspace(server)
+    _trust(server)
     register(server)
     return server
 
@@ -199,8 +231,11 @@ def _workspace(server: Server) -> None:
 
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
-        session.convert = Converter(str(server.workspace.position_encoding))
+        session.convert = Converter(types.PositionEncodingKind(server.workspace.position_encoding))
+        if server.has_parent and params.process_id is not None:
+            parent.watch(params.process_id, server.inbox.end)
         options = params.initialization_options if isinstance(params.initialization_options, dict) else {}
+        server.trust.set(options.get("trusted", True))
         session.configure(options.get("settings") or {})
         server.show_references = str(options.get("showReferences") or "")
         server.show_counterexample = str(options.get("showCounterexample") or "")
@@ -258,6 +293,12 @@ def _workspace(server: Server) -> None:
         diagnostics.schedule()
 
 
+def _trust(server: Server) -> None:
+    @server.feature(DID_CHANGE)
+    def did_change_trust(params: Any) -> None:
+        server.trust.set(getattr(params, "trusted", None))
+
+
 def _pull(server: Server) -> None:
     """Let the client ask for diagnostics."""
     session, diagnostics = server.session, server.diagnostics
@@ -296,7 +337,10 @@ async def _watch(server: Server) -> None:
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
         return
-    patterns = [f"**/*{extension}" for extension in EXTENSIONS] + [f"**/{CONFIG_FILE}", "**/pyproject.toml"]
+    patterns = [f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)] + [
+        f"**/{CONFIG_FILE}",
+        "**/pyproject.toml",
+    ]
     options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
     registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -17,12 +18,14 @@ from typing import Any
 
 from lsprotocol import types
 
+from as2fm_lsp.buffer import MARK, edited
 from as2fm_lsp.convert import Converter
 from roaml.project.discover import is_inside
 from roaml.project.memo import go_on
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, find_settings, settings_from
 from roaml.project.workspace import Snapshot, Workspace
-from roaml.text import SourceFile
+
+log = logging.getLogger(__name__)
 
 FRESH = 0.5
 """Seconds after which the disk is looked at again, even if nobody tells of changes there."""
@@ -86,7 +89,7 @@ class Session:
         self.convert = Converter()
         self.problems: list[str] = []
         self._versions: dict[str, int | None] = {}
-        self._texts: dict[str, SourceFile] = {}
+        self._texts: dict[str, str] = {}
         self._folders: dict[str, Workspace] = {}
         self._around: dict[str, Workspace] = {}
         self._client_settings: object = {}
@@ -113,19 +116,27 @@ class Session:
             self._workspace_around(path)  # now, so that problems with the configuration there can be told
 
     def change(self, path: str, changes: Iterable[types.TextDocumentContentChangeEvent], version: int | None) -> None:
-        """Apply the edits of a change, one after the other, each to the text that the one before made."""
-        source = self._texts.get(path) or SourceFile(path, "")
+        """Apply the edits of a change, one after the other, each to the text that the one before made. Documents that
+        are not open have no text that could be changed."""
+        text = self._texts.get(path)
+        if text is None:
+            log.warning("%s is changed, but it is not open", path)
+            return
         for change in changes:
-            text = change.text
             if isinstance(change, types.TextDocumentContentChangePartial):
-                span = self.convert.span(source, change.range)
-                text = source.text[: span.start] + change.text + source.text[span.end :]
-            source = SourceFile(path, text)
-        self._put(path, source.text, version)
+                text = edited(text, change.range, change.text, self.convert.units)
+            else:
+                text = change.text
+        self._put(path, text, version)
+
+    def text(self, path: str) -> str | None:
+        """What an open document holds, as the client has it."""
+        return self._texts.get(path)
 
     def close(self, path: str) -> None:
         self._texts.pop(path, None)
         self._versions.pop(path, None)
+        self.convert.mark(path, False)
         self.look_again()
         needed = {_surroundings(path) for path in self._texts}
         self._around = {root: workspace for root, workspace in self._around.items() if root in needed}
@@ -133,12 +144,12 @@ class Session:
             workspace.close(path)
 
     def _put(self, path: str, text: str, version: int | None) -> None:
-        text = text.removeprefix("\ufeff")
-        self._texts[path] = SourceFile(path, text)
+        self._texts[path] = text
         self._versions[path] = version
+        self.convert.mark(path, text.startswith(MARK))
         self.look_again()
         for workspace in self._workspaces():
-            workspace.open(path, text)
+            workspace.open(path, text.removeprefix(MARK))
 
     # ------------------------------------------------------------ workspaces
 
@@ -185,8 +196,8 @@ class Session:
         settings = self._settings(folder)
         roots = _roots(folder, settings)
         workspace = Workspace(roots, settings, packages=self._packages(folder, roots), checkpoint=self.checkpoint)
-        for path, source in self._texts.items():
-            workspace.open(path, source.text)
+        for path, text in self._texts.items():
+            workspace.open(path, text.removeprefix(MARK))
         return workspace
 
     def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
@@ -208,8 +219,12 @@ class Session:
 
 
 def _surroundings(path: str) -> str:
-    """The folder in which a file outside all folders is checked; a document without a file is alone."""
-    return (enclosing_root(path) or os.path.dirname(path)) if os.path.isabs(path) else path
+    """The folder in which a file outside all folders is checked. Alone is a document without a file, and a file in the
+    root of the file system, of which nobody wants all files to be listed."""
+    if not os.path.isabs(path):
+        return path
+    folder = enclosing_root(path) or os.path.dirname(path)
+    return path if folder == os.path.dirname(folder) else folder
 
 
 def _roots(folder: str, settings: Settings) -> tuple[str, ...]:

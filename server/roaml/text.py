@@ -169,7 +169,8 @@ class SourceFile:
     """One file's text at one moment. Two files with the same `digest` have the same text.
 
     `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; such bytes
-    appear in `text` as U+FFFD. `encoding` and the byte order `mark` are what the file was read with.
+    appear in `text` as U+FFFD. `encoding` and the byte order `mark` are what the file was read with. `ignored_encoding`
+    is the place of the encoding in the XML declaration if the file was read with another one.
     """
 
     path: str
@@ -177,6 +178,7 @@ class SourceFile:
     undecodable: Span | None = None
     encoding: str = field(default="utf-8", compare=False)
     mark: bytes = field(default=b"", compare=False)
+    ignored_encoding: Span | None = None
 
     @cached_property
     def digest(self) -> bytes:
@@ -198,7 +200,8 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-_DECLARED = re.compile(rb"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""")
+_DECLARED = re.compile(r"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""", re.ASCII)
+_LONGEST_DECLARATION = 400
 
 
 def decode(path: str, data: bytes) -> SourceFile:
@@ -212,14 +215,43 @@ def decode(path: str, data: bytes) -> SourceFile:
             data, encoding, mark = data[len(each) :], name, each
             break
     else:
-        if declared := _DECLARED.match(data[:400]):
-            encoding = _known_encoding(declared[1].decode("ascii"))
+        if declared := _DECLARED.match(data[:_LONGEST_DECLARATION].decode("latin-1")):
+            encoding = _known_encoding(declared[1])
+    undecodable = None
     try:
-        return SourceFile(path, data.decode(encoding), None, encoding, mark)
+        text = data.decode(encoding)
     except UnicodeDecodeError as error:
         text = data.decode(encoding, "replace")
         start = min(len(data[: error.start].decode(encoding, "replace")), len(text))
-        return SourceFile(path, text, Span(start, min(start + 1, len(text))), encoding, mark)
+        undecodable = Span(start, min(start + 1, len(text)))
+    return SourceFile(path, text, undecodable, encoding, mark, _ignored_encoding(text, encoding))
+
+
+def _ignored_encoding(text: str, encoding: str) -> Span | None:
+    """Where a text declares another encoding than the one that it was read with; None if it does not.
+
+    Names that Python does not know are left to the XML parser, which reports them.
+    """
+    declared = _DECLARED.match(text[:_LONGEST_DECLARATION])
+    if declared is None:
+        return None
+    try:
+        name = codecs.lookup(declared[1]).name
+    except LookupError:
+        return None
+    if name in (encoding, *_FAMILIES.get(encoding, ())) or (name == "ascii" and text.isascii()):
+        return None
+    return Span(*declared.span(1))
+
+
+_FAMILIES = {
+    "utf-8": ("utf-8-sig",),
+    "utf-16-le": ("utf-16",),
+    "utf-16-be": ("utf-16",),
+    "utf-32-le": ("utf-32",),
+    "utf-32-be": ("utf-32",),
+}
+"""Encoding that a byte order mark stands for -> other names that a declaration may give it."""
 
 
 _PLAIN = b"<?xml +AD0- ~ \\u0041 !"

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile input: models damaged at random, each checked completely.
+"""Hostile input, made at random.
 
-    .venv/bin/python tests/fuzz/run.py --cases 20000 --seed 0
+    .venv/bin/python tests/fuzz/run.py --cases 50000 --seed 0 --jobs 2
 
-Every case has one seed, which alone says what is damaged and how: `run.py --case SEED` does it again.
+The cases are made by strategies, one module each in `fuzz/strategies`. Each case is named `STRATEGY:SEED`, which alone
+says what it is: `run.py --case STRATEGY:SEED` does it again. No case may raise an exception, take more than two seconds
+of processor time or more than 500 MB.
 """

@@ -1,71 +1,127 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks damaged models and says what went wrong. Exit code 1 if anything did."""
+"""Runs hostile input and says what went wrong. Exit code 1 if anything did."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fuzz.cases import Case, Failure, make, run
-from fuzz.corpus import snippets, systems
+from fuzz.pairs import Outcome, choose, outcome
+from fuzz.runner import Ran, run, run_all
+from fuzz.strategies import plan, strategies
+from fuzz.strategy import Case, Failure, Strategy
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="run.py", description=__doc__)
-    parser.add_argument("--cases", type=int, default=1000, help="how many (1000)")
-    parser.add_argument("--seed", type=int, default=0, help="the seed of the first; the others follow (0)")
-    parser.add_argument("--case", type=int, metavar="SEED", help="only this one, with all that is known about it")
+    parser.add_argument("--cases", type=int, default=1000, help="how many, of all strategies together (1000)")
+    parser.add_argument("--seed", type=int, default=0, help="the seed of the first of each; the others follow (0)")
+    parser.add_argument(
+        "--strategy",
+        action="append",
+        choices=list(strategies()),
+        metavar="NAME",
+        help=f"only this one, may be repeated; there are {', '.join(strategies())}",
+    )
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes (one for each processor)")
+    parser.add_argument("--case", metavar="NAME:SEED", help="only this case, with all that is known about it")
+    parser.add_argument("--unlimited", action="store_true", help="with --case: let it take what it takes")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="with --case: write its files there")
+    parser.add_argument("--pairs", type=int, metavar="N", help="this many pairs of mistakes instead, from --seed on")
     parser.add_argument("--slowest", type=int, default=3, metavar="N", help="name the slowest cases (3)")
     arguments = parser.parse_args()
     if arguments.case is not None:
-        return one(make(arguments.case), arguments.keep)
-    return many(range(arguments.seed, arguments.seed + arguments.cases), arguments.slowest)
+        name, _, seed = arguments.case.rpartition(":")
+        if name not in strategies() or not seed.isdecimal():
+            parser.error(f"{arguments.case} is not NAME:SEED; there are {', '.join(strategies())}")
+        return one(name, int(seed), not arguments.unlimited, arguments.keep)
+    if arguments.pairs is not None:
+        return pairs(range(arguments.seed, arguments.seed + arguments.pairs))
+    chosen = tuple(strategies()[name] for name in arguments.strategy or strategies())
+    return many(chosen, arguments.cases, arguments.seed, arguments.jobs, arguments.slowest)
 
 
-def many(seeds: range, slowest: int) -> int:
-    print(f"{len(systems())} systems, {len(snippets())} snippets; seeds {seeds.start} to {seeds.stop - 1}", flush=True)
-    kinds: dict[str, list[tuple[Case, Failure]]] = {}
-    times: list[tuple[float, int]] = []
+def many(chosen: Sequence[Strategy], cases: int, first: int, jobs: int, slowest: int) -> int:
+    for strategy in chosen:
+        strategy.make(first)  # what it reads is read once, before there are several processes
+    shares = plan(cases, tuple(chosen))
+    print(f"{', '.join(f'{count} {name}' for name, count in shares)}; seeds from {first}", flush=True)
+    kinds: dict[str, list[tuple[Ran, Failure]]] = {}
+    done: list[Ran] = []
     started = time.perf_counter()
-    for number, seed in enumerate(seeds, 1):
-        before = time.perf_counter()
-        case = make(seed)
-        failures = run(case)
-        times = sorted([*times, (time.perf_counter() - before, seed)], reverse=True)[:slowest]
-        for failure in failures:
+    for ran in run_all(_in_turn(shares, first), jobs):
+        done.append(ran)
+        for failure in ran.failures:
             if failure.kind not in kinds:
-                print(f"seed {seed}, {case.model.name}: {failure.kind}\n{failure.details}", flush=True)
-            kinds.setdefault(failure.kind, []).append((case, failure))
-        if number % 1000 == 0:
-            rate = number / (time.perf_counter() - started)
-            print(f"{number} cases, {rate:.0f} a second, {len(kinds)} kinds of failure", flush=True)
+                print(f"{ran.name}, {ran.title}: {failure.kind}\n{failure.details}", flush=True)
+            kinds.setdefault(failure.kind, []).append((ran, failure))
+        if len(done) % 1000 == 0:
+            rate = len(done) / (time.perf_counter() - started)
+            print(f"{len(done)} cases, {rate:.0f} a second, {len(kinds)} kinds of failure", flush=True)
     spent = time.perf_counter() - started
-    print(f"{len(seeds)} cases in {spent:.0f} s: {len(seeds) / spent:.0f} a second")
-    for seconds, seed in times:
-        print(f"seed {seed} took {seconds:.2f} s")
+    print(f"{len(done)} cases in {spent:.0f} s on {jobs} processes: {len(done) / spent:.0f} a second")
+    for ran in sorted(done, key=lambda each: -each.seconds)[:slowest]:
+        print(f"{ran.name} took {ran.seconds:.2f} s")
     for kind, found in kinds.items():
-        smallest = min(found, key=lambda f: sum(map(len, f[0].texts.values())))[0].seed
-        print(f"{len(found)} cases, the smallest with seed {smallest}: {kind}")
+        smallest = min(found, key=lambda each: each[0].size)[0].name
+        print(f"{len(found)} cases, the smallest is {smallest}: {kind}")
     return 1 if kinds else 0
 
 
-def one(case: Case, folder: Path | None) -> int:
-    failures = run(case)
-    print(f"{case.model.name}: check of {case.main}", *case.damage, sep="\n    ")
-    for path, text in case.texts.items():
-        if case.model.texts.get(path) != text and len(text) < 3000:
-            print(f"-- {path} --\n{text!a}" if not text.isprintable() and "\n" not in text else f"-- {path} --\n{text}")
-    for failure in failures:
-        print(f"{failure.kind}\n{failure.details}")
+def pairs(seeds: range) -> int:
+    """How many pairs of mistakes are reported as each is alone; those that are not, in words."""
+    counts = dict.fromkeys(Outcome, 0)
+    for number, seed in enumerate(seeds, 1):
+        mistakes = choose(seed)
+        found, details = outcome(*mistakes)
+        counts[found] += 1
+        if found is not Outcome.BOTH:
+            shown = " and ".join(f"{mistake.file}, {mistake.what}" for mistake in mistakes)
+            print(f"seed {seed}: {found.value}: {details}\n    {shown}", flush=True)
+        if number % 500 == 0 or number == len(seeds):
+            print(
+                f"{number} pairs: " + ", ".join(f"{count} {each.value}" for each, count in counts.items()), flush=True
+            )
+    return 1 if counts[Outcome.LOST] else 0
+
+
+def _in_turn(shares: Sequence[tuple[str, int]], first: int) -> Iterator[tuple[str, int]]:
+    """The cases of all strategies mixed, each strategy evenly over the whole run."""
+    cases = [((number + 0.5) / count, name, first + number) for name, count in shares for number in range(count)]
+    return ((name, seed) for _, name, seed in sorted(cases))
+
+
+def one(name: str, seed: int, bounded: bool, folder: Path | None) -> int:
+    case = strategies()[name].make(seed)
+    print(*case.description(), sep="\n    ")
+    _show(case)
     if folder is not None:
-        for path, text in case.texts.items():
-            target = folder / Path(path).name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(text.encode("utf-8", "surrogatepass"))
-    return 1 if failures else 0
+        _keep(case, folder)
+    ran = run(name, seed, bounded)
+    for failure in ran.failures:
+        print(f"{failure.kind}\n{failure.details}")
+    print(f"{ran.seconds:.2f} s")
+    return 1 if ran.failures else 0
+
+
+def _show(case: Case) -> None:
+    for path, text in case.files().items():
+        if len(text) < 3000:
+            plain = isinstance(text, str) and (text.isprintable() or "\n" in text)
+            print(f"-- {path} --\n{text if plain else ascii(text)}")
+
+
+def _keep(case: Case, folder: Path) -> None:
+    paths = list(case.files())
+    base = os.path.commonpath([os.path.dirname(path) for path in paths]) if paths else ""
+    for path, text in case.files().items():
+        target = folder / os.path.relpath(path, base)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
 
 
 if __name__ == "__main__":

@@ -3,28 +3,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import time
+from collections.abc import Iterable, Iterator
 
 import pytest
 
-from fuzz.cases import make, run
+from fuzz import limits, runner
+from fuzz.checked import problems_of_check
 from fuzz.corpus import snippets, systems
 from fuzz.damage import JSON, XML
+from fuzz.runner import run, run_all
+from fuzz.strategies import plan, strategies
+from fuzz.strategies.files import make
+from fuzz.strategy import Failure, Strategy
 from roaml.diagnostics import Severity
 from roaml.project import checking
 from roaml.rules.rule import FileContext, Rule
 
 SAMPLE = 400
+"""Cases of all strategies together."""
 
 
-def test_sample() -> None:
-    failures = [(seed, failure) for seed in range(SAMPLE) for failure in run(make(seed), timed=False)]
+@pytest.mark.parametrize(("name", "count"), plan(SAMPLE, tuple(strategies().values())))
+def test_sample(name: str, count: int) -> None:
+    failures = [(seed, failure) for seed in range(count) for failure in run(name, seed, bounded=False).failures]
     assert failures == []
 
 
-def test_a_seed_makes_one_case() -> None:
-    for seed in range(50):
-        assert make(seed) == make(seed)
+@pytest.mark.parametrize("name", strategies())
+def test_a_seed_makes_one_case(name: str) -> None:
+    for seed in range(30):
+        one, same = strategies()[name].make(seed), strategies()[name].make(seed)
+        assert one.files() == same.files()
+        assert list(one.description()) == list(same.description())
 
 
 def test_cases_damage_something() -> None:
@@ -42,9 +54,9 @@ def test_undamaged_models_hold() -> None:
     assert systems()
     assert len(snippets()) > 100
     for model in (*systems(), *snippets()):
-        case = make(0)
-        case.model, case.texts, case.main = model, model.texts, model.main
-        assert run(case, timed=False) == [], model.name
+        with runner.Crashes() as crashes:
+            assert list(problems_of_check(model.main, model.texts, model.ros_paths)) == [], model.name
+        assert crashes.errors == []
 
 
 def test_crashes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -53,5 +65,57 @@ def test_crashes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
     broken = Rule("missing-attribute", Severity.ERROR, "", file=crash)  # type: ignore[arg-type]
     monkeypatch.setattr(checking, "RULES", (broken,))
-    kinds = {failure.kind.partition(" at ")[0] for failure in run(make(0), timed=False)}
+    kinds = {failure.kind.partition(" at ")[0] for failure in run("files", 0, bounded=False).failures}
     assert kinds >= {"internal-error", "RuntimeError"}
+
+
+class _Bad:
+    """A case that does what no case may do."""
+
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
+
+    def description(self) -> Iterable[str]:
+        return ()
+
+    def files(self) -> dict[str, str | bytes]:
+        return {}
+
+    def run(self) -> Iterator[Failure]:
+        match self.seed:
+            case 0:
+                yield Failure("wrong", "")
+            case 1:
+                raise RuntimeError
+            case 2:
+                os.abort()
+            case 3:
+                time.sleep(3600)
+            case 4:
+                bytearray(2 * limits.MEMORY)
+            case 5:
+                while True:
+                    pass
+
+
+def test_what_no_case_may_do_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(strategies(), "bad", Strategy("bad", "", _Bad))
+    monkeypatch.setattr(runner, "PATIENCE", 5.0)
+    ran = {each.seed: each.failures for each in run_all([("bad", seed) for seed in range(7)], jobs=2)}
+    kinds = {seed: [failure.kind.partition(":")[0].partition(" at ")[0] for failure in ran[seed]] for seed in ran}
+    died = ["the process died (exit code -6)"]
+    assert kinds == {
+        0: ["wrong"],
+        1: ["RuntimeError"],
+        2: died,
+        3: ["hangs"],
+        4: ["out of memory"],
+        5: ["out of time"],
+        6: [],
+    }
+
+
+def test_plan_gives_every_strategy_its_share() -> None:
+    chosen = (Strategy("a", "", _Bad, share=9), Strategy("b", "", _Bad))
+    assert plan(100, chosen) == [("a", 90), ("b", 10)]
+    assert plan(2, chosen) == [("a", 1), ("b", 1)]

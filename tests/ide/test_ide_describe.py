@@ -178,7 +178,7 @@ def test_pieces() -> None:
     assert name("`") == "`` ` ``"
     assert names("abc") == "`a`, `b`, `c`"
     assert names(map(str, range(20)), 2) == "`0`, `1` and 18 more"
-    assert prose("One\nline.\n\n<b>") == "One line.\n\n\\<b>"
+    assert prose("One\nline.\n\n<b>") == "One line.\n\n&lt;b>"
     assert plain("**Bold** `code`  \n[link](x) \\<b>\n\n---\n\n```xml\n<a **b**>\n```\n\nend") == (
         "Bold code\nlink <b>\n\n<a **b**>\n\nend"
     )

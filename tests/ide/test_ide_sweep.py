@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from fuzz.cases import make
+from fuzz.strategies.files import make
 from roaml import api
 from roaml.diagnostics import Severity
 from roaml.ide.actions import actions

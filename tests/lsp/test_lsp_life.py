@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 import asyncio
-import socket
 import sys
-from pathlib import Path
 
 import pytest
-from client import COMMAND, frame, start_raw
+from client import frame, start_raw
 from lsprotocol import types
-from pygls.lsp.client import LanguageClient
-
-import clock
 
 INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
 
@@ -158,80 +153,6 @@ async def test_what_it_can_do() -> None:
     assert capabilities["codeLensProvider"] == {"resolveProvider": True}
     assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.translateToJani", "as2fm.verify"]}
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
-
-
-async def test_tcp(tmp_path: Path) -> None:
-    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
-    port = free_port()
-    process = await asyncio.create_subprocess_exec(*COMMAND, "--tcp", f"127.0.0.1:{port}")
-    client = LanguageClient("test", "1")
-    published = asyncio.Event()
-    found: list[types.PublishDiagnosticsParams] = []
-
-    @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
-    def publish(params: types.PublishDiagnosticsParams) -> None:
-        found.append(params)
-        published.set()
-
-    await connect_to(client, port)
-    await client.initialize_async(
-        types.InitializeParams(
-            capabilities=types.ClientCapabilities(),
-            workspace_folders=[types.WorkspaceFolder(tmp_path.as_uri(), "robot")],
-        )
-    )
-    client.initialized(types.InitializedParams())
-    await asyncio.wait_for(published.wait(), 30)
-    assert [(Path(p.uri).name, [d.code for d in p.diagnostics]) for p in found] == [
-        ("clock.ascxml", ["undeclared-variable"])
-    ]
-    await client.shutdown_async(None)
-    client.exit(None)
-    assert await asyncio.wait_for(process.wait(), 30) == 0
-
-
-async def connect_to(client: LanguageClient, port: int) -> None:
-    for _ in range(200):
-        try:
-            await client.start_tcp("127.0.0.1", port)
-        except OSError:
-            await asyncio.sleep(0.1)
-        else:
-            return
-    raise AssertionError("the server does not listen")
-
-
-async def test_tcp_ends_with_its_client() -> None:
-    port = free_port()
-    process = await asyncio.create_subprocess_exec(*COMMAND, "--tcp", f"localhost:{port}")
-    for _ in range(200):
-        try:
-            _, writer = await asyncio.open_connection("127.0.0.1", port)
-        except OSError:
-            await asyncio.sleep(0.1)
-        else:
-            writer.close()
-            break
-    assert await asyncio.wait_for(process.wait(), 30) == 1
-
-
-async def test_a_port_that_is_taken() -> None:
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        server = await start_raw("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
-        status, _, log = await server.end()
-    assert status == 2
-    assert log.startswith("as2fm-lsp: --tcp 127.0.0.1:")
-    assert "address already in use" in log.lower()
-
-
-def free_port() -> int:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        port = listener.getsockname()[1]
-    assert isinstance(port, int)
-    return port
 
 
 async def test_it_imports_nothing_but_what_it_needs() -> None:

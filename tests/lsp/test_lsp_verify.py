@@ -17,6 +17,7 @@ from pygls.exceptions import JsonRpcRequestCancelled
 import clock
 from as2fm_lsp.cli.main import run
 from as2fm_lsp.handlers.verify import COMMAND, COUNTEREXAMPLE, PROPERTIES
+from stuck_models import hospital
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "assembly_robot"
 PLACED = "block_placed"
@@ -284,7 +285,62 @@ async def test_a_property_that_is_not_there_does_not_keep_others_from_being_veri
     async with connect(tmp_path) as client:
         answer = await verify(client, tmp_path / "main.xml", ["tocks", "ticks"], {"silent": True})
         tocks, ticks = answer["results"]
-        assert tocks["error"]["message"] == "there is no property tocks; the model has: ticks"
+        assert tocks["error"]["message"] == "there is no property tocks; the model has: ticks, stuck"
         assert ticks["probability"] > 0.9
         assert await client.workspace_execute_command_async(types.ExecuteCommandParams(COMMAND, [])) is None
         assert [message.type for message in client.messages] == [types.MessageType.Error]
+
+
+async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) -> None:
+    for name, text in hospital().items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"
+    async with connect(tmp_path, options={"showCounterexample": "editor.show"}) as client:
+        answer = await verify(client, main, ["delivered"], {"epsilon": 0.05})
+        (result,) = answer["results"]
+        assert result["ends"]["stuck"] == result["failed"] > 0
+        known = answer["stuck"]
+        assert known["level"] == "warning"
+        last = known["example"]["waits"][-1]
+        assert (last["who"], last["uri"]) == ("Pharmacy", (tmp_path / "pharmacy.ascxml").as_uri())
+        lines = (tmp_path / "pharmacy.ascxml").read_text(encoding="utf-8").splitlines()
+        assert "ros_rate_callback" in lines[last["range"]["start"]["line"]]
+        told = [message for message in client.messages if message.type is types.MessageType.Warning]
+        assert [message.message for message in told] == [known["text"]]
+        assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in known["text"]
+        # At the property and at the system.
+        assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))
+        assert "Show counterexample" in await lenses(client, properties)
+        assert "Gets stuck: show who waits for whom" in await lenses(client, main)
+        ((hint, _),) = await hints(client, properties)
+        assert hint.startswith("⚠ ")
+        for name in ("delivered", "stuck"):
+            found = await why(client, main, name)
+            assert [step["who"] for step in found["steps"]][-4:] == [
+                "the clock",
+                "the tree",
+                "Fetch (bt_1002)",
+                "Pharmacy",
+            ]
+            assert found["steps"][-1]["lit"][0]["node"] == "/busy"
+        silent = await verify(client, main, ["delivered"], {**QUICK, "stuck": "error"})
+        assert silent["stuck"]["level"] == "error"
+        asked = await verify(client, main, ["stuck"], QUICK)
+        assert asked["results"][0]["property"] == "stuck"
+        assert asked["stuck"]["example"]["waits"] == known["example"]["waits"]
+        # Mended, the old result is stale, the new one good.
+        fetch = tmp_path / "fetch.ascxml"
+        client.open(fetch, hospital(mended=True)["fetch.ascxml"])
+        assert "Gets stuck, stale: show who waits for whom" in await lenses(client, main)
+        mended = await verify(client, main, ["delivered"], QUICK)
+        assert mended["stuck"]["example"] is None
+        assert [title for title in await lenses(client, main) if "stuck" in title] == []
+
+
+async def test_a_level_that_is_none(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    async with connect(tmp_path, options={"settings": {"verify": {"stuck": "loud"}}}) as client:
+        answer = await verify(client, tmp_path / "main.xml")
+        assert answer["stuck"]["level"] == "warning"
+        told = [message.message for message in client.messages if message.type is types.MessageType.Warning]
+        assert told == ["verify.stuck must be one of warning, error, not 'loud'."]

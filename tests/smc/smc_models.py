@@ -3,15 +3,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from collections.abc import Sequence
-from functools import cache
-from importlib.machinery import SourceFileLoader
-from pathlib import Path
 from typing import Any
 
-import roaml.smc
 from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.json import parse
@@ -121,15 +116,3 @@ def answers(written: Json, traces: int = 1, max_steps: int = 10_000, seed: int =
     options = Options(method=FIXED, max_traces=traces, max_steps=max_steps, seed=seed)
     with Pool() as pool:
         return {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
-
-
-@cache
-def plain_kernel() -> Any:
-    """The module of the kernel as plain Python, whether it was compiled or not."""
-    path = Path(roaml.smc.__file__).with_name("kernel.py")
-    loader = SourceFileLoader("plain_kernel", str(path))
-    spec = importlib.util.spec_from_loader("plain_kernel", loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    loader.exec_module(module)
-    return module

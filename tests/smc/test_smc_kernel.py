@@ -12,14 +12,16 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from smc_models import answers, automaton, document, edge, model, op, plain_kernel, probability, variable, way
+from smc_models import answers, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks
 
 import roaml.smc
 from roaml import api
 from roaml.smc import kernel, program
+from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import Checker
 from roaml.smc.opcodes import Op
+from twin import difference, plain_kernel
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = Path(roaml.smc.__file__).parent
@@ -52,17 +54,8 @@ def test_is_compiled_where_there_is_a_compiler() -> None:
 
 def same_traces(checker: Checker, traces: int, steps: int) -> None:
     for asked in checker.asked:
-        compiled = checker.compiled(asked)
-        first, second = (m.Kernel(compiled.program, compiled.goal) for m in (kernel, plain_kernel()))
-        for trace in range(traces):
-            for scheduler in (0, 5):
-                found: list[Any] = []
-                for each in (first, second):
-                    verdict = each.begin(11, trace, scheduler)
-                    if verdict == program.UNKNOWN:
-                        verdict = each.advance(steps)
-                    found.append((verdict, each.outcome(), each.snapshot(), each.problem(), each.taken()))
-                assert found[0] == found[1]
+        for scheduler in (0, 5, MEMORY | 3, STARVE | 2, FAVOUR | 1):
+            assert difference(checker, asked, 11, traces, steps, scheduler) == ""
 
 
 def test_same_traces_of_the_example() -> None:

@@ -41,9 +41,9 @@ def gated(tree: Tree) -> Tree:
 
 
 def ungated(tree: Tree) -> Tree:
-    """`tree`, never halted and ticked again when it has answered: the thresholds are never reached."""
-    children = (*_writers(tree), tree, leaf("R"))
-    return node("Parallel", *children, success_threshold=len(children), failure_threshold=len(children))
+    """`tree`, never halted and ticked again when it has answered."""
+    writers = _writers(tree)
+    return node("WhileDoElse", node("Sequence", *writers) if writers else node("AlwaysSuccess"), tree)
 
 
 def _writers(tree: Tree) -> list[Tree]:
@@ -67,8 +67,12 @@ def cases() -> Iterator[Tree]:
             yield node(kind, *leaves(count))
     for kind in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"):
         yield node(kind, *leaves(1))
+    for least, most in ((-1, 1), (-2, -1), (-9, 2), (0, 1), (2, 0), (-1, -2), ("{n}", 3), (-1, "{n}")):
+        yield node("Parallel", leaf("RRFS"), leaf("RSF"), leaf("RRRS"), success_count=least, failure_count=most)
     for count, least, most in ((1, 1, 1), (2, 1, 1), (2, 1, 2), (2, 2, 1), (2, 2, 2), (3, 2, 2), (3, 3, 2), (3, 1, 3)):
         yield node("Parallel", *leaves(count), success_threshold=least, failure_threshold=most)
+        yield node("Parallel", *leaves(count), success_count=least, failure_count=most)
+    yield node("Parallel", *leaves(2))
     yield node("ParallelAll", *leaves(2))
     for count, most in ((1, 1), (1, -1), (2, 0), (3, 2), (3, -1), (3, -2), (2, "{n}")):
         yield node("ParallelAll", *leaves(count), max_failures=most)
@@ -127,10 +131,10 @@ _durations = st.sampled_from((0, 250, 900, 1000, "{msec}"))
 
 def ports_of(kind: str, count: int) -> st.SearchStrategy[dict[str, object]]:
     """Settings of a node with so many children."""
-    thresholds = st.integers(1, count)
+    counts = st.one_of(st.integers(-count - 1, count), st.just("{n}"))
     match kind:
         case "Parallel":
-            return st.fixed_dictionaries({"success_threshold": thresholds, "failure_threshold": thresholds})
+            return st.fixed_dictionaries({}, optional={"success_count": counts, "failure_threshold": counts})
         case "ParallelAll":
             return st.fixed_dictionaries({"max_failures": st.one_of(st.integers(-count, count), st.just("{n}"))})
         case "Repeat":

@@ -258,15 +258,27 @@ class ReactiveFallback(ReactiveSequence):
 
 
 class Parallel(Node):
-    """Ticks all children at every tick and remembers nothing."""
+    """Ticks the children that have not ended, and counts after each child (spec/10a B)."""
+
+    def reset(self) -> None:
+        self.answers: dict[int, Status] = {}
+
+    def count_of(self, name: str, older_name: str, default: str) -> int:
+        number = int(self.port(name, self.port(older_name, default)))
+        return max(len(self.children) + number + 1, 0) if number < 0 else number
 
     def on_tick(self) -> Status:
-        counts = dict.fromkeys(Status, 0)
-        for child in self.children:
-            counts[child.tick()] += 1
-            if counts[SUCCESS] >= int(self.port("success_threshold")):
+        needed = self.count_of("success_count", "success_threshold", "-1")
+        tolerated = self.count_of("failure_count", "failure_threshold", "1")
+        if max(needed, tolerated) > len(self.children):
+            raise NeverEnds  # BehaviorTree.CPP throws an exception here.
+        for i, child in enumerate(self.children):
+            if i not in self.answers and (status := child.tick()) is not RUNNING:
+                self.answers[i] = status
+            answers = list(self.answers.values())
+            if answers.count(SUCCESS) >= needed:
                 return self.end(SUCCESS)
-            if counts[FAILURE] >= int(self.port("failure_threshold")):
+            if len(self.children) - answers.count(FAILURE) < needed or answers.count(FAILURE) == tolerated:
                 return self.end(FAILURE)
         return RUNNING
 

@@ -70,9 +70,7 @@ def test_node_in_jani(tree: Tree) -> None:
     "tree",
     [
         node("ReactiveFallback", leaf("FFR"), node("Sequence", leaf("SR"), leaf("RSF"))),
-        node(
-            "Parallel", node("Repeat", leaf("SRF"), num_cycles=2), leaf("RF"), success_threshold=1, failure_threshold=2
-        ),
+        node("Parallel", node("Repeat", leaf("SRF"), num_cycles=2), leaf("RF"), success_count=1, failure_count=2),
         node(
             "ParallelAll",
             node("SetBlackboard", value=1, output_key="{n}"),

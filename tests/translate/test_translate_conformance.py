@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The translation of every conformance model has the reference's names, types, properties and sizes."""
+"""The translation of every conformance model has the reference's names, types, properties and sizes.
+
+What differs on purpose is listed in `differences.toml`; everything else of those models is compared.
+"""
 
 from __future__ import annotations
 
 import gzip
 import json
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -18,6 +22,12 @@ from roaml.jani.typecheck import check_model
 from roaml.jani.writer import write
 from roaml.json import parse
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+DIFFERENCES = tomllib.loads(Path(__file__).with_name("differences.toml").read_text())["difference"]
 Shape = dict[str, object]
 
 
@@ -56,8 +66,22 @@ def test_there_are_references() -> None:
 
 @pytest.mark.parametrize("path", TRANSLATED, ids=conformance.label)
 def test_shape(path: Path) -> None:
-    ours = json.loads("".join(write(api.to_jani(load(path)))))
-    assert shape(ours) == shape(json.loads(gzip.decompress(reference(path).read_bytes())))
+    ours = shape(json.loads("".join(write(api.to_jani(load(path))))))
+    theirs = shape(json.loads(gzip.decompress(reference(path).read_bytes())))
+    nodes = {d["node"] for d in DIFFERENCES if path == conformance.ROOT / "models" / d["model"]}
+    if nodes:
+        assert ours["syncs"] != theirs["syncs"]
+        ours, theirs = without(ours, nodes), without(theirs, nodes)
+    assert ours == theirs
+
+
+def without(whole: Shape, nodes: set[str]) -> Shape:
+    """A shape without the automata of these tree nodes and without the number of synchronisations."""
+    automata = whole["automata"]
+    assert isinstance(automata, list)
+    kept = [a for a in automata if not any(f"_{node}" in a[0] for node in nodes)]
+    assert len(kept) < len(automata)
+    return {**whole, "automata": kept, "syncs": None}
 
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)

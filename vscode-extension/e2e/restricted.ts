@@ -2,12 +2,16 @@
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
-import { sample, type Stage } from "./support/stage";
+import { MEND, sample, type Stage } from "./support/stage";
 import { write } from "./support/workbench";
 
-/** A workspace that tries to have a program of its own started in place of the server. */
-function hostile(): string {
-    const folder = sample();
+/** A workspace that tries to have code of its own run: a program in place of the server, and modules of its names. */
+function hostile(change = {}): string {
+    const folder = sample(change);
+    for (const module of ["as2fm_lsp", "pip", "venv", "encodings"]) {
+        const code = `open(${JSON.stringify(path.join(folder, "started"))}, "w").close()\n`;
+        for (const name of ["__init__.py", "__main__.py"]) write(path.join(folder, module, name), code);
+    }
     const program = path.join(folder, "server.sh");
     write(program, `#!/bin/sh\ntouch ${folder}/started\necho as2fm-lsp 9.9.9\n`);
     fs.chmodSync(program, 0o755);
@@ -33,6 +37,24 @@ export function restricted(stage: Stage): void {
         await window.screenshot("restricted");
     });
 
+    stage.test(
+        "the lenses write nothing and verify nothing",
+        () => hostile(MEND),
+        async (window) => {
+            await window.page.getByRole("button", { name: "No, I don't trust the authors" }).click();
+            await window.openFile("main.xml");
+            const before = content(window.folder);
+            for (const lens of ["Translate to JANI", "Verify all"]) {
+                await window.page.locator(".codelens-decoration a", { hasText: lens }).first().click();
+                await window.notification("This is off in Restricted Mode").first().waitFor();
+                await window.run("Notifications: Clear All Notifications");
+                await window.notification("This is off in Restricted Mode").first().waitFor({ state: "detached" });
+            }
+            assert.deepEqual(content(window.folder), before);
+            await window.screenshot("restricted-lens");
+        },
+    );
+
     stage.test("once trusted, the workspace decides", hostile, async (window) => {
         await window.page.getByRole("button", { name: "Yes, I trust the authors" }).click();
         await window.openFile("battery.ascxml");
@@ -40,4 +62,11 @@ export function restricted(stage: Stage): void {
         // It is no language server; that is said, with what to do.
         await window.notification("did not start").waitFor();
     });
+}
+
+/** The files of a folder with their content. */
+function content(folder: string): Record<string, string> {
+    const names = fs.readdirSync(folder, { recursive: true, encoding: "utf8" });
+    const files = names.map((name) => path.join(folder, name)).filter((file) => fs.statSync(file).isFile());
+    return Object.fromEntries(files.map((file) => [file, fs.readFileSync(file, "utf8")]));
 }

@@ -52,6 +52,7 @@ fs.writeFileSync(
     ].join("\n"),
 );
 
+fs.copyFileSync(path.join(here, "requirements.txt"), path.join(dist, "requirements.txt"));
 fs.cpSync(path.join(here, "templates"), path.join(dist, "templates"), { recursive: true });
 fs.cpSync(path.join(root, "docs/ci"), path.join(dist, "ci"), { recursive: true });
 

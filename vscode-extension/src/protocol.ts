@@ -80,17 +80,35 @@ export interface Verified {
         readonly expected: string;
         readonly met: boolean;
         readonly certain: boolean;
+        /** Whether uniform choices meet it, and it is not known whether all schedulers do. */
+        readonly under_uniform_choices_only?: boolean;
     }[];
+    /** What the number is not, if the property asks for a minimum or maximum. */
+    readonly warning?: string;
     /** Whether there is a trace that speaks against what is expected. */
     readonly counterexample?: boolean;
     readonly error?: Wrong;
+}
+
+/** What is known of a system getting stuck, that is of traces in which everybody waits for somebody else. */
+export interface Stuckness {
+    /** What it is that a trace gets stuck. */
+    readonly level: "warning" | "error";
+    /** Who waits for whom in the example, in some lines. */
+    readonly text: string;
+    /** Null if no trace got stuck. */
+    readonly example: { readonly trace: number } | null;
 }
 
 /** `errors` are those of the model; then there are no results. */
 export interface Verification {
     readonly results: readonly Verified[];
     readonly errors: readonly Wrong[];
+    readonly stuck?: Stuckness | null;
 }
+
+/** The property that every system has: that it gets stuck. */
+export const STUCK = "stuck";
 
 /** A property; `stale` is missing while nothing is known of it. */
 export interface Property extends Place {

@@ -22,7 +22,9 @@ function machine({ venv = {}, pip = {}, version = { out: "as2fm-lsp 0.1.0" } }: 
 }
 
 function install(on: FakeMachine, preferred: string[] = [], onStep: (step: Step) => void = () => undefined) {
-    return new PrivateEnvironment(on, "/storage", "/server.whl", "2").install(preferred, { onStep });
+    return new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").install(preferred, {
+        onStep,
+    });
 }
 
 test("an environment is made, the wheel installed and the mark written last", async () => {
@@ -32,8 +34,16 @@ test("an environment is made, the wheel installed and the mark written last", as
     const found = await install(on, [], (step) => steps.push(step));
     assert.ok("origin" in found && found.origin === "private" && found.version === "0.1.0");
     assert.deepEqual(steps, ["python", "venv", "packages"]);
-    assert.ok(on.ran.includes(`/bin/python3 -m venv ${HOME}`));
-    assert.ok(on.ran.some((line) => line.startsWith(`${INSIDE} -I -m pip install`) && line.endsWith("/server.whl")));
+    assert.ok(on.ran.includes(`/bin/python3 -I -m venv ${HOME}`));
+    const pip = `${INSIDE} -I -m pip install --disable-pip-version-check --no-input`;
+    assert.deepEqual(
+        on.ran.filter((line) => line.includes("pip")),
+        [
+            // Packages by their hashes only, and without code that builds them; the wheel is here.
+            `${pip} --require-hashes --only-binary :all: -r /requirements.txt`,
+            `${pip} --no-index --no-deps /server.whl`,
+        ],
+    );
     // The environment of an earlier version is gone.
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
 });
@@ -41,7 +51,9 @@ test("an environment is made, the wheel installed and the mark written last", as
 test("what is compiled is compiled in the environment, and what is said of it is told", async () => {
     const on = new FakeMachine({ [INSIDE]: () => ({ status: 1, err: "there is no C compiler" }) });
     let said = "";
-    await new PrivateEnvironment(on, "/storage", "/server.whl", "2").compile((text) => (said += text));
+    await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").compile(
+        (text) => (said += text),
+    );
     assert.deepEqual(on.ran, [`${INSIDE} -I -m as2fm_lsp.cli.build_kernel`]);
     assert.equal(said, "there is no C compiler");
 });
@@ -53,7 +65,14 @@ test("the preferred interpreter comes first", async () => {
         [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
     });
     await install(on, ["/conda/python"]);
-    assert.ok(on.ran.includes(`/conda/python -m venv ${HOME}`));
+    assert.ok(on.ran.includes(`/conda/python -I -m venv ${HOME}`));
+});
+
+test("no Python of a folder that is not trusted is started", async () => {
+    const on = machine();
+    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2");
+    assert.deepEqual(await environment.install(["/bin/python3"], { avoid: ["/bin"] }), { kind: "no-python" });
+    assert.deepEqual(on.ran, []);
 });
 
 test("no Python, or an old one only", async () => {
@@ -90,16 +109,22 @@ test("an environment that does not work is not kept", async () => {
     const on = machine({ version: { status: 1, err: "No module named as2fm_lsp" } });
     const found = await install(on);
     assert.ok("kind" in found && found.kind === "no-packages");
-    assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "2").server(), undefined);
+    assert.equal(
+        await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").server(),
+        undefined,
+    );
 });
 
 test("the environment of an earlier version is known, and stays until the new one is there", async () => {
     const on = machine({ pip: { status: 1 } });
     on.files.set("/storage/1/ready.json", JSON.stringify({ version: "0.0.9" }));
-    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "2");
+    const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2");
     assert.equal(await environment.server(), undefined);
     await environment.install([]);
     const older = await environment.older();
     assert.deepEqual([older?.command, older?.version], ["/storage/1/bin/python", "0.0.9"]);
-    assert.equal(await new PrivateEnvironment(on, "/storage", "/server.whl", "1").older(), undefined);
+    assert.equal(
+        await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "1").older(),
+        undefined,
+    );
 });

@@ -9,7 +9,7 @@ const NOTHING: Wishes = { server: "", interpreter: "", active: [], trusted: true
 const MARK = "/storage/1/ready.json";
 
 function find(machine: FakeMachine, wishes: Partial<Wishes> = {}) {
-    const environment = new PrivateEnvironment(machine, "/storage", "/server.whl", "1");
+    const environment = new PrivateEnvironment(machine, "/storage", "/server.whl", "/requirements.txt", "1");
     return findServer(machine, { ...NOTHING, ...wishes }, environment);
 }
 
@@ -30,7 +30,7 @@ test("the setting comes first, then Python, PATH and the private environment", a
     assert.deepEqual(await find(everything(), { ...all, server: "" }), {
         origin: "python",
         command: "/venv/bin/python",
-        args: ["-m", "as2fm_lsp"],
+        args: ["-I", "-m", "as2fm_lsp"],
         version: "0.3.0",
     });
     const onPath = { origin: "path", command: "/bin/as2fm-lsp", args: [], version: "0.2.0" };
@@ -55,11 +55,22 @@ test("a setting that does not work is told of, not passed over", async () => {
     assert.deepEqual(cat, { kind: "configured-server", path: "/bin/cat", detail: "cat (GNU coreutils) 9.1" });
 });
 
-test("without trust nothing of the workspace is started", async () => {
+test("without trust nothing is started but the private environment", async () => {
     const machine = everything();
-    const found = await find(machine, { active: ["/venv/bin/python"], trusted: false });
-    assert.ok("origin" in found && found.origin === "path");
-    assert.ok(!machine.ran.some((line) => line.startsWith("/venv")));
+    const wishes = { server: "/opt/as2fm-lsp", interpreter: "/venv/bin/python", active: ["/venv/bin/python"] };
+    const found = await find(machine, { ...wishes, trusted: false });
+    assert.ok("origin" in found && found.origin === "private");
+    machine.files.clear();
+    assert.deepEqual(await find(machine, { ...wishes, trusted: false }), { kind: "no-server" });
+    assert.deepEqual(machine.ran, []);
+});
+
+test("Python never takes modules of the working folder", async () => {
+    const machine = everything();
+    await find(machine, { active: ["/venv/bin/python", "/none/python"] });
+    const python = machine.ran.filter((line) => line.includes("python"));
+    assert.ok(python.length > 0);
+    for (const line of python) assert.match(line, /python\d*(\.\d+)? -I /);
 });
 
 test("an interpreter that the user has chosen is asked in place of the active one", async () => {
@@ -67,7 +78,7 @@ test("an interpreter that the user has chosen is asked in place of the active on
         "/a/python": python("/a/python", "3.10", "0.1.0"),
         "/b/python": python("/b/python", "3.10", "0.1.0"),
     });
-    const found = await find(machine, { interpreter: "/a/python", active: ["/b/python"], trusted: false });
+    const found = await find(machine, { interpreter: "/a/python", active: ["/b/python"] });
     assert.ok("command" in found && found.command === "/a/python");
 });
 

@@ -19,7 +19,7 @@ import roaml.smc
 from as2fm_lsp.write import write_file
 
 SOURCE = Path(roaml.smc.__file__).with_name("kernel.c")
-FLAGS = ("-O3", "-g0", "-fwrapv")
+FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
 
 
 class BuildError(Exception):

@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import difflib
-import io
 import os
 from collections.abc import Iterator, Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
+from roaml.disk import Problem
 from roaml.ide.format import can_format, format_edits, is_ours
 from roaml.language import HL_SCXML
 from roaml.model.dialect import dialect_of
@@ -20,7 +20,6 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.project.analysis import Analysis
 from roaml.project.discover import candidates
-from roaml.project.files import Problem
 from roaml.project.settings import Settings, find_settings
 from roaml.project.workspace import Workspace
 from roaml.text import SourceFile, apply_edits
@@ -115,9 +114,7 @@ def _is_hand_written(analysis: Analysis, path: str) -> bool:
 
 def _diff(source: SourceFile, text: str) -> Iterator[str]:
     name = shown_path(source.path)
-    before, after = (list(io.StringIO(each, newline="\n")) for each in (source.text, text))
-    for line in difflib.unified_diff(before, after, name, name):
-        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+    return unified(source.text, text, name, name)
 
 
 def _fail(message: str) -> int:

@@ -106,10 +106,10 @@ def _dispatch(arguments: Sequence[str]) -> int:
         return USAGE
     from as2fm_lsp.cli import serve  # noqa: PLC0415
 
-    return serve.run(options.tcp)
+    return serve.run(options.tcp, options.socket, options.allow_remote)
 
 
-_SERVING = ("explain", "stdio", "tcp")
+_SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("check", "explain", "help", "version")
 """Options that people take for commands."""
 
@@ -133,8 +133,18 @@ def parser() -> ArgumentParser:
     )
     result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
     result.add_argument("--explain", metavar="CODE", help="print what a rule means and exit")
-    result.add_argument("--tcp", metavar="HOST:PORT", help="serve one editor on a TCP port instead of standard input")
-    result.add_argument("--stdio", action="store_true", help="serve on standard input and output, as without it")
+    serve = result.add_argument_group("serving an editor")
+    serve.add_argument("--stdio", action="store_true", help="serve on standard input and output, as without it")
+    serve.add_argument(
+        "--tcp",
+        metavar="HOST:PORT",
+        help="serve one editor on a port of this machine (0: any) instead; it must send the token that is printed, or "
+        "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
+    )
+    serve.add_argument("--allow-remote", action="store_true", help="with --tcp: let other machines connect, too")
+    serve.add_argument(
+        "--socket", metavar="FILE", help="serve one editor on a socket file instead, which only you can connect to"
+    )
     check = result.add_argument_group("checking")
     check.add_argument("--check", action="store_true", help="check files and exit")
     check.add_argument("--fix", action="store_true", help="make all safe fixes first: none guesses or changes a model")

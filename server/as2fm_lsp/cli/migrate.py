@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import shutil
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
@@ -61,10 +61,8 @@ def parser() -> ArgumentParser:
 
 
 def _diff(migration: Migration) -> str:
-    before, after = (text.splitlines(keepends=True) for text in (migration.before, migration.after))
     names = shown_path(migration.path), shown_path(migration.new_path)
-    lines = list(difflib.unified_diff(before, after, *names)) or [f"--- {names[0]}\n", f"+++ {names[1]}\n"]
-    return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)
+    return "".join(unified(migration.before, migration.after, *names)) or f"--- {names[0]}\n+++ {names[1]}\n"
 
 
 def _write(migrations: Sequence[Migration]) -> None:

@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import logging
+import os
+import secrets
+import socket
 import sys
 
+from as2fm_lsp import sockets
 from as2fm_lsp.cli.check import CLEAN, USAGE
-from as2fm_lsp.cli.output import complain
 from as2fm_lsp.server import create
 
 UNEXPECTED_END = 1
@@ -17,25 +20,77 @@ SWITCH = 0.001
 """Seconds after which a computation lets the thread have a turn that reads what the client sends."""
 
 
-def run(tcp: str | None) -> int:
-    """Serve one client, on standard input and output or on `HOST:PORT`."""
+TOKEN = "AS2FM_TOKEN"
+"""The variable of the environment that holds the token of a client, so that it need not be read from the log."""
+
+SHORTEST_TOKEN = 16
+
+
+class _UsageError(ValueError):
+    """The message says what is wrong."""
+
+
+def run(tcp: str | None = None, socket_file: str | None = None, allow_remote: bool = False) -> int:
+    """Serve one client, on standard input and output, on a port or on a socket file.
+
+    Args:
+        tcp: `HOST:PORT`.
+        socket_file: the path of a socket that is made.
+        allow_remote: `HOST` may be an address at which other machines can connect.
+    """
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server tells of errors itself
     sys.setswitchinterval(SWITCH)
     server = create()
-    if tcp is None:
-        server.start_io()
-        return CLEAN if server.is_shut_down else UNEXPECTED_END
-    host, _, port = tcp.rpartition(":")
-    if not (port.isascii() and port.isdigit() and int(port) < 65536):
-        return _usage(f"--tcp takes HOST:PORT, not {tcp}")
     try:
-        server.start_tcp(host.removeprefix("[").removesuffix("]") or "127.0.0.1", int(port))
-    except OSError as error:
-        return _usage(f"--tcp {tcp}: {error.strerror or error}")
+        if tcp is not None and socket_file is not None:
+            raise _UsageError("--tcp and --socket exclude each other")
+        if allow_remote and tcp is None:
+            raise _UsageError("--allow-remote is used with --tcp only")
+        if tcp is not None:
+            server.serve_client(_tcp_client(tcp, allow_remote))
+        elif socket_file is not None:
+            server.serve_client(_socket_file_client(socket_file))
+        else:
+            server.start_io()
+    except _UsageError as error:
+        print(f"as2fm-lsp: {error}", file=sys.stderr)
+        return USAGE
     return CLEAN if server.is_shut_down else UNEXPECTED_END
 
 
-def _usage(message: str) -> int:
-    complain(message)
-    return USAGE
+def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Client:
+    host, _, port = tcp.rpartition(":")
+    if not (port.isascii() and port.isdigit() and len(port) < 6 and int(port) < 65536):
+        raise _UsageError(f"--tcp takes HOST:PORT, not {tcp}")
+    token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe()
+    if len(token) < SHORTEST_TOKEN:
+        raise _UsageError(f"{TOKEN} is too short to be a secret; it takes {SHORTEST_TOKEN} characters or more")
+    host = host.removeprefix("[").removesuffix("]") or "127.0.0.1"
+    try:
+        with sockets.listening_on(host, int(port), allow_remote) as listeners:
+            for listener in listeners:
+                _say(f"listening on {sockets.shown_address(listener)}")
+            _say(f"the client must send as `token` in its initializationOptions: {token}")
+            return sockets.first_client(listeners, token)
+    except sockets.RemoteError:
+        text = f"--tcp {tcp}: other machines could connect there; use 127.0.0.1, or add --allow-remote"
+        raise _UsageError(text) from None
+    except OSError as error:
+        raise _UsageError(f"--tcp {tcp}: {error.strerror or error}") from None
+
+
+def _socket_file_client(path: str) -> sockets.Client:
+    if not hasattr(socket, "AF_UNIX"):
+        raise _UsageError("--socket: this system has no socket files; use --tcp")
+    try:
+        with sockets.listening_at(path) as listeners:
+            _say(f"listening on {path}")
+            return sockets.first_client(listeners, token="")
+    except OSError as error:
+        raise _UsageError(f"--socket {path}: {error.strerror or error}") from None
+
+
+def _say(text: str) -> None:
+    """Where a log is read: standard output may belong to a client."""
+    print(f"as2fm-lsp: {text}", file=sys.stderr, flush=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypedDict
 
+from as2fm_lsp.handlers.parameters import document_uri
 from roaml.model.kinds import FileKind
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def register(server: Server) -> None:
 
     @server.feature(METHOD)
     def about(params: Any) -> About:
-        path = session.convert.path(params.textDocument.uri)
+        path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis
         systems = analysis.memberships.get(path, ())
         kind = analysis.kind(path)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.migrate import Migration
 from roaml.text import SourceFile, Span
@@ -40,7 +41,8 @@ def register(server: Server) -> None:
 
     @server.feature(METHOD)
     def migrate(params: Any) -> Migrated:
-        path = session.convert.path(params.textDocument.uri)
+        server.trust.require(METHOD)
+        path = session.convert.path(document_uri(params))
         try:
             migrations = api.migrate([path], settings=session.settings_of(path), with_related=True)
         except api.PathError as error:

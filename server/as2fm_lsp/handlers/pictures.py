@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from as2fm_lsp.handlers.parameters import document_uri, string
 from roaml.ide.pictures import Picture, machine_picture, ros_picture, tree_picture
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -65,8 +66,9 @@ def register(server: Server) -> None:
     @server.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
         """null where there is nothing of the kind to draw."""
-        make = _PICTURES.get(params.kind)
-        path = session.convert.path(params.textDocument.uri)
+        kind = string(params, "kind")
+        make = _PICTURES.get(kind)
+        path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis
         found = make(analysis, path) if make else None
-        return None if found is None else convert(analysis, params.kind, found)
+        return None if found is None else convert(analysis, kind, found)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
 from roaml.scxml.model import Role
@@ -49,7 +50,7 @@ def register(server: Server) -> None:
     @server.feature(METHOD)
     def plain_scxml(params: Any) -> PlainScxml:
         """Of a plugin that the tree has several times, the first: the others differ in their ports only."""
-        path = session.convert.path(params.textDocument.uri)
+        path = session.convert.path(document_uri(params))
         snapshot = session.moment().snapshot(path)
         analysis = snapshot.analysis
         systems = analysis.memberships.get(path, ())

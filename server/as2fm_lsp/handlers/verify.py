@@ -18,23 +18,26 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.handlers.asked import Asked as Document
+from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
-from as2fm_lsp.verification import background
+from as2fm_lsp.verification import background, stuck
+from as2fm_lsp.verification.choices import under_all_schedulers
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
-from as2fm_lsp.verification.expectations import Expectation, judge
+from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge
 from as2fm_lsp.verification.report import Result, as_text, row
-from as2fm_lsp.verification.subject import of_system
+from as2fm_lsp.verification.subject import Subject, of_system
 from as2fm_lsp.verification.verified import Known, missed, short
 from as2fm_lsp.verification.wishes import Wishes, wishes
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.pictures import lit
-from roaml.ide.verifiable import Verifiable, fingerprint, verifiable
+from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
+from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, with_threshold
+from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
 from roaml.smc.model import Checker
 from roaml.smc.pool import WorkersLostError
 from roaml.smc.run import Answer, Tally, summary
@@ -65,7 +68,8 @@ def register(server: Server) -> None:
 
         Returns:
             `results`, one for each property as `as2fm-lsp verify --format json` writes them, or with an `error` in
-            place of the numbers; and `errors`, those of the model. null if the user does not want it any more.
+            place of the numbers; `stuck`, what is known of getting stuck, in the same form, null if nothing is; and
+            `errors`, those of the model. null if the user does not want it any more.
         """
         if not _are_arguments(arguments):
             text = f"{COMMAND} takes the URI of a system file, a list of names, and options."
@@ -103,18 +107,21 @@ def register(server: Server) -> None:
     @server.feature(COUNTEREXAMPLE)
     async def why(params: Any) -> Json | None:
         """The shortest trace that speaks against a property; null if none is known."""
-        path = session.convert.path(params.textDocument.uri)
-        known = server.verified.get(path, params.property)
+        path = session.convert.path(document_uri(params))
+        known = server.verified.get(path, string(params, "property"))
         seen = speaking_against(known.result) if known else None
         if known is None or seen is None:
             return None
 
-        def place_of(origin: Location) -> str:
-            place = known.subject.place(origin)
-            return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
-
         found = await background.in_thread(
-            lambda _: counterexample(known.subject, known.checker, known.asked, known.options, seen, place_of),
+            lambda _: counterexample(
+                known.subject,
+                known.checker,
+                known.asked,
+                known.options,
+                seen,
+                lambda origin: _place_in_words(known.subject, origin),
+            ),
             server.requests.checkpoint,
         )
         analysis = session.moment().snapshot(path).analysis
@@ -141,13 +148,20 @@ def lenses(server: Server, on: Document) -> Iterator[types.CodeLens]:
         if system == on.path and file is not None and found:
             command = types.Command("Verify all", COMMAND, arguments=[uri])
             yield types.CodeLens(on.range(file.element.name_span), command)
+            stuck_known = server.verified.get(system, STUCK_PROPERTY)
+            if server.show_counterexample and stuck_known and stuck_known.result.stuck:
+                stale = ", stale" if server.verified.is_stale(stuck_known, on.analysis, system) else ""
+                title = f"Gets stuck{stale}: show who waits for whom"
+                show = types.Command(title, server.show_counterexample, arguments=[uri, STUCK_PROPERTY])
+                yield types.CodeLens(on.range(file.element.name_span), show)
         for each in found:
             if each.path != on.path:
                 continue
             known = server.verified.get(system, each.name)
             title = " · ".join([f"{TITLE}{where}", *_words(server, on.analysis, system, known)])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
-            if known and server.show_counterexample and missed(known.result) and speaking_against(known.result):
+            speaks = known and (missed(known.result) or known.result.stuck)
+            if known and server.show_counterexample and speaks and speaking_against(known.result):
                 show = types.Command("Show counterexample", server.show_counterexample, arguments=[uri, each.name])
                 yield types.CodeLens(on.range(each.name_span), show)
 
@@ -160,7 +174,9 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             known = server.verified.get(system, each.name)
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
                 continue
-            mark = "✗" if missed(known.result) else "✓" if known.result.verdicts else "="
+            is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
+            mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
+            mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
             whole = as_text([known.result], "").strip()
@@ -172,6 +188,9 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
         return []
     wrong = missed(known.result)
     parts = [short(known.result), *([f"not {wrong}"] if wrong else [])]
+    parts += dict.fromkeys(verdict.text for verdict in known.result.verdicts if verdict.is_uniform)
+    if known.result.stuck is not None:
+        parts.append(f"{known.result.stuck.count:,} traces got stuck")
     if server.verified.is_stale(known, analysis, system):
         parts.append("stale")
     return [", ".join(parts)]
@@ -207,37 +226,81 @@ class _Run:
             server.verified.keep_subject(texts, subject)
         known = [each.name for each in subject.model.properties]
         rows: list[Json] = []
+        results: list[Result] = []
+        checker: Checker | None = None
         for each in dict.fromkeys(names or known):
             try:
                 await self.shown.step(each)
                 began = time.monotonic()
                 checker = api.checker(subject.model, [each])
+                for why in checker.refused.values():
+                    raise why
                 asked = self.with_threshold(checker.asked[0])
-                answer = await self.traces(checker, asked)
+                for expected in self.expected(asked):
+                    check_range(expected, asked.question)
+                answer, choices = await self.traces(checker, asked)
             except FaultError as fault:
                 rows.append({"property": each, "error": self.fault(fault, system.analysis)})
                 self.say_wrong(f"{each}: {fault.message}")
                 continue
-            except (api.PropertyError, WorkersLostError) as error:
+            except (api.PropertyError, RangeError, WorkersLostError) as error:
                 rows.append({"property": each, "error": {"message": str(error)}})
                 self.say_wrong(str(error))
                 continue
-            verdicts = tuple(judge(expected, answer) for expected in self.expected(asked))
-            result = Result(each, answer, verdicts, time.monotonic() - began)
+            verdicts = tuple(
+                under_all_schedulers(judge(expected, answer), answer, choices) for expected in self.expected(asked)
+            )
             options = self.wanted.options
+            gets_stuck = stuck.stuck_in(subject, checker, asked, answer)
+            took = time.monotonic() - began
+            result = Result(each, answer, verdicts, took, stuck=gets_stuck, choices=choices)
+            results.append(result)
             server.verified.put(path, Known(result, subject, system.analysis, checker, asked, options, texts))
             rows.append({**row(result), "short": short(result), "counterexample": speaking_against(result) is not None})
             server.refresh.look()
             if not self.wanted.is_silent:
                 _tell(server, types.MessageType.Info, as_text([result], "").strip())
-        return {"results": rows, "errors": []}
+        look = None if checker is None else await self.look(subject, system.analysis, checker, results, texts)
+        return {"results": rows, "errors": [], "stuck": look}
 
-    async def traces(self, checker: Checker, asked: Asked) -> Answer:
+    async def look(
+        self, subject: Subject, analysis: Analysis, checker: Checker, results: Sequence[Result], texts: Texts
+    ) -> Json | None:
+        """What is known of getting stuck, by traces that are made for it if it was not asked."""
+        if not stuck.can_be_stuck(checker):
+            return None
+        known = stuck.Look(None, None, self.wanted.stuck)
+        if not any(result.answer and result.answer.question.is_stuck for result in results):
+            options, asked = self.wanted.options, checker.stuck
+            await self.shown.step(asked.question.name)
+            began = time.monotonic()
+            known = await background.in_thread(
+                lambda checked: stuck.look(subject, checker, options, self.wanted.stuck, lambda _, __: checked()),
+                self.server.requests.checkpoint,
+            )
+            is_free = all(each.name != asked.question.name for each in subject.model.properties)
+            if known.answer is not None and is_free:
+                result = Result(asked.question.name, known.answer, (), time.monotonic() - began, stuck=known.stuck)
+                made = Known(result, subject, analysis, checker, asked, known.answer.options, texts)
+                self.server.verified.put(self.path, made)
+            self.server.refresh.look()
+        known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
+        text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
+        if known.stuck is not None and not self.wanted.is_silent:
+            kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
+            _tell(self.server, kind, text.strip())
+        row = stuck.as_row(known, lambda origin: _place(self.server, analysis, origin))
+        return {**row, "text": text.strip()}
+
+    async def traces(self, checker: Checker, asked: Asked) -> tuple[Answer, Choices | None]:
         def tell(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, self.wanted.options, tally), (), 0)
             self.shown.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
-        return await background.answer(checker, asked, self.wanted.options, self.server.requests.checkpoint, tell)
+        is_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
+        checkpoint = self.server.requests.checkpoint
+        is_uniform = is_uniform or asked.question.is_stuck
+        return await background.answer(checker, asked, self.wanted.options, checkpoint, tell, is_uniform)
 
     def with_threshold(self, asked: Asked) -> Asked:
         """The question with the first number that it is compared with."""
@@ -259,7 +322,7 @@ class _Run:
 
     def fault(self, fault: FaultError, analysis: Analysis) -> Json:
         place = _place(self.server, analysis, fault.origin) if fault.origin is not None else {}
-        return {"message": fault.message, "trace": fault.trace, **place}
+        return {"message": fault.message, "code": fault.code, "trace": fault.trace, **place}
 
     def say_wrong(self, text: str) -> None:
         if not self.wanted.is_silent:
@@ -289,6 +352,11 @@ def _step(server: Server, known: Known, system: str, line: Line) -> Json:
         **(_place(server, known.analysis, origin) if origin is not None else {}),
         "lit": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
     }
+
+
+def _place_in_words(subject: Subject, origin: Location) -> str:
+    place = subject.place(origin)
+    return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
 
 
 def _place(server: Server, analysis: Analysis, location: Location) -> Json:

@@ -33,14 +33,19 @@ class Counterexample:
 
 def wanted_verdict(result: Result) -> int:
     """The verdict of the traces that speak against what is expected."""
+    if result.answer is not None and result.answer.question.is_stuck:
+        return TRUE
     expected = [verdict.expectation.threshold for verdict in result.verdicts]
     return TRUE if expected and not any(threshold.is_lower for threshold in expected) else FALSE
 
 
 def speaking_against(result: Result) -> Seen | None:
-    """The shortest trace that does; one that was not decided if there is none."""
+    """The shortest trace that does; one that was not decided if there is none. If any trace got stuck, the shortest of
+    these: it says why the number means little."""
     if result.answer is None:
         return None
+    if result.stuck is not None:
+        return result.stuck.seen
     shortest = result.answer.tally.shortest
     return shortest.get(wanted_verdict(result)) or shortest.get(UNKNOWN)
 

@@ -44,6 +44,8 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
         raise ExactError(message) from None
     except StateFaultError as error:
         raise checker.fault(error.problem) from None
+    if asked.property not in checker.model.properties:
+        raise ExactError("this can be asked by traces only; leave --exact out")
     document = json.loads("".join(write(checker.model)))
     (property_,) = (each for each in document["properties"] if each["name"] == asked.question.name)
     found = []

@@ -2,7 +2,8 @@
 """Traces as files: CSV for plotting, and JSON with the places that each step exists for.
 
 CSV has a line for each state, the first one included, and a column for its number, the time in seconds where the model
-has a clock, and each global variable; an array has a column for each of its elements; true is 1, false 0.
+has a clock, why the trace has ended (in its last line), and each global variable; an array has a column for each of its
+elements; true is 1, false 0.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ import os
 import re
 from collections.abc import Iterator
 
+from as2fm_lsp.verification.stuck import time_of
 from as2fm_lsp.verification.subject import Subject
 from as2fm_lsp.write import write_file
 from roaml.jani.node import Origin
+from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Seen
+from roaml.views.waiting import waits
 
 LIMIT = 10
 """Traces of each verdict, if nothing else is said."""
@@ -52,24 +56,28 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
     names = [storage.name for storage in storages]
     places = None if clock is None else (names.index(clock[0]), names.index(clock[1]))
 
-    def row(number: int, values: list[Plain]) -> str:
+    def row(number: int, values: list[Plain], end: str = "") -> str:
         cells = [str(number)]
         if places is not None:
             seconds, nanoseconds = values[places[0]], values[places[1]]
             assert not isinstance(seconds, list)
             assert not isinstance(nanoseconds, list)
             cells.append(_cell(seconds + nanoseconds / 1e9))
+        cells.append(end)
         cells += (_cell(each) for value in values for each in _cells(value))
         return ",".join(cells) + "\n"
 
     start = recorder.initial(storages)
-    header = ["step", *(() if places is None else ("time",))]
+    header = ["step", *(() if places is None else ("time",)), "end"]
     for name, value in zip(names, start, strict=True):
         header += (_quoted(name + suffix) for suffix in _suffixes(value))
     yield ",".join(header) + "\n"
-    yield row(0, start)
-    for step in recorder.walk(Recording(trace)):
-        yield row(step.number, recorder.values(storages))
+    recording = Recording(trace)
+    number, values = 0, start
+    for step in recorder.walk(recording):
+        yield row(number, values)
+        number, values = step.number, recorder.values(storages)
+    yield row(number, values, end_of(recording))
 
 
 def json_lines(subject: Subject, recorder: Recorder, trace: int) -> Iterator[str]:
@@ -83,7 +91,20 @@ def json_lines(subject: Subject, recorder: Recorder, trace: int) -> Iterator[str
     for step in recorder.walk(recording):
         yield comma + _json(step_row(subject, recorder, step))
         comma = ",\n  "
-    yield f'\n ],\n "verdict": {_json(VERDICTS.get(recording.verdict, "fault"))}\n}}\n'
+    verdict = VERDICTS.get(recording.verdict, "fault")
+    yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
+    if recording.end is End.STUCK:
+        rows = [
+            {"who": wait.who, "what": wait.what, **_place(subject, wait.origin)}
+            for wait in waits(recorder.standstill(), time_of(subject, recorder))
+        ]
+        yield ',\n "waits": [' + "".join(f"\n  {_json(row)}," for row in rows).removesuffix(",") + "\n ]"
+    yield "\n}\n"
+
+
+def end_of(recording: Recording) -> str:
+    """Why a trace that was walked again has ended."""
+    return "fault" if recording.problem is not None else recording.end.key
 
 
 def step_row(subject: Subject, recorder: Recorder, step: TraceStep) -> dict[str, object]:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How an editor wants properties to be verified: `as2fm.verify` of its settings, and the options of one call.
 
-    {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"}}}
+    {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
+                "stuck": "warning"}}
 
 The options of a call have the same form, besides `seed` and `silent`, and count more. What makes no sense is told, and
 counts as not said.
@@ -14,13 +15,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from as2fm_lsp.verification.expectations import Expectation, parse
-from roaml.smc.run import Options
+from as2fm_lsp.verification.stuck import LEVELS, WARNING
+from roaml.smc.run import LEAST_EPSILON, Options
 
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
     """Attributes:
     is_silent: whether the results are not told as messages.
+    stuck: what it is that a system gets stuck, one of `stuck.LEVELS`.
     problems: what makes no sense, in sentences.
     """
 
@@ -28,6 +31,7 @@ class Wishes:
     expectations: tuple[Expectation, ...]
     is_silent: bool
     problems: tuple[str, ...]
+    stuck: str = WARNING
 
 
 def wishes(settings: object, options: object = None) -> Wishes:
@@ -49,9 +53,10 @@ def wishes(settings: object, options: object = None) -> Wishes:
 
     default = Options()
     share, whole = "a number between 0 and 1", "a whole number"
+    width = f"a number from {LEAST_EPSILON:g} to 1"
     chosen = Options(
         confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
-        epsilon=number("epsilon", default.epsilon, lambda value: 0 < value < 1, share),
+        epsilon=number("epsilon", default.epsilon, lambda value: LEAST_EPSILON <= value < 1, width),
         max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{whole} from 1 on"),
         seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
     )
@@ -61,7 +66,11 @@ def wishes(settings: object, options: object = None) -> Wishes:
             expectations.append(parse(f"{name} {text}"))
         except ValueError:
             problems.append(f"What is expected of {name} must be like '>= 0.95', not {text!r}.")
-    return Wishes(chosen, tuple(expectations), said.get("silent") is True, tuple(problems))
+    level = said.get("stuck", WARNING)
+    if level not in LEVELS:
+        problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
+        level = WARNING
+    return Wishes(chosen, tuple(expectations), said.get("silent") is True, tuple(problems), level)
 
 
 def _mapping(value: object) -> Mapping[str, Any]:

@@ -84,7 +84,11 @@ FUNCTIONS = {
         Function("min", ("a", "b"), "same", "The lesser of a and b."),
         Function("pow", ("x", "y"), "real", "x to the power of y."),
         Function(
-            "random", (), "real", "One of 0.00, 0.01, …, 0.99, each equally likely. Only where a value is stored."
+            "random",
+            (),
+            "real",
+            "One of 0.00, 0.01, …, 0.99, each equally likely; `<random_values>` of the system can "
+            "ask for more. Only where a value is stored.",
         ),
         Function("sin", ("x",), "real", "The sine of x, x in radians."),
     )

@@ -14,13 +14,12 @@ from functools import cached_property
 
 from roaml.diagnostics import Symbol
 from roaml.ide.occurrence import Form, tree_node
-from roaml.model.expand import ROOT_NUMBER, main_tree, tree_file_outline
+from roaml.model.expand import ROOT_NUMBER, extent, main_tree, tree_file_outline
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
 
 AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
-_MAX_INSTANCES = 10_000
 
 Piece = tuple[str, Symbol | None, Form]
 """A part of a name that the translation makes: its text and what that comes from, if anything."""
@@ -106,8 +105,9 @@ class Trees:
 
     @cached_property
     def main(self) -> tuple[str, Tree] | None:
-        main = main_tree(tuple(tree_file_outline(path, file) for path, file in self.files.items()))
-        if isinstance(main, tuple):
+        outlines = tuple(tree_file_outline(path, file) for path, file in self.files.items())
+        main = main_tree(outlines)
+        if isinstance(main, tuple) or not extent(outlines).is_expanded:
             return None
         for tree in self.files[main.path].trees:
             if (tree.id.value if tree.id else "") == main.id:
@@ -238,16 +238,38 @@ class _Walk:
         self.nodes: list[tuple[Frame, TreeNode]] = []
         self.frames: list[Frame] = []
         self.prefixes: set[str] = set()
+        self.counts: dict[str, int] = {}
+        self.positions: dict[Tree, dict[TreeNode, int]] = {}
+        self.known_names: dict[Tree, frozenset[str]] = {}
 
     def run(self, path: str, main: Tree) -> None:
+        """Works with a list of what is still to be placed, as `roaml.model.expand` does."""
         frame = Frame(path, main, (), {}, False, None, self.names(main))
         self.frames.append(frame)
-        positions = {id(node): position for position, node in enumerate(nodes(main))}
-        if main.roots:
-            self.place(main.roots[0], frame, (frame.key[1],), positions)
+        pending = [(root, frame, frozenset((frame.key[1],))) for root in main.roots[:1]]
+        while pending:
+            node, frame, inside = pending.pop()
+            if not node.is_subtree:
+                self.nodes.append((frame, node))
+                pending += ((child, frame, inside) for child in reversed(node.children))
+                continue
+            inner_path, tree = self.trees.trees.get(node.plugin.value if node.plugin else "", ("", None))
+            if tree is not None and tree.roots and (tree.id.value if tree.id else "") not in inside:
+                inner = self.enter(node, inner_path, tree, frame, self.position(frame.tree, node))
+                pending.append((tree.roots[0], inner, inside | {inner.key[1]}))
+
+    def position(self, tree: Tree, node: TreeNode) -> int:
+        if tree not in self.positions:
+            self.positions[tree] = {each: position for position, each in enumerate(nodes(tree))}
+        return self.positions[tree][node]
 
     def names(self, tree: Tree) -> frozenset[str]:
         """With those that a tree refers to through defaults."""
+        if tree not in self.known_names:
+            self.known_names[tree] = self.names_of(tree)
+        return self.known_names[tree]
+
+    def names_of(self, tree: Tree) -> frozenset[str]:
         found = set(names_in(tree))
         for node in nodes(tree):
             plugin = node.plugin.value if node.plugin else ""
@@ -257,21 +279,6 @@ class _Walk:
                     found.add(key if variable == "=" else variable)
         return frozenset(found)
 
-    def place(self, node: TreeNode, frame: Frame, inside: tuple[str, ...], positions: Mapping[int, int]) -> None:
-        if node.is_subtree:
-            path, tree = self.trees.trees.get(node.plugin.value if node.plugin else "", ("", None))
-            if tree is None or not tree.roots or (tree.id.value if tree.id else "") in inside:
-                return
-            inner = self.enter(node, path, tree, frame, positions[id(node)])
-            own = {id(each): position for position, each in enumerate(nodes(tree))}
-            self.place(tree.roots[0], inner, (*inside, inner.key[1]), own)
-            return
-        if len(self.nodes) >= _MAX_INSTANCES:
-            return
-        self.nodes.append((frame, node))
-        for child in node.children:
-            self.place(child, frame, inside, positions)
-
     def enter(self, node: TreeNode, path: str, tree: Tree, frame: Frame, position: int) -> Frame:
         assert node.plugin is not None
         if node.name is not None:
@@ -280,9 +287,10 @@ class _Walk:
             source, written = Symbol(self.trees.owner, "tree", node.plugin.value), node.plugin.value
         word = re.sub(r"\W", "_", written, flags=re.ASCII)
         lead = "" if word[:1].isalpha() or word[:1] == "_" else "_"
-        above, count, suffix = "".join(piece[0] for piece in frame.prefix), 1, ""
-        while f"{above}{lead}{word}{suffix}__" in self.prefixes:
-            count += 1
+        above, suffix = "".join(piece[0] for piece in frame.prefix), ""
+        wanted = f"{above}{lead}{word}"
+        while f"{wanted}{suffix}__" in self.prefixes:
+            count = self.counts[wanted] = self.counts.get(wanted, 1) + 1
             suffix = f"_{count}"
         self.prefixes.add(f"{above}{lead}{word}{suffix}__")
         prefix: tuple[Piece, ...] = (

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pieces of Markdown, and Markdown for those who cannot show it.
 
-Names may hold anything that a user typed: they are always put so that they cannot change what is around them.
+Names and comments may hold anything that somebody typed: they are always put so that they cannot change what is around
+them. There are editors that show HTML in Markdown, load its pictures and follow its links; so no text of a file becomes
+a tag, a picture or a link.
 """
 
 from __future__ import annotations
@@ -14,12 +16,18 @@ _MOST = 6
 
 _TICKS = re.compile(r"`+")
 _FENCE = re.compile(r"^(`{3,})[^`\n]*\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
-_SPAN = re.compile(r"(`+)( ?)(.+?)\2\1", re.DOTALL)
-_LINK = re.compile(r"\[([^\]\n]*)\]\([^)\n]*\)")
+_SPAN = re.compile(r"(?<![\\`])(`+)(?!`)( ?)(.+?)\2(?<!`)\1(?!`)", re.DOTALL)
+_LINK = re.compile(r"\[((?:\\.|[^\]\\\n])*)\]\([^)\n]*\)")
 _EMPHASIS = re.compile(r"(?<![\\*\w])\*(?=[^\s*])((?:\\.|[^*\\\n])+)(?<!\s)\*(?![*\w])")
 _RULE = re.compile(r"^---$", re.MULTILINE)
+_NAME_MARKS = re.compile(r"([\\*_`!\[\]])")
 _ESCAPE = r"\\\1"
-_ESCAPED = re.compile(r"\\([\\<*_`\[\]])")
+_ESCAPED = re.compile(r"\\([\\<*_`#~!\[\]])")
+_ENTITY = re.compile(r"&(?=#?\w+;)")
+_ENTITIES = (("&lt;", "<"), ("&amp;", "&"))
+_USERS_CODE = re.compile(r"(?<![\\`])(`+)(?!`)(.+?)(?<!`)\1(?!`)")
+_USERS_MARKS = re.compile(r"\\(?=[!-/:-@\[-`{-~])|`|!(?=\[)|\](?=[(\[:])")
+_USERS_BLOCK = re.compile(r"^(?=#|~~~)")
 
 
 def code(text: str, language: str = "") -> str:
@@ -49,13 +57,34 @@ def names(found: Iterable[str], most: int = _MOST) -> str:
 def file(path: str) -> str:
     """The name of a file."""
     shown = path.replace("\\", "/").rpartition("/")[2]
-    return f"*{re.sub(r'([*_`<[])', _ESCAPE, shown)}*"
+    return f"*{_without_tags(_NAME_MARKS.sub(_ESCAPE, shown))}*"
 
 
 def prose(text: str) -> str:
-    """Text that a user wrote, as paragraphs: nothing in it is a tag."""
+    """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, a picture or a link."""
     paragraphs = re.split(r"\n\s*\n", text.strip())
-    return "\n\n".join(" ".join(each.split()) for each in paragraphs).replace("<", r"\<")
+    return "\n\n".join(_tame(" ".join(each.split())) for each in paragraphs)
+
+
+def _tame(paragraph: str) -> str:
+    """A paragraph of a user. Escapes would be seen in code, so code that needs them is shown as text."""
+    parts: list[str] = []
+    done = 0
+    for found in _USERS_CODE.finditer(paragraph):
+        is_harmless = "<" not in found[2] and "&" not in found[2]
+        parts += (_without_marks_of_users(paragraph[done : found.start()]), found[0] if is_harmless else found[2])
+        done = found.end()
+    parts.append(_without_marks_of_users(paragraph[done:]))
+    return _USERS_BLOCK.sub(r"\\", _without_tags("".join(parts)))
+
+
+def _without_marks_of_users(text: str) -> str:
+    return _USERS_MARKS.sub(r"\\\g<0>", text)
+
+
+def _without_tags(text: str) -> str:
+    """As an entity: a backslash before `<` is not known to all readers of Markdown."""
+    return _ENTITY.sub("&amp;", text).replace("<", "&lt;")
 
 
 def lines(*parts: str) -> str:
@@ -82,4 +111,16 @@ def _without_marks(text: str) -> str:
     text = _LINK.sub(r"\1", text.replace("  \n", "\n").replace("**", ""))
     text = _RULE.sub("", _EMPHASIS.sub(r"\1", text))
     text = re.sub(r"\n{3,}", "\n\n", text)
-    return _ESCAPED.sub(r"\1", _SPAN.sub(r"\3", text))
+    parts: list[str] = []
+    done = 0
+    for found in _SPAN.finditer(text):
+        parts += (_unescaped(text[done : found.start()]), found[3])
+        done = found.end()
+    return "".join([*parts, _unescaped(text[done:])])
+
+
+def _unescaped(text: str) -> str:
+    text = _ESCAPED.sub(r"\1", text)
+    for written, meant in _ENTITIES:
+        text = text.replace(written, meant)
+    return text

@@ -55,6 +55,7 @@ class PortType:
         required: whether it must be set.
         default: what it holds if it is not set.
         constant: whether it must hold a constant.
+        alias_of: the port of which this is another name, or "".
     """
 
     direction: str
@@ -62,6 +63,7 @@ class PortType:
     required: bool
     default: str = ""
     constant: bool = False
+    alias_of: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +151,13 @@ class ElementType:
 
     @property
     def ports(self) -> tuple[AttributeType, ...]:
-        return tuple(attribute for attribute in self.attributes.values() if attribute.port)
+        """The ports of a tree node, each by its own name."""
+        return tuple(a for a in self.attributes.values() if a.port and not a.port.alias_of)
+
+    def port_key(self, name: str) -> str:
+        """The name of the port that an attribute sets, which may have other names, too."""
+        attribute = self.attributes.get(name)
+        return (attribute.port.alias_of if attribute and attribute.port else "") or name
 
 
 @dataclass(frozen=True)
@@ -200,9 +208,11 @@ class Grammar:
 
     def find(self, name: str) -> ElementType | None:
         """The element called `name` wherever it is allowed; global ones first."""
-        if name in self.elements:
-            return self.elements[name]
-        return next((element for element in self._everywhere if element.name == name), None)
+        return self.elements.get(name) or self._by_name.get(name)
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, ElementType]:
+        return {element.name: element for element in reversed(tuple(self._everywhere))}
 
     def parents(self, name: str) -> tuple[str, ...]:
         """The names of the elements in which `name` may stand."""
@@ -403,4 +413,5 @@ def _number(text: str | None) -> float | None:
 
 def _port(role: Mapping[str, str]) -> PortType:
     required, constant = (role.get(key) == "true" for key in ("required", "constant"))
-    return PortType(role["direction"], role["type"], required, role.get("default", ""), constant)
+    default, alias_of = role.get("default", ""), role.get("alias-of", "")
+    return PortType(role["direction"], role["type"], required, default, constant, alias_of)

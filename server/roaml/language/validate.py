@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -131,25 +131,32 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     return tuple(found)
 
 
-def has_misfits(document: Document, grammar: Grammar) -> bool:
-    """Whether there are elements that the grammar does not know, or not where they stand. Much quicker to say than all
-    else that `validate` says."""
-    root = document.root
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """An element that the grammar does not know, or not where it stands, with its parent and the type of that."""
+
+    element: Element
+    parent: Element
+    parent_type: ElementType
+
+
+def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Grammar) -> Iterator[Misfit]:
+    """The topmost elements below `root` that the grammar does not know, or not where they stand. Much quicker to say
+    than all else that `validate` says."""
     if root is None or root.name not in grammar.roots:
-        return False
-    namespaces = dict(document.namespaces)
+        return
+    known = dict(namespaces)
     stack = [(root, grammar.elements[root.name])]
     while stack:
         element, type_ = stack.pop()
         for child in element.elements:
-            if is_foreign(namespaces, child):
+            if is_foreign(known, child):
                 continue
             child_type = grammar.child(type_, child.name)
             if child_type is not None:
                 stack.append((child, child_type))
             elif type_.any_child is None:
-                return True
-    return False
+                yield Misfit(child, element, type_)
 
 
 def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:

@@ -28,8 +28,16 @@ from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
 
-MOST_DRAWS = 2
-"""Of random numbers in one assignment that are drawn at once, which makes 100 ways for the first, 10,000 for two."""
+MAX_COMBINATIONS = 10_000
+"""Of random numbers that are drawn at once in one assignment: each combination is a destination in JANI."""
+
+
+def combinations(value: Expr, random_values: int) -> int | None:
+    """How many values the random numbers of an assignment have together, if they are drawn at once; None if they are
+    drawn one after the other."""
+    count: int = random_values ** sum(map(is_draw, walk(value)))
+    return count if count <= MAX_COMBINATIONS else None
+
 
 TypedParam: TypeAlias = tuple[Param, Type]
 
@@ -90,7 +98,7 @@ class StatementLowering:
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
         """An assignment. Many random numbers are drawn one after the other, and forgotten when they are used."""
-        if sum(map(is_draw, walk(value))) <= MOST_DRAWS:
+        if combinations(value, self.context.program.parameters.random_values) is not None:
             yield Assign(location, value, origin)
             return
         drawn: list[Data] = []

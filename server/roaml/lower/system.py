@@ -27,7 +27,7 @@ def lower(program: Program) -> Network:
     automata = list(_automata(program, members, events))
     if timers:
         automata.append(clock(timers, program))
-    return Network(tuple(automata), program.parameters.max_array_size)
+    return Network(tuple(automata), program.parameters.max_array_size, program.parameters.random_values)
 
 
 def _machine(automaton: Automaton, program: Program) -> Machine:

@@ -26,7 +26,7 @@ from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
-from roaml.model.translated import CLOCK, CLOCK_STEP, TIMER_PREFIX
+from roaml.model.translated import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
 from roaml.scxml.model import (
     Assign,
     Branch,
@@ -145,11 +145,11 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
                 (Target("idle", 1.0, advance, origin),),
                 origin,
             ),
-            Transition(CLOCK_STEP, None, (Target("timeout", 1.0, (), origin),), origin),
+            Transition(CLOCK_STEP, None, (Target(TIME_IS_OVER, 1.0, (), origin),), origin),
         ),
         origin,
     )
-    timeout = State("timeout", (), (), (), origin)
+    timeout = State(TIME_IS_OVER, (), (), (), origin)
     data = Data("current_time", BASE_TYPES["int64"], integer(0), origin)
     return PlainAutomaton(CLOCK, Role.CLOCK, "idle", (data,), (idle, timeout), origin)
 

@@ -7,7 +7,7 @@ from roaml.expr.tree import Expr
 from roaml.lower.build import equal, event_data, integer
 from roaml.lower.program import Program
 from roaml.model.expand import ROOT_NUMBER
-from roaml.model.translated import TREE_ROOT_PREFIX
+from roaml.model.translated import TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 from roaml.model.typing import STATUSES
 from roaml.scxml.model import Automaton, Role, Send, State, Target, Transition
 
@@ -39,7 +39,7 @@ def tree_root(program: Program, tick: str) -> Automaton:
         waiting: tuple[Transition, ...] = (on(ANSWER, "idle"),)
     else:
         running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
-        waiting = (on(ANSWER, "idle", running), on(ANSWER, "done"))
-    transitions = {"idle": idle, "wait_tick_res": waiting, "done": (), "error": ()}
+        waiting = (on(ANSWER, "idle", running), on(ANSWER, TREE_HAS_FINISHED))
+    transitions = {"idle": idle, "wait_tick_res": waiting, TREE_HAS_FINISHED: (), "error": ()}
     states = tuple(State(name, (), (), known, origin) for name, known in transitions.items())
     return Automaton(tick_timer(program)[0], Role.TREE_ROOT, "idle", (), states, origin)

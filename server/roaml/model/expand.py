@@ -13,14 +13,16 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
-from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes
+from roaml.model.spelling import close_names
+from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes, port_key
 
 ROOT_NUMBER = 1000
 
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without places. `position` counts the nodes of its tree in pre-order from 0."""
+    """A node without places. `position` counts the nodes of its tree in pre-order from 0; `condition` tells that it is
+    written as `<Condition>`."""
 
     position: int
     plugin: str
@@ -28,6 +30,7 @@ class NodeOutline:
     is_subtree: bool
     attributes: tuple[tuple[str, str], ...]
     children: tuple[NodeOutline, ...]
+    condition: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +42,21 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`."""
+    """A file of trees without places.
+
+    Attributes:
+        defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
+        conditions: the plugins that `<TreeNodesModel>` declares as conditions.
+        from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+    """
 
     path: str
     main: str
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
+    declared: tuple[tuple[str, str], ...] = ()
+    conditions: frozenset[str] = frozenset()
+    from_project: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +94,7 @@ class Instance:
         automaton: `BT_plugin_<number>_<name>`.
         ports: what the tree sets, defaults of `<TreeNodesModel>` included.
         children: the numbers of its children.
+        condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
     """
 
     number: int
@@ -91,6 +104,7 @@ class Instance:
     parent: int | None
     children: tuple[int, ...]
     source: Source
+    condition: bool = False
 
     @property
     def automaton(self) -> str:
@@ -114,6 +128,10 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
             for port in model.ports
             if model.id and port.name and port.default is not None
         ),
+        tuple(
+            (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
+        ),
+        frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
     )
 
 
@@ -123,26 +141,30 @@ def _outlines(root: TreeNode) -> NodeOutline:
     def convert(node: TreeNode) -> NodeOutline:
         nonlocal count
         position, count = count, count + 1
+        plugin = node.plugin.value if node.plugin else ""
         return NodeOutline(
             position,
-            node.plugin.value if node.plugin else "",
+            plugin,
             node.name.value if node.name else "",
             node.is_subtree,
-            tuple((attribute.name, attribute.value) for attribute in node.element.attributes),
+            tuple((port_key(plugin, attribute.name), attribute.value) for attribute in node.element.attributes),
             tuple(convert(child) for child in node.children),
+            node.element.name == "Condition",
         )
 
     return convert(root)
 
 
+def nodes_of(file: TreeFile, tree_id: str) -> tuple[TreeNode, ...]:
+    """The nodes of the first tree of that name, by position."""
+    tree = next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
+    return tuple(nodes(tree)) if tree else ()
+
+
 def node_at(file: TreeFile, source: Source) -> TreeNode | None:
     """The node of a file that `source` names."""
-    for tree in file.trees:
-        if (tree.id.value if tree.id else "") == source.tree:
-            for position, node in enumerate(nodes(tree)):
-                if position == source.position:
-                    return node
-    return None
+    found = nodes_of(file, source.tree)
+    return found[source.position] if source.position < len(found) else None
 
 
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
@@ -158,6 +180,7 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
                 return tree
         # A file of one tree needs no names: its only tree is meant whatever it is called (spec/02 §3.1).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
+    trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:
         return trees[0]
     used = {node.plugin for tree in trees for node in _walk(tree.root) if node.is_subtree}
@@ -173,7 +196,8 @@ def _walk(node: NodeOutline | None) -> Iterator[NodeOutline]:
 
 
 def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
-    """Whether `expand` leaves nothing out: it is clear which tree is executed, and what each subtree stands for."""
+    """Whether `expand` leaves nothing out: it is clear which tree is executed, what each subtree stands for, and the
+    whole is not too large."""
     trees = {tree.id: tree for file in files for tree in file.trees}
     main = main_tree(files)
     if isinstance(main, tuple) or len(trees) < sum(len(file.trees) for file in files):
@@ -191,97 +215,208 @@ def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
         TopologicalSorter(uses).prepare()
     except CycleError:
         return False
-    return True
+    return extent(files).is_expanded
+
+
+MAX_NODES = 10_000
+"""Nodes of an executed tree; a larger one is not expanded."""
+
+MAX_SUBTREES = 1_000
+"""Subtrees in each other; names of blackboard variables grow with their number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How large a tree is when all subtrees are put in place, counted without doing so.
+
+    Attributes:
+        nodes: of the whole tree, subtrees in their place.
+        depth: how many subtrees are in each other at most.
+        largest: the use of a subtree, in the executed tree or below it, that makes it so large: where the tree in which
+            it stands is still too large, and what stands for it is not, or is used most often. None if there is none.
+    """
+
+    nodes: int
+    depth: int
+    largest: Source | None
+
+    @property
+    def is_expanded(self) -> bool:
+        return self.nodes <= MAX_NODES and self.depth <= MAX_SUBTREES
+
+
+def extent(files: tuple[TreeFileOutline, ...]) -> Extent:
+    """The size of the executed tree. Subtrees that are not known or contain themselves count nothing."""
+    main = main_tree(files)
+    if isinstance(main, tuple) or main.root is None:
+        return Extent(0, 0, None)
+    trees = _by_id(files)
+    sizes: dict[str, tuple[int, int]] = {}
+    for name in _innermost_first(main, trees):
+        tree = main if name == main.id else trees[name]
+        used = [sizes[node.plugin] for node in _walk(tree.root) if node.is_subtree and node.plugin in sizes]
+        own = sum(not node.is_subtree for node in _walk(tree.root))
+        sizes[name] = own + sum(nodes for nodes, _ in used), 1 + max((depth for _, depth in used), default=-1)
+    return Extent(*sizes[main.id], _largest(main, trees, sizes))
+
+
+def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
+    """The names of the trees that `main` consists of, each after those that it uses; of a cycle in any order."""
+    entered, done = {main.id}, set[str]()
+    stack = [(main.id, _used(main, trees))]
+    while stack:
+        name, left = stack[-1]
+        inner = next((each for each in left if each not in entered), None)
+        if inner is None:
+            stack.pop()
+            if name not in done:
+                done.add(name)
+                yield name
+        else:
+            entered.add(inner)
+            stack.append((inner, _used(trees[inner], trees)))
+
+
+def _used(tree: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
+    names = (node.plugin for node in _walk(tree.root) if node.is_subtree and node.plugin in trees)
+    return iter(dict.fromkeys(names))
+
+
+def _largest(
+    main: TreeOutline, trees: Mapping[str, TreeOutline], sizes: Mapping[str, tuple[int, int]]
+) -> Source | None:
+    tree, largest, seen = main, None, {main.id}
+    while True:
+        uses = [n for n in _walk(tree.root) if n.is_subtree and n.plugin in sizes and n.plugin not in seen]
+        if not uses:
+            return largest
+        node = max(uses, key=lambda each: sizes[each.plugin])
+        largest = Source(tree.path, tree.id, node.position)
+        nodes, depth = sizes[node.plugin]
+        if nodes <= MAX_NODES and depth <= MAX_SUBTREES:
+            return largest
+        seen.add(node.plugin)
+        tree = trees[node.plugin]
+
+
+def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
+    """Of equal names the first counts."""
+    return {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
 
 
 def expand(files: tuple[TreeFileOutline, ...]) -> tuple[Instance, ...]:
-    """All instances of the executed tree in pre-order; none if it cannot be told which tree that is."""
+    """All instances of the executed tree in pre-order; none if it cannot be told which tree that is, or if there are
+    too many."""
     main = main_tree(files)
-    if isinstance(main, tuple) or main.root is None:
+    if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
         return ()
     return _Expansion(files).run(main)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Frame:
-    """One subtree instance: how its names translate to names of the whole blackboard."""
+    """One subtree instance: how its names translate to names of the whole blackboard.
 
+    `inside` are the trees around the instance and its own.
+    """
+
+    tree: TreeOutline
     prefix: str
     remapped: Mapping[str, PortValue]
     autoremap: bool
     outer: _Frame | None
     names: frozenset[str]
+    inside: frozenset[str]
 
     def resolve(self, name: str) -> PortValue:
+        """The outermost variable that automatic remapping leads to, as long as somebody there uses the name."""
         if name.startswith("@"):
             return Reference(name[1:])
-        if name in self.remapped:
-            return self.remapped[name]
-        if self.autoremap and self.outer and not name.startswith("_") and self.outer.knows(name):
-            return self.outer.resolve(name)
-        return Reference(f"{self.prefix}{name}")
-
-    def knows(self, name: str) -> bool:
-        if name in self.names or name in self.remapped:
-            return True
-        return self.autoremap and self.outer is not None and self.outer.knows(name)
+        frame = known = self
+        while name not in frame.remapped:
+            if frame is self or name in frame.names:
+                known = frame
+            if not frame.autoremap or frame.outer is None or name.startswith("_"):
+                return Reference(f"{known.prefix}{name}")
+            frame = frame.outer
+        return frame.remapped[name]
 
     def value(self, text: str) -> PortValue:
         variable = blackboard_variable(text)
         return Constant(text) if variable is None else self.resolve(variable)
 
 
-_MAX_INSTANCES = 10_000
+@dataclass(slots=True)
+class _Placed:
+    """An instance whose children are still being placed."""
+
+    plugin: str
+    name: str
+    ports: tuple[tuple[str, PortValue], ...]
+    parent: int | None
+    source: Source
+    condition: bool
+    children: list[int]
 
 
 class _Expansion:
+    """Works with a list of what is still to be placed: subtrees may be in each other deeper than Python calls go."""
+
     def __init__(self, files: tuple[TreeFileOutline, ...]) -> None:
-        self.trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
+        self.trees = _by_id(files)
         self.defaults: dict[str, dict[str, str]] = {}
         for file in files:
             for plugin, port, value in file.defaults:
                 self.defaults.setdefault(plugin, {}).setdefault(port, value)
-        self.instances: list[Instance] = []
+        self.conditions = frozenset(name for file in files for name in file.conditions)
+        self.placed: list[_Placed] = []
         self.prefixes: set[str] = set()
+        self.counts: dict[str, int] = {}
+        self.names: dict[str, frozenset[str]] = {}
 
     def run(self, main: TreeOutline) -> tuple[Instance, ...]:
-        frame = _Frame("", {}, False, None, _names(main))
         assert main.root is not None
-        self.place(main.root, main, frame, None, (main.id,))
-        return tuple(instance for instance in self.instances if instance is not None)
-
-    def place(
-        self, node: NodeOutline, tree: TreeOutline, frame: _Frame, parent: int | None, inside: tuple[str, ...]
-    ) -> int | None:
-        """Add the instances of `node` and all below it; the number of the topmost, None if there is none."""
-        if node.is_subtree:
-            inner = self.trees.get(node.plugin)
-            if inner is None or inner.root is None or inner.id in inside:
-                return None
-            return self.place(inner.root, inner, self.enter(node, inner, frame), parent, (*inside, inner.id))
-        if len(self.instances) >= _MAX_INSTANCES:
-            return None
-        number = ROOT_NUMBER + len(self.instances)
-        settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
-        ports = tuple((key, frame.value(text)) for key, text in settings.items())
-        source = Source(tree.path, tree.id, node.position)
-        instance = Instance(number, node.plugin, node.name or node.plugin, ports, parent, (), source)
-        self.instances.append(instance)
-        placed = [self.place(child, tree, frame, number, inside) for child in node.children]
-        children = tuple(child for child in placed if child is not None)
-        self.instances[number - ROOT_NUMBER] = Instance(
-            number, instance.plugin, instance.name, ports, parent, children, source
+        frame = _Frame(main, "", {}, False, None, self.names_in(main), frozenset((main.id,)))
+        pending: list[tuple[NodeOutline, _Frame, int | None]] = [(main.root, frame, None)]
+        while pending:
+            node, frame, parent = pending.pop()
+            if node.is_subtree:
+                inner = self.trees.get(node.plugin)
+                if inner is not None and inner.root is not None and inner.id not in frame.inside:
+                    pending.append((inner.root, self.enter(node, inner, frame), parent))
+                continue
+            number = ROOT_NUMBER + len(self.placed)
+            settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
+            ports = tuple((key, frame.value(text)) for key, text in settings.items())
+            source = Source(frame.tree.path, frame.tree.id, node.position)
+            condition = node.condition or node.plugin in self.conditions
+            name = node.name or node.plugin
+            self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, []))
+            if parent is not None:
+                self.placed[parent - ROOT_NUMBER].children.append(number)
+            pending += ((child, frame, number) for child in reversed(node.children))
+        return tuple(
+            Instance(
+                number,
+                each.plugin,
+                each.name,
+                each.ports,
+                each.parent,
+                tuple(each.children),
+                each.source,
+                each.condition,
+            )
+            for number, each in enumerate(self.placed, ROOT_NUMBER)
         )
-        return number
 
     def enter(self, node: NodeOutline, inner: TreeOutline, frame: _Frame) -> _Frame:
         """The frame of a subtree instance: its prefix is unique, its attributes rename variables."""
         attributes = dict(node.attributes)
         word = re.sub(r"\W", "_", node.name or node.plugin, flags=re.ASCII)
         word = word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"
-        prefix, count = f"{frame.prefix}{word}__", 1
+        wanted = prefix = f"{frame.prefix}{word}__"
         while prefix in self.prefixes:
-            count += 1
+            count = self.counts[wanted] = self.counts.get(wanted, 1) + 1
             prefix = f"{frame.prefix}{word}_{count}__"
         self.prefixes.add(prefix)
         remapped: dict[str, PortValue] = {}
@@ -289,7 +424,13 @@ class _Expansion:
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
         autoremap = any(attributes.get(name) in ("true", "1") for name in _AUTOREMAP)
-        return _Frame(prefix, remapped, autoremap, frame, _names(inner))
+        inside = frame.inside | {inner.id}
+        return _Frame(inner, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
+
+    def names_in(self, tree: TreeOutline) -> frozenset[str]:
+        if tree.id not in self.names:
+            self.names[tree.id] = _names(tree)
+        return self.names[tree.id]
 
 
 _OWN_ATTRIBUTES = frozenset(("ID", "name"))
@@ -304,3 +445,78 @@ def _names(tree: TreeOutline) -> frozenset[str]:
         for _, text in node.attributes
         if (variable := blackboard_variable(text)) is not None
     )
+
+
+# ------------------------------------------------------------------- remappings
+
+
+@dataclass(frozen=True, slots=True)
+class StrayRemap:
+    """An attribute of a `<SubTree>` that names no variable of the subtree.
+
+    Attributes:
+        source: the node of the `<SubTree>`.
+        key: the attribute; `outer` is its value.
+        meant: the variables of the subtree that look like it and are not given, the nearest first.
+        names: the variables of the subtree.
+    """
+
+    source: Source
+    key: str
+    outer: str
+    meant: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+def stray_remaps(files: tuple[TreeFileOutline, ...]) -> tuple[StrayRemap, ...]:
+    """All attributes of subtrees, in all trees of a system, that name nothing in their subtree."""
+    trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
+    declared = {pair for file in files for pair in file.declared}
+    words = {name: _words(tree) for name, tree in trees.items()}
+    return tuple(
+        stray
+        for file in files
+        for tree in file.trees
+        for node in _walk(tree.root)
+        if node.is_subtree and node.plugin in trees
+        for stray in _strays(tree, node, _known_inside(node.plugin, trees, words), declared)
+    )
+
+
+def _strays(
+    tree: TreeOutline, node: NodeOutline, known: frozenset[str], declared: set[tuple[str, str]]
+) -> Iterator[StrayRemap]:
+    given = {key: text for key, text in node.attributes if key not in _NO_REMAPS and not key.startswith("_")}
+    for key, text in given.items():
+        if key not in known and (node.plugin, key) not in declared and ":" not in key:
+            free = sorted(known - given.keys())
+            source = Source(tree.path, tree.id, node.position)
+            yield StrayRemap(source, key, text, close_names(key, free), tuple(free))
+
+
+def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[str, frozenset[str]]) -> frozenset[str]:
+    """The names that a tree uses, with those of subtrees that take all names from it."""
+    found, pending, seen = set(words[name]), [name], {name}
+    while pending:
+        for node in _walk(trees[pending.pop()].root):
+            takes_all = any(dict(node.attributes).get(auto) in ("true", "1") for auto in _AUTOREMAP)
+            if node.is_subtree and takes_all and node.plugin in trees and node.plugin not in seen:
+                seen.add(node.plugin)
+                pending.append(node.plugin)
+                found |= words[node.plugin]
+    return frozenset(found)
+
+
+def _words(tree: TreeOutline) -> frozenset[str]:
+    """Every name in the values of a tree's attributes: variables, and what scripts may name; `{=}` is the attribute's
+    own name."""
+    found: set[str] = set()
+    for node in _walk(tree.root):
+        for key, text in node.attributes:
+            if key not in _OWN_ATTRIBUTES:
+                found |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
+    return frozenset(found)
+
+
+_NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)

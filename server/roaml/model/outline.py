@@ -8,16 +8,20 @@ one file only.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.behavior.summary import ChartOutline, summarised
+from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
     CallChild,
+    Chart,
     Communicate,
+    Declaration,
     Handler,
     Machine,
     ReturnHalted,
@@ -59,6 +63,7 @@ class InterfaceUse:
         sends, receives: the parts, as in the roles of the schema.
         fields: of each part that is sent, the fields with the types that they are sent with, those that are not set
             included.
+        awaited: of a subscriber, that the machine can come into a state in which it waits for this topic alone.
     """
 
     kind: str
@@ -69,6 +74,7 @@ class InterfaceUse:
     sends: frozenset[str]
     receives: frozenset[str]
     fields: tuple[tuple[str, tuple[SentField, ...]], ...]
+    awaited: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,14 +134,15 @@ class PluginOutline:
 class MachineOutline:
     """
     Attributes:
-        sound: all ROS types, handles, fields and ports in it are known: it says what it means to say.
+        gaps: what it may say besides, where it cannot be read.
         all_ports: `ports` are all that it means to declare.
+        charts: how it behaves; of a chart that cannot be looked through nothing is said.
     """
 
     name: str
     root: str
     plain: bool
-    sound: bool
+    gaps: frozenset[Gap]
     ports: tuple[PortOutline, ...]
     interfaces: tuple[InterfaceUse, ...]
     sent: tuple[EventSent, ...]
@@ -144,6 +151,7 @@ class MachineOutline:
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
     all_ports: bool = True
+    charts: tuple[ChartOutline, ...] = ()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -159,14 +167,15 @@ class MachineOutline:
         return next((port for port in self.ports if port.key == key), None)
 
 
-def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
+def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
+    """The outline of a machine whose gaps are `gaps`."""
     types = {value.element: value.sent for value in typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
     reads = _reads(typed)
     return MachineOutline(
         machine.name.value if machine.name else "",
         machine.root,
         machine.plain,
-        _is_sound(machine, typed),
+        frozenset(placed.gap for placed in gaps),
         _ports(machine, typed),
         _interfaces(machine, typed, types),
         tuple(
@@ -191,6 +200,7 @@ def outline(machine: Machine, typed: TypedMachine) -> MachineOutline:
         ),
         _plugin(machine),
         _declares_all_ports(machine),
+        tuple(summarised(machine, chart) for chart in machine.charts),
     )
 
 
@@ -207,32 +217,6 @@ def _executed(machine: Machine) -> Iterator[Statement]:
         yield from chart.executed
 
 
-def _is_sound(machine: Machine, typed: TypedMachine) -> bool:
-    users = [s for chart in machine.charts for s in chart.statements if isinstance(s, Communicate)]
-    declarations = [find_handle(machine, user) for user in users]
-    if any(
-        d is None or d.kind not in u.type.attributes["name"].refers for d, u in zip(declarations, users, strict=True)
-    ):
-        return False
-    declared = {port.key.value for port in machine.ports if port.key}
-    if any(key is None or key.value not in declared for key in _port_keys(machine, typed)):
-        return False
-    # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
-    return all(value.wanted is not None and value.wanted != UNKNOWN for value in typed.values if value.use is Use.FIELD)
-
-
-def _port_keys(machine: Machine, typed: TypedMachine) -> Iterator[Name | None]:
-    """The keys of all ports that it reads or writes; None where one is missing."""
-    yield from (read.key for read in _reads_of_ports(machine, typed))
-    yield from (s.key for chart in machine.charts for s in chart.statements if isinstance(s, SetOutput))
-
-
-def _reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
-    values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
-    values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
-    yield from (value for value in values if isinstance(value, PortRead))
-
-
 def _declares_all_ports(machine: Machine) -> bool:
     """Whether no declaration lacks its key, and none is misspelled."""
     strange = [e for e in machine.element.elements if e.name not in HL_SCXML.elements and not e.prefix]
@@ -240,7 +224,7 @@ def _declares_all_ports(machine: Machine) -> bool:
 
 
 def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
-    read = {value.key.value for value in _reads_of_ports(machine, typed) if value.key}
+    read = {value.key.value for value in reads_of_ports(machine, typed) if value.key}
     written = {s.key.value for s in _executed(machine) if isinstance(s, SetOutput) and s.key}
     return tuple(
         PortOutline(
@@ -285,10 +269,29 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 (part, tuple(SentField(name, type_) for name, type_ in known.items()))
                 for part, known in fields[declaration.element].items()
             ),
+            declaration.kind == "subscriber" and any(_awaits(machine, chart, declaration) for chart in machine.charts),
         )
         for declaration in machine.declarations
         if declaration.kind != "timer"
     )
+
+
+def _awaits(machine: Machine, chart: Chart, subscriber: Declaration) -> bool:
+    """Whether a chart comes, without a message of the topic, into a state in which only a message makes it go on."""
+    states = {state.id.value: state for state in chart.states if state.id}
+    pending = [chart.initial.value] if chart.initial else []
+    seen = set(pending)
+    while pending:
+        state = states.get(pending.pop())
+        if state is None or not state.handlers:
+            continue
+        others = [h for h in state.handlers if h.effective and find_handle(machine, h) is not subscriber]
+        if not others:
+            return True
+        new = {target.state.value for h in others for target in h.targets if target.state} - seen
+        seen |= new
+        pending += new
+    return False
 
 
 def _timers(machine: Machine) -> tuple[TimerOutline, ...]:

@@ -9,14 +9,30 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeAlias
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.expand import Constant, Instance, PortValue, Reference, Source
+from roaml.model.gaps import (
+    ANYTHING,
+    NAME,
+    NODE,
+    PARAMETER,
+    PORT,
+    RECEIVES,
+    REMAP,
+    SENDS,
+    TREE,
+    VARIABLE,
+    Gap,
+    answers,
+    is_interface_name,
+)
 from roaml.model.outline import (
     EventReceived,
     EventSent,
@@ -25,6 +41,7 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
+from roaml.model.spelling import close_names
 from roaml.model.system_file import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 
@@ -35,14 +52,13 @@ ANY_TYPE = "any"
 """Stands where a port has a type, if the port takes any."""
 
 
+Fact: TypeAlias = "tuple[str, str | None]"
+"""An act (see `Gap`) and what it is about, with topics as in events; None if it may be about any."""
+
+
 def sanitise(name: str) -> str:
     """The form of a topic, service or action name in events (spec/04 §1)."""
     return name.removeprefix("/").replace("/", "__")
-
-
-def is_interface_name(name: str) -> bool:
-    """Whether `name` can name a topic, service or action: it becomes a part of event names (spec/01 §8)."""
-    return bool(name) and not any(character.isspace() for character in name)
 
 
 def safe_name(automaton: str) -> str:
@@ -79,12 +95,6 @@ class Automaton:
         value = self.port(use.port) if use.port else Constant(use.name)
         name = value.text.strip() if isinstance(value, Constant) else ""
         return name if is_interface_name(name) else None
-
-    @property
-    def sound(self) -> bool:
-        """Whether all that it says to others is known: it says what it means to say, and to whom."""
-        uses = self.outline.interfaces
-        return self.outline.sound and all(self.interface_name(use) is not None for use in uses)
 
     def symbol(self, use: InterfaceUse) -> Symbol:
         return Symbol(self.path, use.kind, use.handle)
@@ -158,7 +168,8 @@ class System:
         instances: the nodes of the executed tree, in pre-order.
         tree_paths: the tree file and what it includes; empty without a tree.
         structs: by name.
-        readable: every listed file could be read and is well-formed.
+        gaps: what may be said where the system file, the trees and the listed files cannot be read at all. What cannot
+            be read in a machine stands in its outline.
         plugins_known: every plugin that the system lists could be read and has a name.
         observed: the names of variables that the properties mention.
     """
@@ -171,7 +182,7 @@ class System:
     instances: tuple[Instance, ...]
     tree_paths: tuple[str, ...]
     structs: Mapping[str, Type]
-    readable: bool
+    gaps: frozenset[Gap]
     plugins_known: bool
     observed: frozenset[str] = frozenset()
 
@@ -185,12 +196,93 @@ class System:
                 found.append(Automaton(instance.automaton, path, outline, instance))
         return tuple(found)
 
-    @cached_property
+    @property
     def complete(self) -> bool:
-        """Whether everything is known that is said between the files. Only then does a missing side mean something."""
-        known = all(self.plugin(instance.plugin)[1] is not None for instance in self.instances)
-        placed = not self.ticked_nodes and not self.idle_plugins
-        return self.readable and known and placed and all(automaton.sound for automaton in self.automata)
+        """Whether everything is known that is said between the files."""
+        return not self.possible
+
+    @cached_property
+    def possible(self) -> frozenset[Fact]:
+        """All that may be said where something cannot be read."""
+        found: set[Fact] = set()
+        for gap in self.gaps:
+            found |= self.facts(gap)
+        if self.ticked_nodes or self.idle_plugins:
+            found.add((ANYTHING, None))  # another file is meant
+        for automaton in self.automata:
+            found |= self.facts_of(automaton)
+        for instance in self.instances:
+            if self.plugin(instance.plugin)[1] is None:
+                found |= self.facts_of_unknown(instance)
+        return frozenset(found)
+
+    def may(self, act: str, name: str, automaton: Automaton | None = None) -> bool:
+        """Whether somebody, or this automaton, may do this where the system cannot be read. `name` is as channels and
+        events are called here."""
+        possible = self.possible if automaton is None else self.facts_of(automaton)
+        return any(answers(other, act) and about in (None, name) for other, about in possible)
+
+    def may_have_variable(self, name: str) -> bool:
+        """Whether the translated system may have a variable of this name, once all of it can be read."""
+        return any(may_give_variable(act, other, name) for act, other in self.possible)
+
+    def facts(self, gap: Gap, automaton: Automaton | None = None) -> set[Fact]:
+        """What a gap may say, in an automaton or in the files around the automata."""
+        if gap.act == NODE:
+            return self._facts_of_any_node()
+        if gap.act == REMAP:
+            named = [v for v in self.blackboard if gap.name is not None and f"__{v}".endswith(f"__{gap.name}")]
+            return {(VARIABLE, variable) for variable in named}
+        if gap.act == PORT:
+            ports = automaton.instance.ports if automaton is not None and automaton.instance is not None else ()
+            bound = [value for key, value in ports if gap.name in (None, key)]
+            return {(VARIABLE, value.variable) for value in bound if isinstance(value, Reference)}
+        if gap.port and automaton is not None:
+            value = automaton.port(gap.port)
+            name = value.text.strip() if isinstance(value, Constant) else ""
+            return {_fact(gap.act, name if is_interface_name(name) else None)}
+        return {_fact(gap.act, gap.name)}
+
+    def facts_of(self, automaton: Automaton) -> set[Fact]:
+        """What an automaton may say where its machine, or its node in the tree, cannot be read."""
+        found = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
+        for use in automaton.outline.interfaces:
+            if use.port and automaton.interface_name(use) is None:
+                found |= self.facts_of_name(automaton, use)
+        return found
+
+    def facts_of_name(self, automaton: Automaton, use: InterfaceUse) -> set[Fact]:
+        """What a node of the tree may say whose port should name a topic, service or action, and does not."""
+        value = automaton.port(use.port)
+        bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
+        return {*bound, (use.kind, None)}
+
+    def facts_of_unknown(self, instance: Instance) -> set[Fact]:
+        """What a node of the tree may say that has no plugin: what the plugin does that is probably meant."""
+        found: set[Fact] = {(VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
+        element = BEHAVIOR_TREE.elements.get(instance.plugin)
+        if element is not None and element.node:
+            return {*found, (TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
+        names = [outline.name for _, outline in (*self.plugins, *self.nodes)]
+        close = close_names(instance.plugin, [*names, *builtin_plugins()], 1)
+        found |= {(NODE, name) for name in close} or {(NODE, None)}
+        if not close or not self.plugins_known:
+            return {*found, (ANYTHING, None)}
+        for path, outline in (*self.plugins, *self.nodes):
+            if outline.name in close:
+                meant = Automaton(instance.automaton, path, outline, instance)
+                found |= set(_said(meant)) | self.facts_of(meant)
+        return {*found, (TREE, None)}
+
+    def _facts_of_any_node(self) -> set[Fact]:
+        """What a node of the tree may say, of whichever plugin."""
+        if not self.plugins_known:
+            return {(ANYTHING, None)}
+        found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), ("publisher", CLOCK_TOPIC)}
+        for path, outline in self.plugins:
+            found |= set(_said(Automaton(outline.name, path, outline)))
+            found |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
+        return found
 
     @cached_property
     def ticked_nodes(self) -> frozenset[str]:
@@ -200,9 +292,15 @@ class System:
     @cached_property
     def idle_plugins(self) -> frozenset[str]:
         """The files listed as plugins that have nothing of one, nor does the tree use them by name."""
+        if any(gap.act in (ANYTHING, NODE) for gap in self.gaps):
+            return frozenset()
         used = {instance.plugin for instance in self.instances}
         return frozenset(
-            path for path, outline in self.plugins if outline.name not in used and not outline.takes_part_in_tree
+            path
+            for path, outline in self.plugins
+            if outline.name not in used
+            and not outline.takes_part_in_tree
+            and not any(gap.act in (TREE, PORT, ANYTHING) for gap in outline.gaps)
         )
 
     @cached_property
@@ -322,6 +420,46 @@ class System:
         return "string"
 
 
+# ------------------------------------------------------------- what is not read
+
+_TOPIC_KINDS = ("publisher", "subscriber")
+
+
+def _fact(act: str, name: str | None) -> Fact:
+    is_topic = name is not None and act.partition(" ")[0] in _TOPIC_KINDS
+    return act, sanitise(name) if name is not None and is_topic else name
+
+
+def _said(automaton: Automaton) -> Iterator[Fact]:
+    """What an automaton says that may take part in the system."""
+    for use in automaton.outline.interfaces:
+        yield _fact(use.kind, automaton.interface_name(use))
+    yield from ((SENDS, sent.event) for sent in automaton.outline.sent)
+    yield from ((RECEIVES, received.event) for received in automaton.outline.received)
+
+
+_PREFIXES = {"publisher": "topic", "service-client": "srv", "service-server": "srv"}
+_PREFIXES |= {"action-client": "action", "action-server": "action"}
+_OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
+
+
+def may_give_variable(act: str, name: str | None, variable: str) -> bool:
+    """Whether who does `act` may give the translation a variable of this name (see `roaml.model.globals`)."""
+    first = act.partition(" ")[0]
+    if first in _PREFIXES:
+        of = f"{_PREFIXES[first]}_"
+        return variable.startswith(of if name is None else f"{of}{sanitise(name)}_")
+    if act in (SENDS, PARAMETER):
+        if name is None:
+            return _OF_INTERFACES.match(variable) is None
+        return variable == f"{name}.valid" or variable.startswith(f"{name}__")
+    if act in (TREE, VARIABLE):
+        return variable.startswith("bt_")
+    if act == NAME:
+        return variable.startswith(("srv_", "action_"))
+    return act == ANYTHING
+
+
 # ---------------------------------------------------- nodes of BehaviorTree.CPP
 
 
@@ -343,4 +481,4 @@ def _builtin(element: ElementType) -> MachineOutline:
         if a.port
     )
     plugin = PluginOutline(True, True, True, True, 0, has_children, None, has_children)
-    return MachineOutline(element.name, "ascxml", False, True, ports, (), (), (), (), (), plugin)
+    return MachineOutline(element.name, "ascxml", False, frozenset(), ports, (), (), (), (), (), plugin)

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
+from roaml.model.spelling import close_names, meant
 from roaml.model.syntax import Name, name_of
+from roaml.text import Span
 from roaml.xml import Document, Element
 
 SECTIONS = ("data_declarations", "behavior_tree", "node_models", "properties")
@@ -18,6 +20,9 @@ NODE_TYPES = ("node-ascxml", "ros-scxml")
 
 DEFAULT_MAX_ARRAY_SIZE = 100
 DEFAULT_TICK_RATE = 1.0
+DEFAULT_RANDOM_VALUES = 100
+MAX_RANDOM_VALUES = 10_000
+"""Each value is a destination of an edge in JANI."""
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
@@ -49,6 +54,11 @@ class ListedFile:
     found: FileKind
 
     @property
+    def span(self) -> Span:
+        """Where the file is named, or should be."""
+        return self.input.src.span if self.input.src else self.input.element.name_span
+
+    @property
     def usable(self) -> bool:
         return bool(self.path) and not self.problem and self.found is self.wanted
 
@@ -63,8 +73,11 @@ _WANTED = {
 
 
 def wanted_kind(entry: Input) -> FileKind | None:
-    """What a system takes a listed file for."""
-    return _WANTED.get(entry.type.value) if entry.type else None
+    """What a system takes a listed file for; where its type is misspelled, what is meant."""
+    if entry.type is None:
+        return None
+    close = close_names(entry.type.value, _WANTED, 1) if entry.type.value not in _WANTED else (entry.type.value,)
+    return _WANTED[close[0]] if close else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,12 +87,14 @@ class Parameters:
     Attributes:
         max_time: the bound of the clock in ns; None if it is not given or no number.
         tick_rate: of the behavior tree, in Hz.
+        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (spec/03 §7).
     """
 
     max_time: int | None = None
     max_array_size: int = DEFAULT_MAX_ARRAY_SIZE
     tick_rate: float = DEFAULT_TICK_RATE
     tick_if_not_running: bool = False
+    random_values: int = DEFAULT_RANDOM_VALUES
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +127,8 @@ class SystemFile:
 
     Attributes:
         older: it has the older root (spec/08, dialect B).
-        unread: the sections that may list more than `inputs` says, because an element there is misspelled.
+        inputs: of all sections, in order; misspelled ones are there as what they are meant to be.
+        unread: the sections that may list more than `inputs` says, because an element there has no place.
     """
 
     element: Element
@@ -137,24 +153,42 @@ def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -
     if root is None or root.name not in SYSTEM.roots:
         return None
     inputs = [
-        Input(child, section.name, name_of(child.get("type")), name_of(child.get("src")))
+        Input(child, name, meant(child, "type", _INPUT), meant(child, "src", _INPUT))
         for section in root.elements
-        if section.name in SECTIONS
+        if (name := _section(section))
         for child in section.elements
-        if child.name == "input"
+        if _is_input(child)
     ]
     older = root.name == "convince_mc_tc"
     return SystemFile(root, older, overrides.applied(_parameters(root)), tuple(inputs), _unread(root))
 
 
+_INPUT = ("type", "src")
+
+
+def _section(element: Element) -> str:
+    """The section that an element is, or is meant to be if its name is misspelled; "" if it is none."""
+    if element.name in SECTIONS or element.prefix:
+        return element.name if element.name in SECTIONS else ""
+    if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):
+        return ""
+    return next(iter(close_names(element.name, SECTIONS, 1)), "")
+
+
+def _is_input(element: Element) -> bool:
+    """Whether an element of a section is an `<input>`, or is meant to be one: only inputs have a source there."""
+    if element.name == "input":
+        return True
+    return not element.prefix and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None
+
+
 def _unread(root: Element) -> frozenset[str]:
     found: set[str] = set()
     for child in root.elements:
-        if child.name in SECTIONS:
-            if any(each.name != "input" and not each.prefix for each in child.elements):
-                found.add(child.name)
-        elif any(each.get("src") for each in (child, *child.elements)):
-            return frozenset(SECTIONS)  # whatever section it is meant to be, or to stand in
+        section = _section(child)
+        hidden = [each for part in child.elements if not (section and _is_input(part)) for each in part.walk()]
+        if any(each.get("src") for each in (hidden if section else (child, *hidden))):
+            found |= {section} if section else set(SECTIONS)  # whatever it is meant to be, or to stand in
     return frozenset(found)
 
 
@@ -162,6 +196,7 @@ def _parameters(root: Element) -> Parameters:
     section = _parameter_section(root)
     max_time = None
     size, rate, keep_ticking = DEFAULT_MAX_ARRAY_SIZE, DEFAULT_TICK_RATE, False
+    random_values = DEFAULT_RANDOM_VALUES
     for element in section.elements if section else ():
         value = name_of(element.get("value"))
         text = value.value if value else ""
@@ -176,7 +211,11 @@ def _parameters(root: Element) -> Parameters:
             rate = _positive(text) or rate
         elif element.name == "bt_tick_if_not_running":
             keep_ticking = text == "true"
-    return Parameters(max_time, size, rate, keep_ticking)
+        elif element.name == "random_values":
+            number = _integer(text)
+            if number is not None and 1 <= number <= MAX_RANDOM_VALUES:
+                random_values = number
+    return Parameters(max_time, size, rate, keep_ticking, random_values)
 
 
 def _integer(text: str) -> int | None:

@@ -27,7 +27,7 @@ _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortSetting:
-    """An attribute of a node that sets a port."""
+    """An attribute of a node that sets a port. `key` holds the port's own name, also where another name is written."""
 
     attribute: Attribute
     key: Name
@@ -149,7 +149,8 @@ def _node(element: Element) -> TreeNode:
             continue
         elif name not in known or known[name].port:
             value = Name(attribute.value, attribute.value_span)
-            ports.append(PortSetting(attribute, Name(name, attribute.name_span), value))
+            key = Name(port_key(plugin.value if plugin else "", name), attribute.name_span)
+            ports.append(PortSetting(attribute, key, value))
     return TreeNode(
         element,
         plugin,
@@ -168,15 +169,25 @@ def _is_port(name: str, has_id: bool) -> bool:
     return name != "name" and not (has_id and name == "ID") and name != "xmlns" and ":" not in name
 
 
+def port_key(plugin: str, name: str) -> str:
+    """The name of the port of a plugin that `name` means; ports of nodes of BehaviorTree.CPP may have two names."""
+    type_ = BEHAVIOR_TREE.elements.get(plugin)
+    return type_.port_key(name) if type_ else name
+
+
 def _model(element: Element) -> NodeModel:
+    id_ = name_of(element.get("ID"))
     ports = []
     for child in element.elements:
         direction, _, kind = child.name.partition("_")
         if kind == "port":
             default = child.get("default")
             direction = {"input": "in", "output": "out"}.get(direction, direction)
-            ports.append(PortModel(child, name_of(child.get("name")), direction, default.value if default else None))
-    return NodeModel(element, name_of(element.get("ID")), element.name, tuple(ports))
+            name = name_of(child.get("name"))
+            if name and id_:
+                name = Name(port_key(id_.value, name.value), name.span)
+            ports.append(PortModel(child, name, direction, default.value if default else None))
+    return NodeModel(element, id_, element.name, tuple(ports))
 
 
 def nodes(tree: Tree) -> Iterator[TreeNode]:

@@ -8,7 +8,7 @@ One walk over the machine; the rules, hover and completion read its result. What
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -34,7 +34,7 @@ from roaml.model.machine import (
     Statement,
 )
 from roaml.model.ros import InterfaceType
-from roaml.model.syntax import Expression, PortRead, Value
+from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.xml import Element
 
 
@@ -46,6 +46,9 @@ class Environment(Protocol):
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
         """The ROS type `name` (as written in the model) of kind msg, srv or action."""
+
+    def published(self, topic: str) -> tuple[InterfaceType, ...]:
+        """The types with which other machines publish on the topic, as written, where they are known."""
 
     def event_data(self, event: str) -> Struct | None:
         """The parameters that the senders of a plain event send; None if that is not known."""
@@ -67,6 +70,23 @@ class Use(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class BranchConditions:
+    """Conditions of the enclosing `<if>` parts, with whether they hold; those before share their memory, as each part
+    of an `<if>` knows the conditions of all parts before it."""
+
+    condition: Expression
+    holds: bool
+    before: BranchConditions | None
+
+    def __iter__(self) -> Iterator[tuple[Expression, bool]]:
+        """The innermost and last first."""
+        node: BranchConditions | None = self
+        while node is not None:
+            yield node.condition, node.holds
+            node = node.before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Place:
     """Where a value stands.
 
@@ -74,7 +94,7 @@ class Place:
         part: "data", "cond", "body", "onentry" or "onexit".
         late: something was sent, or a condition evaluated, between the arrival of the event and this value, so the
             event data may be newer (spec/01 §12.2).
-        branch_conditions: conditions of the enclosing `<if>` parts, with whether they hold here.
+        branch_conditions: what is known to hold, or not to hold, by the enclosing `<if>` parts; None for nothing.
     """
 
     chart: Chart
@@ -82,7 +102,7 @@ class Place:
     handler: Handler | None
     part: str
     late: bool = False
-    branch_conditions: tuple[tuple[Expression, bool], ...] = ()
+    branch_conditions: BranchConditions | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -210,7 +230,21 @@ def interface_part(part: str, declaration: Declaration | None, environment: Envi
         return UNKNOWN
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     section = SECTIONS.get(part, part)
-    return dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+    own = dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+    if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and isinstance(own, Struct):
+        return _with_published(own, environment.published(declaration.interface.value))
+    return own
+
+
+def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
+    """A message with the fields of its own type and those of the types that are published (spec/07 1.11): that they are
+    not the same is a warning, and each field is there."""
+    members = dict(own.members)
+    for other in published:
+        part = dict(other.parts).get("message", UNKNOWN)
+        for name, type_ in part.members if isinstance(part, Struct) else ():
+            members.setdefault(name, type_)
+    return own if len(members) == len(own.members) else replace(own, members=tuple(members.items()))
 
 
 def unset_fields(statement: Communicate, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
@@ -398,17 +432,16 @@ class _Body:
         """The first condition is evaluated in a step of its own, so even it is late."""
         before = self.place
         self.later()
-        outer = self.place.branch_conditions
-        failed: tuple[tuple[Expression, bool], ...] = ()
+        outer = known = self.place.branch_conditions
         for branch in statement.branches:
             self.value(Use.BRANCH, branch.cond, BOOL, branch.element)
-            holds = ((branch.cond, True),) if branch.cond else ()
-            self.place = replace(self.place, branch_conditions=(*outer, *failed, *holds))
+            holds = BranchConditions(branch.cond, True, known) if branch.cond else known
+            self.place = replace(self.place, branch_conditions=holds)
             self.run(branch.body)
-            failed = (*failed, *(((branch.cond, False),) if branch.cond else ()))
+            known = BranchConditions(branch.cond, False, known) if branch.cond else known
             self.place = replace(self.place, branch_conditions=outer)
         if statement.otherwise is not None:
-            self.place = replace(self.place, branch_conditions=(*outer, *failed))
+            self.place = replace(self.place, branch_conditions=known)
             self.run(statement.otherwise.body)
         self.place = replace(before, late=True)
 

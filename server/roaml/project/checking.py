@@ -11,25 +11,30 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import logging
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
+from roaml.disk import Problem
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
+from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import FileKind
-from roaml.model.machine import Dialect
+from roaml.model.kinds import PROJECT_EXTENSION, FileKind
+from roaml.model.machine import Dialect, Machine
+from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.edits import laid_out
-from roaml.project.files import MAX_CHARACTERS, Problem
+from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
-from roaml.project.suppress import Suppression, suppressions
+from roaml.project.suppress import Suppression, covering, suppressions
+from roaml.project.translation import size_of_translation
 from roaml.rules import BY_CODE, RULES, file_too_large, unused_suppression
 from roaml.rules import internal_error as internal_error_rule
 from roaml.rules.rule import (
@@ -44,6 +49,9 @@ from roaml.rules.rule import (
 from roaml.text import Location, SourceFile, Span
 
 log = logging.getLogger(__name__)
+
+MAX_FINDINGS = 1000
+"""Of one rule in one file. Nobody reads more, and each takes time: what is close to a name, how it would be fixed."""
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
@@ -78,10 +86,11 @@ class Checker:
         hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
         if hidden:
             found.update(dict.fromkeys(each for each in self._unused(source, systems, hidden) if self._wanted(each)))
+        around = covering(hidden)
         diagnostics = [
             self._publish(path, finding)
             for finding in _without_repetition(found)
-            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in hidden)
+            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in around(finding.span.start))
         ]
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
 
@@ -92,11 +101,17 @@ class Checker:
         known = linked and all(system is not None and system.complete for system in linked)
         if not known or any(finding.code in _FORM for finding in found):
             return
-        for each in hidden:
+        around = covering(hidden)
+        used: dict[object, set[str]] = {}
+        for finding in found:
+            for each in around(finding.span.start):
+                if each.hides(finding):
+                    used.setdefault((each.span, each.codes), set()).add(finding.code)
+        for each in itertools.islice(hidden, MAX_FINDINGS):
+            key = (each.span, each.codes)
             if each.codes is None or unused_suppression.RULE.code not in each.codes:
-                used = {finding.code for finding in found if each.hides(finding)}
                 codes = None if each.codes is None else sorted(each.codes)
-                yield from unused_suppression.finding(source.text, each.comment, codes, used, BY_CODE)
+                yield from unused_suppression.finding(source.text, each.comment, codes, used.get(key, ()), BY_CODE)
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting
@@ -116,7 +131,7 @@ class Checker:
         if len(source.text) > MAX_CHARACTERS:
             return (_too_large(source),)
         try:
-            run = _Run(self.analysis, path, source, self._kind(path, system), system)
+            run = _Run(self.analysis, path, source, self._kind(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # a crash of ours in one file must not keep the others from being checked
             log.exception("%s cannot be analysed", path)
@@ -149,6 +164,15 @@ class Checker:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
+    """The findings of one rule in one file: of very many, the first."""
+    found = list(itertools.islice(findings, MAX_FINDINGS + 1))
+    if len(found) > MAX_FINDINGS:
+        message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
+        found[-1] = rule.at(found[-1].span, message, severity=found[-1].severity)
+    return found
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
@@ -186,27 +210,31 @@ def _too_large(source: SourceFile) -> Finding:
 class _Run:
     """The check of one file in one system."""
 
-    def __init__(self, analysis: Analysis, path: str, source: SourceFile, kind: FileKind, system: str | None) -> None:
+    def __init__(
+        self, analysis: Analysis, path: str, source: SourceFile, kind: FileKind, system: str | None, limits: Limits
+    ) -> None:
         self.analysis = analysis
         self.path = path
         self.source = source
         self.kind = kind
         self.system_path = system
+        self.limits = limits
         self.system: System | None = analysis.system(system) if system else None
 
     def key(self) -> object:
         """All that the findings depend on."""
-        parts: tuple[object, ...] = (self.source.digest, self.kind, self.system)
+        parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
                 machine = self.analysis.machine(self.path)
                 assert machine is not None
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
-                return (*parts, typed, lookups, self.analysis.structs(self.system_path).complete)
+                repeated = self.analysis.repeated_types(machine)
+                return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
-                return (*parts, listed, self.analysis.system(self.path))
+                return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
@@ -231,7 +259,7 @@ class _Run:
         for rule, check in checks:
             self.analysis.memo.checkpoint()
             try:
-                yield from list(check())
+                yield from _some(rule, check())
             except Exception as error:  # a crash of ours must not stop the other rules
                 log.exception("rule %s failed on %s", rule.code, self.path)
                 yield internal_error(rule.code, error)
@@ -335,9 +363,22 @@ class _Run:
             structs.complete,
             self.analysis.interface,
             events.get,
+            self._machine_gaps(machine),
+            self.analysis.repeated_types(machine),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
+
+    def _machine_gaps(self, machine: Machine) -> tuple[PlacedGap, ...]:
+        automata = self.system.automata_of(self.path) if self.system else ()
+        if not any(automaton.outline.gaps for automaton in automata):
+            return ()
+        return self.analysis.machine_gaps(self.path, machine, self.analysis.typed_in(self.path, self.system_path))
+
+    def _gaps(self) -> tuple[PlacedGap, ...]:
+        """The gaps of the system that have their cause in this file."""
+        gaps = self.analysis.gaps(self.system_path) if self.system_path else ()
+        return tuple(placed for path, placed in gaps if path == self.path)
 
     def _tree_context(self) -> TreeContext | None:
         file, document = self.analysis.tree(self.path), self.analysis.document(self.path)
@@ -345,12 +386,14 @@ class _Run:
             return None
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
-        return TreeContext(self.source, document, file, self.system, outlines, self._missing_includes(), older)
+        missing, interface = self._missing_includes(), self.analysis.interface
+        return TreeContext(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
-        paths = self.analysis.tree_paths(self.system_path) if self.system_path else self.analysis.trees_from(self.path)
-        return tuple(self.analysis.tree_outline(path) for path in paths)
+        if self.system_path:
+            return self.analysis.tree_outlines(self.system_path)
+        return self.analysis.outlines_from(self.path)
 
     def _missing_includes(self) -> dict[str, str]:
         """What cannot be included, and why."""
@@ -365,7 +408,7 @@ class _Run:
                 found[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
                 found[include.path.value] = "it is no file of behavior trees"
-            elif self.path in self.analysis.trees_from(target):
+            elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
                 found[include.path.value] = (
                     "it includes this file in turn" if target != self.path else "it is this file"
                 )
@@ -376,7 +419,11 @@ class _Run:
         system = self.analysis.system(self.path)
         if file is None or document is None or system is None:
             return None
-        return SystemContext(self.source, document, file, self.analysis.listed(self.path), system)
+        size = size_of_translation(self.analysis, self.path)
+        assert size is not None
+        files, gaps = self.analysis.listed(self.path), self._gaps()
+        interface = self.analysis.interface
+        return SystemContext(self.source, document, file, files, system, interface, gaps, size, self.limits)
 
     def _structs_context(self) -> StructsContext:
         declarations = self.analysis.struct_declarations(self.path)

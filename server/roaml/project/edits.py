@@ -13,10 +13,11 @@ from roaml.text import SourceFile, Span, TextEdit
 _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
-def line_end_of(text: str) -> str:
+def line_end_of(source: SourceFile) -> str:
     """How the lines of a text end."""
-    first = _LINE_END.search(text)
-    return first[0] if first else "\n"
+    end = source.lines.line_end(0)
+    last = source.text[max(0, end - 2) : end]
+    return "\r\n" if last == "\r\n" else last[-1:] if last[-1:] in ("\n", "\r") else "\n"
 
 
 def in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdit]:
@@ -24,17 +25,35 @@ def in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdi
 
     What stands on a line is seen with all the edits made.
     """
-    text, edits = source.text, sorted(edits)
-    line_end = line_end_of(text) if any(_LINE_END.search(edit.new_text) for edit in edits) else "\n"
-    for edit in edits:
+    edits = sorted(edits)
+    line_end = line_end_of(source) if any(_LINE_END.search(edit.new_text) for edit in edits) else "\n"
+    for number, edit in enumerate(edits):
         if edit.new_text or edit.span.start == edit.span.end:
             yield TextEdit(edit.span, _LINE_END.sub(line_end, edit.new_text))
             continue
-        start = source.lines.line_start(source.lines.position(edit.span.start).line)
-        end = source.lines.line_end(source.lines.position(edit.span.end).line)
-        around = text[start : edit.span.start] + text[edit.span.end : end]
-        shared = any(other is not edit and other.span.end >= start and other.span.start < end for other in edits)
-        yield edit if around.strip() or shared else TextEdit(Span(start, end), "")
+        lines = _blank_around(source, edit.span)
+        if lines is None:
+            yield edit
+            continue
+        before = any(other.span.end >= lines.start for other in edits[:number])
+        after = number + 1 < len(edits) and edits[number + 1].span.start < lines.end
+        yield edit if before or after else TextEdit(lines, "")
+
+
+_BLANK = re.compile(r"\s*")
+
+
+def _blank_around(source: SourceFile, span: Span) -> Span | None:
+    """The lines that a span stands on if nothing else stands there.
+
+    Reads no more than the white space around it: a line may be long, and much may be edited in it.
+    """
+    start = source.lines.line_start(source.lines.position(span.start).line)
+    end = source.lines.line_end(source.lines.position(span.end).line)
+    first, last = _BLANK.match(source.text, start, span.start), _BLANK.match(source.text, span.end, end)
+    assert first is not None
+    assert last is not None
+    return Span(start, end) if first.end() == span.start and last.end() == end else None
 
 
 def laid_out(source: SourceFile, fix: Fix) -> Fix:

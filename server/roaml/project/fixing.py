@@ -43,7 +43,7 @@ def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful
         snapshot: what is known.
         paths: the files.
         choose: which fix of a diagnostic is to be made, if any.
-        careful: make no fix that brings an error to its file.
+        careful: make no fix that brings an error to its file or to another file of its systems.
     """
     texts: dict[str, str] = {}
     for path in dict.fromkeys(paths):
@@ -83,7 +83,10 @@ def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
 
 
 def _errors(snapshot: Snapshot, path: str) -> int:
-    return sum(diagnostic.severity is Severity.ERROR for diagnostic in snapshot.checker.diagnostics(path))
+    """The number of errors in a file and in all files of the systems that it belongs to."""
+    analysis = snapshot.analysis
+    files = {path}.union(*(analysis.files_of(system) for system in analysis.memberships.get(path, ())))
+    return sum(d.severity is Severity.ERROR for file in files for d in snapshot.checker.diagnostics(file))
 
 
 def _touches_one_of(made: list[TextEdit], edit: TextEdit) -> bool:

@@ -28,6 +28,12 @@ def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
             return machine.name
         case "port":
             return next((p.key for p in machine.ports if p.key and p.key.value == symbol.name), None)
+        case "state":
+            states = (s for c in machine.charts if c.scope == symbol.scope for s in c.states)
+            return next((s.id for s in states if s.id and s.id.value == symbol.name), None)
+        case "data":
+            data = [d for c in machine.charts if c.scope == symbol.scope for d in c.data]
+            return next((d.id for d in data if d.id and d.id.value == symbol.name), None)
         case "event":
             sends = [s for c in machine.charts for s in c.statements if isinstance(s, Send)]
             return next((s.event for s in sends if s.event and s.event.value == symbol.name), None)

@@ -15,6 +15,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.disk import MAX_CONFIGURATION, NotReadableError, Problem, required
+from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
 from roaml.rules.rule import close_names, did_you_mean
@@ -25,6 +27,7 @@ else:
     import tomli as tomllib
 
 CONFIG_FILE = "as2fm.toml"
+SCHEDULERS = ("uniform",)
 SEVERITIES = {severity.label: severity for severity in Severity}
 
 
@@ -37,6 +40,9 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    scheduler: "uniform" if `verify` is meant to answer for uniform choices, also where a property asks for the minimum
+        or maximum over all schedulers; else empty.
+    limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
     """
 
@@ -48,6 +54,8 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    scheduler: str = ""
+    limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
 
 
@@ -61,13 +69,15 @@ def read_settings(folder: str, base: Settings) -> tuple[Settings, tuple[str, ...
     for name, keys in ((CONFIG_FILE, ()), ("pyproject.toml", ("tool", "as2fm"))):
         path = os.path.join(folder, name)
         try:
-            with open(path, "rb") as file:
-                table: Any = tomllib.load(file)
-        except FileNotFoundError:
-            continue
-        except (OSError, ValueError) as error:
+            table: Any = tomllib.loads(required(path, MAX_CONFIGURATION).decode("utf-8").replace("\r\n", "\n"))
+        except NotReadableError as error:
+            if error.problem is Problem.MISSING:
+                continue
+            return base, (str(error),)
+        except (ValueError, RecursionError) as error:
             if name == CONFIG_FILE:
-                return base, (f"{path}: {error}",)
+                words = "brackets are nested too deep" if isinstance(error, RecursionError) else str(error)
+                return base, (f"{path}: {words}",)
             continue
         for key in keys:
             table = table.get(key) if isinstance(table, dict) else None
@@ -100,6 +110,11 @@ def settings_from(
                 else f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}"
             )
             continue
+        if key == "verify":
+            problems += _verify_problems(value, origin)
+            if isinstance(value, dict) and value.get("scheduler") in SCHEDULERS:
+                changes["scheduler"] = value["scheduler"]
+            continue
         read = _KEYS[key](value)
         if read is None:
             problems.append(f"{origin}: `{key}` is not {_WANTED[key]}")
@@ -114,9 +129,24 @@ def settings_from(
             read = tuple(os.path.normpath(os.path.join(folder, path)) for path in read)
         if key == "exclude":
             read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
+        if key in _LIMITS:
+            changes["limits"] = replace(changes.get("limits", base.limits), **{_LIMITS[key]: read})
+            continue
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
     return replace(base, **changes), tuple(problems)
+
+
+def _verify_problems(value: Any, origin: str) -> Iterator[str]:
+    """What is wrong with the table `[verify]`."""
+    if not isinstance(value, dict):
+        yield f"{origin}: `verify` is not a table"
+        return
+    for key, said in value.items():
+        if key != "scheduler":
+            yield f"{origin}: unknown setting `verify.{key}`; there is scheduler"
+        elif said not in SCHEDULERS:
+            yield f"{origin}: `verify.scheduler` is not {' or '.join(SCHEDULERS)}"
 
 
 def _strings(value: Any) -> tuple[str, ...] | None:
@@ -135,11 +165,16 @@ def _boolean(value: Any) -> bool | None:
     return value if isinstance(value, bool) else None
 
 
+def _count(value: Any) -> int | None:
+    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else None
+
+
 def _unknown(codes: Iterable[str]) -> list[str]:
     return [code for code in codes if code not in BY_CODE]
 
 
 _SETS = ("select", "ignore")
+_LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _OF_CODES = (*_SETS, "severity")
 _FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
 _KEYS: dict[str, Any] = {
@@ -150,11 +185,15 @@ _KEYS: dict[str, Any] = {
     "ignore": _strings,
     "severity": _severities,
     "warnings-as-errors": _boolean,
+    "verify": None,
+    "max-cells": _count,
+    "max-parts": _count,
 }
 _WANTED = {
     **dict.fromkeys(("roots", "ros-path", "exclude", "select", "ignore"), "a list of texts"),
     "severity": "a table of codes with " + ", ".join(SEVERITIES),
     "warnings-as-errors": "true or false",
+    **dict.fromkeys(_LIMITS, "a whole number above 0"),
 }
 
 

@@ -7,8 +7,9 @@ that is in it.
 
 from __future__ import annotations
 
+import bisect
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from roaml.diagnostics import Finding
@@ -43,6 +44,25 @@ def suppressions(document: Document | None) -> tuple[Suppression, ...]:
             for element in root.walk():
                 _collect(document, element.nodes, found)
     return tuple(found)
+
+
+def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppression, ...]]:
+    """offset -> the comments that hold for what begins there; of those that hold for the same, the first. They are
+    looked up in a table, as there may be many."""
+    opening: dict[int, list[Suppression]] = {}
+    closing: dict[int, list[Suppression]] = {}
+    for comment in {(each.span, each.codes): each for each in reversed(tuple(comments))}.values():
+        opening.setdefault(comment.span.start, []).append(comment)
+        closing.setdefault(comment.span.end, []).append(comment)
+    starts = sorted({*opening, *closing})
+    active: dict[Suppression, None] = {}
+    table: list[tuple[Suppression, ...]] = [()]
+    for start in starts:
+        for comment in closing.get(start, ()):
+            active.pop(comment, None)
+        active.update(dict.fromkeys(opening.get(start, ())))
+        table.append(tuple(active))
+    return lambda offset: table[bisect.bisect_right(starts, offset)]
 
 
 def _collect(document: Document, nodes: Iterable[Node], found: list[Suppression]) -> None:

@@ -5,8 +5,13 @@ from __future__ import annotations
 
 from roaml.jani.properties import Property
 from roaml.lower import Program
-from roaml.model.expand import node_at
+from roaml.lower.size import size_of
+from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
+from roaml.model.machine import Machine
+from roaml.model.size import Size
+from roaml.model.system import System
+from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -22,22 +27,32 @@ def program_of(analysis: Analysis, path: str) -> Program:
     system, file = analysis.system(path), analysis.system_file(path)
     assert system is not None
     assert file is not None
-    machines = {}
-    for each in {p for p, _ in (*system.nodes, *system.plugins)}:
-        machine = analysis.machine(each)
-        assert machine is not None
-        machines[each] = machine
+    written: dict[tuple[str, str], tuple[TreeNode, ...]] = {}
     nodes = {}
     for instance in system.instances:
-        tree = analysis.tree(instance.source.path)
-        node = node_at(tree, instance.source) if tree else None
-        if node is not None:
-            nodes[instance.number] = Location(instance.source.path, node.element.span)
-    return Program(
-        system,
-        machines,
-        analysis.environment(path),
-        Location(path, file.element.name_span),
-        nodes,
-        system.parameters,
-    )
+        source = instance.source
+        key = (source.path, source.tree)
+        if key not in written:
+            tree = analysis.tree(source.path)
+            written[key] = nodes_of(tree, source.tree) if tree else ()
+        if source.position < len(written[key]):
+            nodes[instance.number] = Location(source.path, written[key][source.position].element.span)
+    place = Location(path, file.element.name_span)
+    return Program(system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters)
+
+
+def size_of_translation(analysis: Analysis, path: str) -> Size | None:
+    """How large the translation of a system would be, whether it has errors or not; None if there is no system."""
+    system, file = analysis.system(path), analysis.system_file(path)
+    if system is None or file is None:
+        return None
+    machines = _machines(analysis, system)
+    environment, place = analysis.environment(path), Location(path, file.element.name_span)
+    program = Program(system, machines, environment, place, {}, system.parameters)
+    key = (system, tuple(machines.items()))
+    return analysis.memo.get("size", path, key, lambda: size_of(program, analysis.globals(path)))
+
+
+def _machines(analysis: Analysis, system: System) -> dict[str, Machine]:
+    paths = dict.fromkeys(path for path, _ in (*system.nodes, *system.plugins))
+    return {path: machine for path in paths if (machine := analysis.machine(path)) is not None}

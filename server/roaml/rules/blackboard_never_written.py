@@ -6,17 +6,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import VARIABLE
 from roaml.rules.blackboard import described, places, renamings
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete:
+    if context.system is None:
         return
     board = context.system.blackboard
     set_ = [name for name, ports in board.items() if any(bound.port.written for bound in ports)]
     for variable, ports in board.items():
-        if variable in set_:
+        if variable in set_ or context.system.may(VARIABLE, variable):
             continue
         close = close_names(variable, set_)
         for bound, span, written in places(context, variable, ports):

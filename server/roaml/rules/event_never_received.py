@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import RECEIVES
 from roaml.model.machine import Send
 from roaml.rules.invalid_name import EVENT
 from roaml.rules.removed_bt_event import REMOVED
@@ -14,7 +15,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 
 def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
     known = () if context.listed_as == {"node_models"} else REMOVED  # of these, removed-bt-event tells
@@ -22,7 +23,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value not in known:
                 event = system.events.get(statement.event.value)
-                if event is not None and not event.receivers and not system.is_observed(event.name):
+                if event is None or event.receivers or system.is_observed(event.name):
+                    continue
+                if not system.may(RECEIVES, event.name):
                     close = close_names(event.name, awaited)
                     message = f"no machine has a transition for the event `{event.name}`{did_you_mean(close)}"
                     yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))

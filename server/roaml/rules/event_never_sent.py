@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.interfaces.registry import NotFound
+from roaml.model.gaps import SENDS
 from roaml.model.globals import global_variables
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
@@ -22,10 +23,11 @@ OF_THE_TREE = ("bt_tick", "bt_halt")
 
 def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for event, handler in _unsent(context, system):
-        if not _generated(context, system, event.value):
+        unread = system.may(SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
+        if not unread and not _generated(context, system, event.value):
             close = close_names(event.value, [e.name for e in system.events.values() if e.senders])
             message = f"nobody sends the event `{event.value}`{did_you_mean(close)}"
             drop = remove(context.document, handler.element, "Remove this transition")

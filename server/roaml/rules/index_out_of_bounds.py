@@ -126,7 +126,7 @@ def _type_of(context: MachineContext, place: Place, expr: Expr) -> Type:
 
 def _has_room(context: MachineContext, place: Place, array: Expr, bound: int) -> bool:
     """Whether a condition that holds here keeps the length of the array below `bound`."""
-    conditions = list(place.branch_conditions)
+    conditions = list(place.branch_conditions or ())
     if place.handler is not None and place.handler.cond is not None:
         conditions.append((place.handler.cond, True))
     if place.state is not None and place.handler is not None:

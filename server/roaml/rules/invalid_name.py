@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.expand import Constant
+from roaml.model.gaps import is_interface_name
 from roaml.model.machine import Declaration, Send
 from roaml.model.syntax import Name
-from roaml.model.system import is_interface_name
 from roaml.model.typing import STATUSES
 from roaml.rules.event_data_unavailable import EVENT_VARIABLES
 from roaml.rules.interfaces import named_by_ports, port_span

@@ -16,7 +16,7 @@ from roaml.rules.rule import PropertiesContext, Rule
 
 
 def check(context: PropertiesContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete or context.variables is None:
+    if context.variables is None:
         return
     scope = Scope({variable.name: _jani_type(variable.type) for variable in context.variables.values()})
     for property_ in context.properties:

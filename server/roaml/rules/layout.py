@@ -6,6 +6,8 @@ New lines are given with four spaces for each level that they are nested; they g
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from roaml.diagnostics import Fix
 from roaml.rules.elements import removal
 from roaml.text import Span, TextEdit
@@ -21,6 +23,7 @@ def indent_of(text: str, element: Element) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
+@lru_cache(maxsize=16)
 def level_of(document: Document) -> str:
     """The white space of one level, as the first nested element has it."""
     text = document.text

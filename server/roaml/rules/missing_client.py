@@ -7,20 +7,20 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.syntax import Name
-from roaml.rules.interfaces import declared, name_span
+from roaml.rules.interfaces import declared, name_span, other_kind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for kind, what, channels in (
         ("service-server", "service", system.services),
         ("action-server", "action", system.actions),
     ):
         for declaration, _, channel in declared(context, kind):
-            if not channel.users:
+            if not channel.users and not system.may(other_kind(kind), channel.name):
                 close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
                 message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

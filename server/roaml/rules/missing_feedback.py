@@ -14,10 +14,13 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete:
+    system = context.system
+    if system is None:
         return
     for declaration, _, action in declared(context, "action-client"):
         if not action.sources or any("feedback" in server.use.sends for server in action.sources):
+            continue
+        if any(system.may("action-server feedback", action.name, server.automaton) for server in action.sources):
             continue
         for handler in _handlers(context, declaration):
             message = f"the server of `{action.name}` never sends feedback"

@@ -9,18 +9,18 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.system import System
 from roaml.model.typing import find_handle
-from roaml.rules.interfaces import Naming, named_here
+from roaml.rules.interfaces import Naming, named_here, other_kind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
 from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for kind, what in (("service-client", "service"), ("action-client", "action")):
         for naming in named_here(context, kind):
-            if not naming.channel.sources:
+            if not naming.channel.sources and not system.may(other_kind(kind), naming.channel.name):
                 yield _finding(context, system, naming, what)
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
 from roaml.expr.parse import parse
 from roaml.model.expand import Constant, Reference
-from roaml.model.tree import TreeNode, nodes
+from roaml.model.tree import PortSetting, TreeNode, nodes
+from roaml.rules.elements import removal
 from roaml.rules.instances import instances
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.text import Decoded
@@ -17,10 +18,10 @@ from roaml.text import Decoded
 
 def check(context: TreeContext) -> Iterator[Finding]:
     """Settings with which a node of BehaviorTree.CPP stops answering (spec/02 §5, spec/07 1.22)."""
-    in_system = context.system is not None
+    yield from _set_twice(context)
     for node, key, text in _settings(context):
         number = _number(text)
-        problem = _problem(node, key, number, in_system=in_system) if number is not None else None
+        problem = _problem(node, key, number) if number is not None else None
         if problem is not None:
             yield _finding(node, key, *problem)
     for node, automaton in instances(context):
@@ -33,14 +34,26 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
     """`instead` is the nearest setting that would do."""
-    setting = node.element.get(key)
+    setting = next((each.value for each in node.ports if each.key.value == key), None)
     assert node.plugin is not None
     if setting is None:
         return RULE.at(node.plugin.span, reason)
-    fixes = (
-        [] if instead is None or _number(setting.value) is None else replacements(setting.value_span, [str(instead)])
-    )
-    return RULE.at(setting.value_span, reason, *fixes)
+    fixes = [] if instead is None or _number(setting.value) is None else replacements(setting.span, [str(instead)])
+    return RULE.at(setting.span, reason, *fixes)
+
+
+def _set_twice(context: TreeContext) -> Iterator[Finding]:
+    """Ports that are set under two names."""
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            settings: dict[str, PortSetting] = {}
+            for setting in node.ports:
+                first = settings.setdefault(setting.key.value, setting)
+                written, other = setting.attribute.name, first.attribute.name
+                if written != other:
+                    message = f"`{written}` and `{other}` are two names of one port, which can be set once"
+                    drop = Fix(f"Remove `{written}`", (removal(context.source.text, setting.attribute.span),))
+                    yield RULE.at(setting.key.span, message, drop)
 
 
 def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
@@ -59,16 +72,12 @@ def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
                     yield node, setting.key.value, setting.value.value
 
 
-def _problem(node: TreeNode, key: str, number: int, *, in_system: bool) -> tuple[str, int | None] | None:
+def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | None:
     """What is wrong with a setting, and the nearest one that would do."""
     count = len(node.children)
     match node.plugin.value if node.plugin and node.type is not None else "", key:
-        case ("Parallel", "success_threshold" | "failure_threshold") if count and not 1 <= number <= count:
-            # BehaviorTree.CPP itself counts negative thresholds from the end and takes 0 for met at once.
-            if in_system or number > count:
-                return f"a threshold lies between 1 and the number of children, here {count}; this is {number}", max(
-                    1, min(number, count)
-                )
+        case ("Parallel", "success_count" | "failure_count") if number > count > 0:
+            return f"`{key}` is at most the number of children, here {count}; this is {number}", count
         case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
             return f"`{key}` is -1 (for ever), 0 or more; this is {number}", -1
         case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):

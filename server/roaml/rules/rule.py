@@ -8,7 +8,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -21,9 +20,12 @@ from roaml.json import JsonValue
 from roaml.language import Grammar
 from roaml.language.validate import Violation
 from roaml.model.expand import TreeFileOutline
+from roaml.model.gaps import PlacedGap
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
-from roaml.model.ros import InterfaceType
+from roaml.model.ros import InterfaceType, RepeatedType
+from roaml.model.size import Limits, Size
+from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
@@ -50,7 +52,8 @@ class MachineContext:
     """A machine. `automata` is what it is in `system`; both are empty for a machine that belongs to no system.
 
     `all_structs` tells that the system has no other structs than those in `struct_names`; `interface` looks up ROS
-    types by kind and name as written; `older` tells that the older dialect is checked.
+    types by kind and name as written; `gaps` are what the machine may say where it cannot be read; `repeated_types` are
+    ROS types that it uses and that are defined twice; `older` tells that the older dialect is checked.
     """
 
     source: SourceFile
@@ -66,6 +69,8 @@ class MachineContext:
     all_structs: bool
     interface: Callable[[str, str], InterfaceType | NotFound]
     event_data: Callable[[str], Struct | None]
+    gaps: tuple[PlacedGap, ...]
+    repeated_types: tuple[RepeatedType, ...] = ()
 
     @property
     def older(self) -> bool:
@@ -74,7 +79,8 @@ class MachineContext:
 
 @dataclass(frozen=True, slots=True)
 class TreeContext:
-    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first."""
+    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` is what
+    the tree may say where this file cannot be read."""
 
     source: SourceFile
     document: Document
@@ -82,16 +88,24 @@ class TreeContext:
     system: System | None
     files: tuple[TreeFileOutline, ...]
     missing_includes: Mapping[str, str]
+    interface: Callable[[str, str], InterfaceType | NotFound]
+    gaps: tuple[PlacedGap, ...]
     older: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SystemContext:
+    """A system file. `size` is that of its translation, `limits` what is translated at most."""
+
     source: SourceFile
     document: Document
     file: SystemFile
     files: tuple[ListedFile, ...]
     system: System
+    interface: Callable[[str, str], InterfaceType | NotFound]
+    gaps: tuple[PlacedGap, ...]
+    size: Size
+    limits: Limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,13 +163,6 @@ class Rule:
 
 
 # --------------------------------------------------------------- did you mean?
-
-
-def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
-    """Those of `candidates` that look like `name`, the nearest first."""
-    by_lower = {candidate.lower(): candidate for candidate in candidates}
-    matches = difflib.get_close_matches(name.lower()[:80], list(by_lower), most, 0.6)
-    return tuple(by_lower[match] for match in matches)
 
 
 def did_you_mean(close: tuple[str, ...]) -> str:

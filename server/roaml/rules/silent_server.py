@@ -10,7 +10,7 @@ from roaml.expr.types import leaves
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.model.typing import find_handle
 from roaml.rules.interfaces import declared, find_use, name_span
 from roaml.rules.layout import last_in
@@ -18,16 +18,24 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete:
+    if context.system is None:
         return
     for declaration, automaton, channel in declared(context, "service-server"):
         clients = [c for c in channel.users if "request" in c.use.sends]
-        if clients:
+        if clients and not _may_do_more(context.system, automaton, "service-server", channel):
             yield from _service(context, declaration, automaton, channel, clients)
     for declaration, automaton, channel in declared(context, "action-server"):
         clients = [c for c in channel.users if "goal" in c.use.sends]
-        if clients:
+        if clients and not _may_do_more(context.system, automaton, "action-server", channel):
             yield from _action(declaration, automaton, channel, clients)
+
+
+def _may_do_more(system: System, automaton: Automaton, kind: str, channel: Channel) -> bool:
+    """Whether a server may answer where its machine cannot be read."""
+    return any(system.may(f"{kind} {part}", channel.name, automaton) for part in _PARTS)
+
+
+_PARTS = ("request", "response", "goal", "goal-accepted", "goal-rejected", "result")
 
 
 def _service(
@@ -76,12 +84,18 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     ]
     if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
         return
+    lines = response(declaration, interface)
+    edits = tuple(last_in(context.document, place, *lines) for place in places)
+    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
+
+
+def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
+    """The lines that answer a request with 0, or what is like it, in each field."""
+    assert declaration.handle is not None
     types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
     fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
     tag = f'<ros_service_send_response name="{declaration.handle.value}"'
-    lines = (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
-    edits = tuple(last_in(context.document, place, *lines) for place in places)
-    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
+    return (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
 
 
 def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:

@@ -13,11 +13,11 @@ from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for naming in named_here(context, "subscriber"):
         topic = naming.channel
-        if has_publisher(system, topic) or not naming.use.receives:
+        if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
             continue
         # A topic that is declared on both sides is hardly misspelled.
         others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]
@@ -25,7 +25,10 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         silent = " (declared, but nothing is ever published)" if topic.sources else ""
         message = f"nobody publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
         fixes = replacements(naming.span, close if naming.literal else ())
-        yield RULE.at(naming.span, message, *fixes, related=naming.related)
+        # A node that always has something else to do may well have inputs that nobody gives in this system.
+        needed = bool(close or topic.sources or naming.use.awaited)
+        severity = Severity.ERROR if needed else Severity.WARNING
+        yield RULE.at(naming.span, message, *fixes, severity=severity, related=naming.related)
 
 
 def has_publisher(system: System, topic: Channel) -> bool:

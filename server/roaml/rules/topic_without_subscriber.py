@@ -13,10 +13,11 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 
 def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     for declaration, _, topic in declared(context, "publisher"):
-        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
+        observed = system.is_observed(f"topic_{topic.name}_msg")
+        if not topic.users and not observed and not system.may("subscriber", topic.name):
             close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
             message = f"nobody subscribes to the topic `{topic.name}`{did_you_mean(close)}"
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.language import BEHAVIOR_TREE
@@ -23,17 +23,22 @@ MOST = 5
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    known = {tree.id: tree for file in context.files for tree in file.trees if tree.id}
+    known: dict[str, list[TreeOutline]] = {}
+    for outline in (tree for file in context.files for tree in file.trees):
+        if outline.id:
+            known.setdefault(outline.id, []).append(outline)
+    uses = {name: dict.fromkeys(_subtrees(trees[-1].root)) for name, trees in known.items()}
+    circular = _circular(uses)
     for tree in context.file.trees:
         yield from _id(context, tree, known)
         for node in nodes(tree):
             if node.is_subtree and node.plugin is not None:
-                yield from _subtree(context, tree, node.plugin, known)
+                yield from _subtree(context, tree, node.plugin, uses, circular)
     if context.files and context.files[0].path == context.source.path:
         yield from _main(context)
 
 
-def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iterator[Finding]:
+def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutline]]) -> Iterator[Finding]:
     count = sum(len(file.trees) for file in context.files)
     if tree.id is None:
         if count > 1:
@@ -43,7 +48,7 @@ def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iter
             fix = Fix(f'Add `ID="{name}"`', edits, preferred=False)
             yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`", fix)
         return
-    same = [t for file in context.files for t in file.trees if t.id == tree.id.value]
+    same = known.get(tree.id.value, ()) or [t for f in context.files for t in f.trees if t.id == tree.id.value]
     if len(same) > 1:
         here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
         elsewhere = [Symbol(t.path, "tree", t.id) for t in same if t.path != context.source.path]
@@ -54,12 +59,15 @@ def _id(context: TreeContext, tree: Tree, known: dict[str, TreeOutline]) -> Iter
         yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
 
 
-def _subtree(context: TreeContext, tree: Tree, name: Name, known: dict[str, TreeOutline]) -> Iterator[Finding]:
-    if name.value not in known:
-        own = tree.id.value if tree.id else ""
-        yield from _no_tree(context, name, [other for other in known if not _cycle(own, other, known)])
-    elif tree.id is not None:
-        cycle = _cycle(tree.id.value, name.value, known)
+def _subtree(
+    context: TreeContext, tree: Tree, name: Name, uses: Mapping[str, Iterable[str]], circular: Set[str]
+) -> Iterator[Finding]:
+    own = tree.id.value if tree.id else ""
+    if name.value not in uses:
+        around = _around(own, uses)
+        yield from _no_tree(context, name, [other for other in uses if other not in around])
+    elif name.value in circular and own in circular:
+        cycle = _cycle(own, name.value, uses)
         if cycle:
             yield RULE.at(name.span, f"a tree cannot contain itself: {' → '.join(cycle)}")
 
@@ -79,22 +87,63 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
         yield RULE.at(name.span, message, *replacements(name.span, close), severity=Severity.WARNING)
 
 
-def _cycle(start: str, first: str, known: dict[str, TreeOutline]) -> list[str]:
+def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
+    """The names of all trees that contain themselves, and of some between such trees."""
+    left = {name: {inner for inner in inners if inner in uses} for name, inners in uses.items()}
+    for _ in range(2):
+        users: dict[str, set[str]] = {name: set() for name in left}
+        for name, inners in left.items():
+            for inner in inners:
+                users[inner].add(name)
+        ended = [name for name, inners in left.items() if not inners]
+        while ended:
+            name = ended.pop()
+            del left[name]
+            for user in users.pop(name):
+                left[user].discard(name)
+                if not left[user]:
+                    ended.append(user)
+        left = {name: users[name] for name in left}  # once more, from the other end
+    return left.keys()
+
+
+def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
+    """The trees that the tree `own` is a part of, itself included."""
+    users: dict[str, list[str]] = {}
+    for name, inners in uses.items():
+        for inner in inners:
+            users.setdefault(inner, []).append(name)
+    found = {own}
+    pending = [own]
+    while pending:
+        for user in users.get(pending.pop(), ()):
+            if user not in found:
+                found.add(user)
+                pending.append(user)
+    return found
+
+
+def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
     """The names from `start` over `first` back to `start`, or none."""
-    stack = [[start, first]]
-    seen = {first}
+    came_from = {first: start}
+    stack = [first]
     while stack:
-        path = stack.pop()
-        if path[-1] == start:
-            return path
-        tree = known.get(path[-1])
-        for name in _subtrees(tree.root) if tree else ():
-            if name == start:
-                return [*path, name]
-            if name not in seen:
-                seen.add(name)
-                stack.append([*path, name])
+        name = stack.pop()
+        if name == start:
+            return [start, first] if first == start else _back(start, came_from[start], came_from)
+        for inner in uses.get(name, ()):
+            if inner not in came_from:
+                came_from[inner] = name
+                stack.append(inner)
     return []
+
+
+def _back(start: str, last: str, came_from: Mapping[str, str]) -> list[str]:
+    path = [start]
+    while last != start:
+        path.append(last)
+        last = came_from[last]
+    return [start, *path[::-1]]
 
 
 def _subtrees(node: NodeOutline | None) -> Iterator[str]:

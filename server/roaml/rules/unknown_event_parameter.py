@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct
+from roaml.model.gaps import PARAMETER
 from roaml.model.system import Event
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
@@ -15,14 +16,16 @@ EVENT_DATA = "data of event "
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Only if all files are there: a sender that cannot be read may send the parameter."""
-    if context.system is None or not context.system.readable:
+    """A sender that cannot be read may send the parameter."""
+    if context.system is None:
         return
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, UnknownMember) and isinstance(problem.owner, Struct):
                 event = context.system.events.get(problem.owner.what.removeprefix(EVENT_DATA))
-                if problem.owner.what.startswith(EVENT_DATA) and event is not None and event.senders:
+                if not problem.owner.what.startswith(EVENT_DATA) or event is None or not event.senders:
+                    continue
+                if not context.system.may(PARAMETER, event.name):
                     yield from _check(problem, event, [name for name, _ in problem.owner.members])
 
 

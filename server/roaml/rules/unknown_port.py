@@ -36,7 +36,8 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
             message = f"`{CHILDREN_COUNT}` is filled in by itself and cannot be set"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
         elif key.value not in keys and plugin.all_ports:
-            free = [k for k in keys if node.element.get(k) is None]
+            given = {other.key.value for other in node.ports}
+            free = [k for k in keys if k not in given]
             close = close_names(key.value, free)
             # What is only misspelled would be missing then.
             drop = [] if close else [Fix(f"Remove `{key.value}`", (edit,), preferred=False)]

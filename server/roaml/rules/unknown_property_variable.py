@@ -13,11 +13,14 @@ from roaml.rules.rule import PropertiesContext, Rule, close_names, did_you_mean,
 
 
 def check(context: PropertiesContext) -> Iterator[Finding]:
-    if context.system is None or not context.system.complete or context.variables is None:
+    system = context.system
+    if system is None or context.variables is None:
         return
     for property_ in context.properties:
         for name, span in identifiers(property_.expression):
-            if name not in context.variables and not _is_part_of_unknown(name, context.variables):
+            if name in context.variables or system.may_have_variable(name):
+                continue
+            if not _is_part_of_unknown(name, context.variables):
                 close = close_names(name, context.variables) or _same_event(name, context.variables)
                 hint = did_you_mean(close) or _explanation(name, context.variables)
                 yield RULE.at(span, f"the system has no variable `{name}`{hint}", *replacements(span, close))

@@ -13,7 +13,7 @@ from roaml.model.syntax import Expression
 from roaml.model.system import Channel
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.event_data_unavailable import known_here
-from roaml.rules.interfaces import declared
+from roaml.rules.interfaces import declared, other_kind
 from roaml.rules.rule import MachineContext, Rule
 
 PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapped_result": 2}
@@ -21,7 +21,7 @@ PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapp
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Fields that the reference translator leaves out need not be set; reading one that nobody sets gives nothing."""
-    if context.system is None or not context.system.complete:
+    if context.system is None:
         return
     for value in context.typed.values:
         handler = value.place.handler
@@ -36,14 +36,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _check(context: MachineContext, handler: Handler, node: Member, field: str) -> Iterator[Finding]:
     declaration = find_handle(context.machine, handler)
-    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+    if (
+        context.system is None
+        or declaration is None
+        or declaration.type is None
+        or declaration.kind not in INTERFACE_KINDS
+    ):
         return
     interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     part = SECTIONS.get(handler.trigger, handler.trigger)
     if not isinstance(interface, InterfaceType) or field not in dict(interface.optional).get(part, frozenset()):
         return
     for found, _, channel in declared(context, declaration.kind):
-        if found is declaration and not any(field in sent for sent in _sent(channel, part)):
+        if found is not declaration:
+            continue
+        unread = context.system.may(f"{other_kind(declaration.kind)} {part} field", channel.name)
+        if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(node.name_span, f"nobody sets the field `{field}` of `{channel.name}`: it is always empty")
             return
 

@@ -6,18 +6,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
+from roaml.model.gaps import NODE
 from roaml.rules.rule import Rule, SystemContext
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
     system = context.system
-    if not system.complete or not system.instances:
+    if not system.instances:
         return
     used = {instance.plugin for instance in system.instances}
     names = {path: outline.name for path, outline in system.plugins}
     for listed in context.files:
         src, name = listed.input.src, names.get(listed.path)
         if listed.input.section == "behavior_tree" and src is not None and name is not None and name not in used:
+            if system.may(NODE, name):
+                continue
             yield RULE.at(src.span, f"the tree never uses the plugin `{name}`", tags=(Tag.UNNECESSARY,))
 
 

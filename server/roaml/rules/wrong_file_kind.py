@@ -38,11 +38,11 @@ def check(context: SystemContext) -> Iterator[Finding]:
 def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
     """A machine that is listed as a plugin and is none, or the other way round: another file is meant."""
     system, section = context.system, listed.input.section
-    if not system.readable:
-        return
-    plugins = [f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree"]
+    ticked = section == "node_models" and listed.path in system.ticked_nodes
+    same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")
+    plugins = list(same) if ticked else []
     reason = ""
-    if section == "node_models" and listed.path in system.ticked_nodes and plugins:  # else tree-element-in-node tells
+    if plugins:  # else tree-element-in-node tells
         reason = "a plugin of the behavior tree and is listed as one, so it is no node; name the file of the node"
     elif section == "behavior_tree" and listed.path in system.idle_plugins:
         reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"

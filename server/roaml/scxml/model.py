@@ -131,10 +131,12 @@ class Network:
 
     Attributes:
         max_array_size: the most elements of an array without a bound, and of every array that is sent.
+        random_values: how many values `Math.random()` has.
     """
 
     automata: tuple[Automaton, ...]
     max_array_size: int
+    random_values: int
 
 
 def statements(body: Body) -> Iterator[Statement]:

@@ -15,6 +15,7 @@ from multiprocessing.connection import wait
 from multiprocessing.synchronize import Event
 from typing import NamedTuple
 
+from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
 
@@ -53,10 +54,11 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """What came of a batch: for each trace FALSE, TRUE or UNKNOWN, its steps, and for questions about rewards its
-    reward. A problem ends the batch; the trace that has it is not counted."""
+    """What came of a batch: for each trace FALSE, TRUE or UNKNOWN, why it has ended (`End`), its steps, and for
+    questions about rewards its reward. A problem ends the batch; the trace that has it is not counted."""
 
     verdicts: bytes
+    ends: bytes
     steps: Ints
     rewards: Reals
     problem: Problem | None = None
@@ -91,8 +93,12 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
     Args:
         pulse: told now and then the number of the trace and its steps; what it raises ends the batch.
     """
-    kernel = kernel_of(task.payload)
-    verdicts, steps, rewards = bytearray(), array("q"), array("d")
+    return run_on(kernel_of(task.payload), task, pulse)
+
+
+def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
+    """The same on a kernel that nobody else uses meanwhile."""
+    verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)
         limit = 0
@@ -102,12 +108,13 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
             if pulse is not None and (limit > SLICE or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
-            return Outcome(bytes(verdicts), steps, rewards, Problem(trace, *kernel.problem()))
+            return Outcome(bytes(verdicts), bytes(ends), steps, rewards, Problem(trace, *kernel.problem()))
         length, _, reward = kernel.outcome()
         verdicts.append(verdict)
+        ends.append(End.CUT if verdict == UNKNOWN else kernel.ending())
         steps.append(length)
         rewards.append(reward)
-    return Outcome(bytes(verdicts), steps, rewards)
+    return Outcome(bytes(verdicts), bytes(ends), steps, rewards)
 
 
 class StoppedError(Exception):

@@ -12,6 +12,7 @@ from roaml.jani.model import Assignment, Destination, Edge, Model, ModelType
 from roaml.jani.node import Origin
 from roaml.jani.properties import Formula, identifiers
 from roaml.smc.assign import AssignmentAssembler
+from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
 from roaml.smc.layout import Layout, lay_out
 from roaml.smc.names import Names, Storage
@@ -229,7 +230,7 @@ class Compilation:
 
     # ------------------------------------------------------------ the end
 
-    def program(self) -> Program:
+    def program(self, marks: Marks) -> Program:
         """The program with all code that was written so far."""
         gates: dict[tuple[int, ...], list[int]] = {}
         for number, slot in enumerate(self.network.slots):
@@ -300,6 +301,10 @@ class Compilation:
             watched_group=watched_group,
             settle=settle,
             location_code=location_code,
+            location_mark=_ints(
+                marks.get((self.layout.instances[number].automaton.name, location), 0)
+                for number, location in self.network.locations
+            ),
             zero_slots=_ints([0] * len(self.network.slots)),
             zero_vectors=_ints([0] * len(self.network.vectors)),
             zero_variables=_ints([0] * len(self.watched)),

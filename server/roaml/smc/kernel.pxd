@@ -9,8 +9,10 @@ ctypedef long long i64
 
 cdef u64 MASK, GOLDEN, MIX_1, MIX_2
 cdef i64 MOST, LEAST
-cdef double TO_UNIT
+cdef double TO_UNIT, HUGE, TINY
+cdef u64 FEW
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
+cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
 
 @cython.final
 cdef class Kernel:
@@ -27,7 +29,7 @@ cdef class Kernel:
     cdef int[::1] slot_instance, slot_gate, gate_start, gate_vector
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
-    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, location_code
+    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, location_code, location_mark
     cdef int[::1] seen, left, right, formula, verdict, holds_left, holds_right, stack
     cdef i64[::1] lower, upper
     cdef int leaves, is_bounded, step_reward, exit_reward
@@ -39,7 +41,11 @@ cdef class Kernel:
     cdef int note_count, moved, must_look, fault, fault_at
     cdef i64 fault_value, fault_size
     cdef double fault_real
-    cdef u64 key, drawn, scheduler
+    cdef u64 key, drawn, scheduler, choice, tossed, loop_state, loop_drawn
+    cdef i64 loop_span, loop_left
+    cdef int looped
+    cdef int rank, end
+    cdef double mass
     cdef public i64 steps
     cdef i64 still
     cdef public double reward
@@ -59,12 +65,23 @@ cdef class Kernel:
     cdef u64 _total(self) noexcept
     @cython.locals(weight=u64, i=int)
     cdef u64 _weight(self, int vector) noexcept
-    @cython.locals(rest=u64, vector=int, total=u64, weight=u64, i=int)
+    @cython.locals(i=int)
+    cdef void _weigh(self, int vector) noexcept
+    cdef double _share(self, int vector, int top) noexcept
+    @cython.locals(rest=u64, apart=int, vector=int, total=u64, weight=u64, i=int)
     cdef void _step(self) noexcept
-    @cython.locals(state=u64, i=int, best=int, best_rest=u64, greatest=u64, vector=int, rest=u64, value=u64)
-    cdef tuple _scheduled(self)
+    @cython.locals(top=int, i=int, total=double, aim=double, found=int, share=double)
+    cdef int _heavy(self) noexcept
+    cdef u64 _toss(self) noexcept
+    @cython.locals(bias=int, found=int, found_rank=int, greatest=u64, i=int, vector=int, rank=int, value=u64)
+    cdef int _scheduled(self) noexcept
+    @cython.locals(i=int)
+    cdef int _takes_part(self, int vector, int instance) noexcept
+    cdef void _notice(self, u64 state) noexcept
+    @cython.locals(state=u64, i=int)
+    cdef u64 _state_hash(self) noexcept
     @cython.locals(i=int, slot=int, count=int, pick=int, edge=int, way=int)
-    cdef void _take(self, int vector, u64 rest) noexcept
+    cdef void _take(self, int vector, u64 rest, int apart) noexcept
     @cython.locals(i=int, slot=int, edge=int)
     cdef void _take_given(self, int vector, list picks, list ways) noexcept
     @cython.locals(i=int, k=int, move=int, count=int)
@@ -95,8 +112,13 @@ cdef class Kernel:
     @cython.locals(i=int)
     cdef int _look(self) noexcept
     cdef int _holds(self, int code) noexcept
+    cdef int _is_deadlock(self) noexcept
     @cython.locals(i=int)
     cdef int _ends(self, int repeats) noexcept
+    @cython.locals(i=int)
+    cdef int _goes_round(self) noexcept
+    @cython.locals(found=int, i=int, mark=int)
+    cdef int _reason(self, int repeats) noexcept
     @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)
     cdef int _combined(self) noexcept
     @cython.locals(register=int)

@@ -7,6 +7,8 @@
   ready if one of the automaton's edges for it is enabled. Slots that take part in the same vectors share a *gate*,
   which counts how many of them are not ready; a vector counts its gates. A step touches the slots of the locations
   that are left and entered, and the guards that read a variable that has changed.
+- An automaton's edge is drawn by itself where an action has too many combinations of edges to number them all; the
+  weight of the action is their number all the same.
 - Nothing is raised for what a model does wrong: `fault` tells, with the place in the code.
 """
 
@@ -26,9 +28,15 @@ MIX_2 = 0x94D049BB133111EB
 MOST = 0x7FFFFFFFFFFFFFFF
 LEAST = -MOST - 1
 TO_UNIT = 1.0 / 9007199254740992.0
+FEW = 4096
+"""So many combinations are drawn with one number of 32 bits: each has its probability to one part in a million."""
+HUGE = 2.0**512
+TINY = 2.0**-512
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """What becomes of a trace; UNKNOWN: it can go on."""
+DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
+"""Why a trace has ended: `end.End`."""
 
 
 def compiled() -> bool:
@@ -87,6 +95,7 @@ class Kernel:
         self.watched_group = program.watched_group
         self.settle = program.settle
         self.location_code = program.location_code
+        self.location_mark = program.location_mark
 
         self.seen = goal.seen
         self.left = goal.left
@@ -133,6 +142,16 @@ class Kernel:
         self.key = 0
         self.drawn = 0
         self.scheduler = 0
+        self.choice = 0
+        self.tossed = 0
+        self.looped = 0
+        self.loop_state = 0
+        self.loop_drawn = MASK
+        self.loop_span = 1
+        self.loop_left = 1
+        self.mass = 1.0
+        self.rank = 0
+        self.end = DECIDED
         self.steps = 0
         self.still = 0
         self.reward = 0.0
@@ -144,7 +163,7 @@ class Kernel:
         """Go to the start of a trace, which `advance` continues.
 
         Args:
-            scheduler: 0 draws uniformly among the choices; any other number stands for a memoryless scheduler.
+            scheduler: 0 draws uniformly among the choices; any other number stands for a scheduler, see `lss`.
 
         Returns:
             what is known of the goal there.
@@ -185,6 +204,24 @@ class Kernel:
     def outcome(self) -> tuple[int, int, float]:
         """Steps of the trace, its number of random draws, and the reward."""
         return self.steps, self.drawn, self.reward
+
+    def ending(self) -> int:
+        """Why the trace has ended (`end.End`); DECIDED as well while it can go on."""
+        return self.end
+
+    def standstill(self) -> int:
+        """Why a trace would end here if nothing changed any more, whatever is known of the goal."""
+        return self._reason(0 if self.enabled_count == 0 else 1)
+
+    def open_ways(self, instance: int) -> list[int]:
+        """The first way of each edge of an instance whose guard holds."""
+        location = self.place[instance]
+        found = []
+        for group in range(self.group_start[location], self.group_start[location + 1]):
+            for edge in range(self.edge_start[group], self.edge_start[group + 1]):
+                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                    found.append(self.way_start[edge])
+        return found
 
     def problem(self) -> tuple[int, int, int, int, float]:
         """The fault: its code, the place in the bytecode, and what belongs into the message."""
@@ -228,13 +265,16 @@ class Kernel:
         for i in range(self.enabled_count):
             vector = self.enabled[i]
             slots = []
-            combinations = 1
+            combinations: Any = 1
+            weight: Any = 1
+            for k in range(self.all_start[vector], self.all_start[vector + 1]):
+                weight *= self.ready[self.all_slot[k]]
             for k in range(self.active_start[vector], self.active_start[vector + 1]):
                 slot = self.active_slot[k]
                 combinations *= self.ready[slot]
                 edges = [self._chances(self._edge(slot, pick)) for pick in range(self.ready[slot])]
                 slots.append(edges)
-            found.append((vector, self._weight(vector) // combinations, slots))
+            found.append((vector, weight // combinations, slots))
         return found
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
@@ -286,6 +326,10 @@ class Kernel:
             self.noted[self.notes[i]] = 0
         self.note_count = 0
         self.fault = self.fault_0
+        self.end = DECIDED
+        self.vector = -1
+        self.looped = 0
+        self.loop_drawn = MASK
         self.steps = 0
         self.still = 0
         self.reward = 0.0
@@ -351,7 +395,7 @@ class Kernel:
         return count
 
     def _total(self) -> int:
-        """The number of choices."""
+        """The number of choices; any number above FEW where there are more."""
         if self.plural == 0:
             return self.enabled_count
         total = 0
@@ -360,63 +404,154 @@ class Kernel:
         return total
 
     def _weight(self, vector: int) -> int:
-        """The number of combinations of edges with which a vector can be taken."""
+        """The number of combinations of edges with which a vector can be taken; more than FEW count as FEW + 1."""
         weight = 1
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
             weight *= self.ready[self.all_slot[i]]
+            if weight > FEW:
+                return FEW + 1
         return weight
+
+    def _weigh(self, vector: int) -> None:
+        """That number without a limit: `mass` times HUGE to the power of `rank`. Above rank 0 the mass is at least 1,
+        and nowhere more than HUGE."""
+        self.mass = 1.0
+        self.rank = 0
+        for i in range(self.all_start[vector], self.all_start[vector + 1]):
+            self.mass *= self.ready[self.all_slot[i]]
+            if self.mass > HUGE:
+                self.mass *= TINY
+                self.rank += 1
+
+    def _share(self, vector: int, top: int) -> float:
+        """The weight of a vector in units of HUGE to the power of `top`, the greatest rank."""
+        self._weigh(vector)
+        if self.rank == top:
+            return self.mass
+        return self.mass * TINY if self.rank == top - 1 else 0.0
 
     # ------------------------------------------------------------ a step
 
     def _step(self) -> None:
         """Choose, take, and find out what is enabled then."""
         rest = 0
-        if self.scheduler != 0:
-            vector, rest = self._scheduled()
+        apart = 0
+        if self.scheduler != 0 and (self.enabled_count > 1 or self.plural != 0):
+            apart = 1
+            vector = self._scheduled()
         elif self.plural == 0:
             if self.enabled_count == 1:
                 vector = self.enabled[0]
             else:
-                vector = self.enabled[((self._draw() >> 32) * self.enabled_count) >> 32]
+                vector = self.enabled[((self._toss() >> 32) * self.enabled_count) >> 32]
         else:
             total = self._total()
-            if total > 1:
-                rest = ((self._draw() >> 32) * total) >> 32
-            i = 0
-            vector = self.enabled[0]
-            weight = self._weight(vector)
-            while rest >= weight:
-                rest -= weight
-                i += 1
-                vector = self.enabled[i]
+            if total > FEW:
+                apart = 1
+                vector = self._heavy()
+            else:
+                if total > 1:
+                    rest = ((self._toss() >> 32) * total) >> 32
+                i = 0
+                vector = self.enabled[0]
                 weight = self._weight(vector)
-        self._take(vector, rest)
+                while rest >= weight:
+                    rest -= weight
+                    i += 1
+                    vector = self.enabled[i]
+                    weight = self._weight(vector)
+        self._take(vector, rest, apart)
 
-    def _scheduled(self) -> tuple[int, int]:
-        """What the memoryless scheduler chooses in this state: of all choices the one with the greatest hash of
-        scheduler, state and choice."""
+    def _heavy(self) -> int:
+        """Draw a vector by weights that need not fit into an integer."""
+        top = 0
+        for i in range(self.enabled_count):
+            self._weigh(self.enabled[i])
+            top = max(top, self.rank)
+        total = 0.0
+        for i in range(self.enabled_count):
+            total += self._share(self.enabled[i], top)
+        aim = (self._toss() >> 11) * TO_UNIT * total
+        found = self.enabled[0]
+        for i in range(self.enabled_count):
+            share = self._share(self.enabled[i], top)
+            if share > 0.0:
+                found = self.enabled[i]
+                if aim < share:
+                    return found
+                aim -= share
+        return found
+
+    def _toss(self) -> int:
+        """The next number that decides between choices: a random one, or of a scheduler a hash of it and the state."""
+        if self.scheduler == 0:
+            return self._draw()
+        self.tossed += 1
+        return self._mixed((self.choice + self.tossed * GOLDEN) & MASK)
+
+    def _scheduled(self) -> int:
+        """What the scheduler chooses in this state: of the vectors that it prefers the one with the greatest hash of
+        scheduler, state and vector."""
+        self.choice = self._state_hash()
+        self.tossed = 0
+        self._notice(self.choice)
+        bias = (self.scheduler >> 57) & 3
+        found = -1
+        found_rank = 0
+        greatest = 0
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            rank = 0
+            if bias != 0:
+                rank = self._takes_part(vector, (self.scheduler >> 32) & 0xFFFFFF)
+                if bias == 1:
+                    rank = 1 - rank
+            value = self._mixed((self.choice ^ self._mixed(vector + 1)) & MASK)
+            if found < 0 or rank > found_rank or (rank == found_rank and value > greatest):
+                found = vector
+                found_rank = rank
+                greatest = value
+        return found
+
+    def _takes_part(self, vector: int, instance: int) -> int:
+        """Whether an instance does something in a vector."""
+        for i in range(self.active_start[vector], self.active_start[vector + 1]):
+            if self.slot_instance[self.active_slot[i]] == instance:
+                return 1
+        return 0
+
+    def _notice(self, state: int) -> None:
+        """Find out whether a scheduler, which chooses by this hash alone, has come back to a state without any chance
+        in between: it will do so for ever. A state is kept for twice as many choices as the one before (Brent 1980)."""
+        if self.drawn != self.loop_drawn:
+            self.loop_drawn = self.drawn
+            self.loop_state = state
+            self.loop_span = 1
+            self.loop_left = 1
+        elif state == self.loop_state:
+            self.looped = 1
+        else:
+            self.loop_left -= 1
+            if self.loop_left == 0:
+                self.loop_state = state
+                self.loop_span *= 2
+                self.loop_left = self.loop_span
+
+    def _state_hash(self) -> int:
+        """A hash of the scheduler and all that its choice depends on."""
         state = self.scheduler
+        if (self.scheduler >> 56) & 1 != 0:
+            state = self._mixed((state + self.vector + 2) & MASK)
         for i in range(self.instances):
             state = self._mixed((state + self.place[i] * GOLDEN) & MASK)
         for i in range(self.int_count):
             state = self._mixed((state + (self.ints[i] & MASK)) & MASK)
         for i in range(self.real_count):
             state = self._mixed((state + (hash(self.reals[i]) & MASK)) & MASK)
-        best = -1
-        best_rest = 0
-        greatest = 0
-        for i in range(self.enabled_count):
-            vector = self.enabled[i]
-            for rest in range(self._weight(vector)):
-                value = self._mixed((state ^ self._mixed((vector * GOLDEN + rest) & MASK)) & MASK)
-                if best < 0 or value > greatest:
-                    best = vector
-                    best_rest = rest
-                    greatest = value
-        return best, best_rest
+        return state
 
-    def _take(self, vector: int, rest: int) -> None:
-        """Take combination number `rest` of a vector."""
+    def _take(self, vector: int, rest: int, apart: int) -> None:
+        """Take combination number `rest` of a vector; with `apart`, draw the edge of each slot by itself."""
         self.vector = vector
         self.parts = 0
         self.moved = 0
@@ -427,8 +562,11 @@ class Kernel:
             count = self.ready[slot]
             pick = 0
             if count > 1:
-                pick = rest % count
-                rest //= count
+                if apart != 0:
+                    pick = ((self._toss() >> 32) * count) >> 32
+                else:
+                    pick = rest % count
+                    rest //= count
             edge = self._edge(slot, pick)
             way = self.way_start[edge]
             if self.way_start[edge + 1] - way > 1:
@@ -669,11 +807,15 @@ class Kernel:
             if self.fault != 0:
                 return FAULTY
             self.steps += 1
+            if self.looped != 0 and self.is_bounded == 0:
+                return self._finish(self._goes_round())
             if self.is_bounded == 2:
                 self.must_look = 1
             if self.must_look != 0 or self.is_bounded != 0:
                 status = self._look()
                 if status != UNKNOWN:
+                    if self.is_bounded == 2 and self.enabled_count == 0:
+                        self.end = self._reason(0)
                     return self._finish(status)
             if self.moved != 0:
                 self.still = 0
@@ -709,17 +851,49 @@ class Kernel:
         if code == -2:
             return 0
         if code == -3:
-            return 1 if self.enabled_count == 0 else 0
+            return self._is_deadlock()
         if code == -4:
-            return 0 if self.enabled_count == 0 else 1
+            return 1 - self._is_deadlock()
+        if code == -5:
+            return 0
         return 1 if self._execute(code) != 0 else 0
+
+    def _is_deadlock(self) -> int:
+        """Whether no step is possible; that the time is over or the tree has finished is no deadlock."""
+        if self.enabled_count != 0:
+            return 0
+        reason = self._reason(0)
+        return 0 if reason in (TIME, FINISHED) else 1
 
     def _ends(self, repeats: int) -> int:
         """The state will not change any more; with `repeats` steps go on all the same."""
+        self.end = self._reason(repeats)
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
-                self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
+                if self.right[i] == -5:
+                    self.verdict[i] = TRUE if self.end == STUCK else FALSE
+                else:
+                    self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
         return self._combined()
+
+    def _goes_round(self) -> int:
+        """The trace repeats for ever what it has done: what did not hold in it never will."""
+        self.end = IDLE
+        for i in range(self.leaves):
+            if self.verdict[i] == UNKNOWN:
+                self.verdict[i] = FALSE
+        return self._combined()
+
+    def _reason(self, repeats: int) -> int:
+        """Why it does not: of the marks of the locations that are reached the least one."""
+        found = 0
+        for i in range(self.instances):
+            mark = self.location_mark[self.place[i]]
+            if mark != 0 and (found == 0 or mark < found):
+                found = mark
+        if found != 0:
+            return found
+        return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:
         """The value of the formula over the leaves, in reverse Polish notation: -1 not, -2 and, -3 or."""

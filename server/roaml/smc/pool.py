@@ -14,9 +14,11 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from multiprocessing.synchronize import Event
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
-from roaml.smc.batch import Outcome, Task, run, run_in_worker, start_worker
+from roaml.smc.batch import Outcome, Task, run, run_in_worker, run_on, start_worker
+from roaml.smc.kernel import Kernel
+from roaml.smc.program import Compiled
 
 PATIENCE = 0.4
 """Seconds that are worked alone before workers are started: most questions are answered by then."""
@@ -29,6 +31,24 @@ Pulse: TypeAlias = Callable[[int, int], None]
 
 class WorkersLostError(Exception):
     """Workers die again and again."""
+
+
+class Alone:
+    """Runs batches in this thread, on a kernel of its own, so that several threads may do so."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self._kernel = Kernel(compiled.program, compiled.goal)
+
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+        """The outcome of each task, in their order."""
+        return ((task, run_on(self._kernel, task, pulse)) for task in tasks)
+
+
+class Runner(Protocol):
+    """What runs batches."""
+
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+        """The outcome of each task, in their order."""
 
 
 class Pool:

@@ -39,6 +39,7 @@ class Program:
         phase_*: for these, the code of each way by the index of its assignments.
         watch_*: where variables are read by guards; watched_*: the groups for each location of an instance.
         settle: code that resets transient variables, location_code: what they are in a location.
+        location_mark: why a trace ends that stays in a location (`end.End`), 0 where nothing is known of that.
     """
 
     code: Ints
@@ -85,6 +86,7 @@ class Program:
     watched_group: Ints
     settle: int
     location_code: Ints
+    location_mark: Ints
     zero_slots: Ints
     zero_vectors: Ints
     zero_variables: Ints
@@ -97,7 +99,8 @@ class Goal:
 
     Attributes:
         seen: for each watched variable, whether a condition reads it.
-        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite.
+        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite; on the right
+            side, -5 that the trace gets stuck.
         lower, upper: its step bounds, both inclusive; -1 is none.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
         is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.

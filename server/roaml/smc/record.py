@@ -9,12 +9,14 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.jani.model import Destination, Edge
 from roaml.smc.batch import Problem
+from roaml.smc.end import End
 from roaml.smc.goal import Asked
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import Checker
 from roaml.smc.names import Storage, read_by, variables_in
 from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
 from roaml.smc.registers import BOOL, REAL
+from roaml.smc.standstill import Standstill
 
 Plain: TypeAlias = "bool | int | float | list[Plain]"
 
@@ -56,10 +58,11 @@ class TraceStep:
 
 @dataclass(slots=True)
 class Recording:
-    """A trace that is walked again. `verdict` is known at the end, `problem` if it went wrong."""
+    """A trace that is walked again. `verdict` and `end` are known when it is done, `problem` if it went wrong."""
 
     trace: int
     verdict: int = UNKNOWN
+    end: End = End.CUT
     problem: Problem | None = None
 
 
@@ -69,6 +72,7 @@ class Recorder:
     def __init__(self, checker: Checker, asked: Asked, seed: int, max_steps: int, scheduler: int = 0) -> None:
         compiled = checker.compiled(asked)
         self.legend = checker.legend
+        self.system = checker.model.system
         self.asked = asked
         self.seed = seed
         self.max_steps = max_steps
@@ -102,6 +106,14 @@ class Recorder:
         self._kernel.begin(self.seed, 0)
         return self.values(storages)
 
+    def rush(self, recording: Recording) -> None:
+        """Go to the end of a trace at once."""
+        kernel = self._kernel
+        verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
+        if verdict == UNKNOWN:
+            verdict = kernel.advance(self.max_steps)
+        self._finish(recording, verdict)
+
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
         """The steps of a trace; `values` tells what holds after each."""
         kernel, done = self._kernel, 0
@@ -111,7 +123,6 @@ class Recorder:
             places = [kernel.location(i) for i in range(len(self.legend.layout.instances))]
             verdict = kernel.advance(done + 1)
             if verdict == FAULTY:
-                recording.problem = Problem(recording.trace, *kernel.problem())
                 break
             if kernel.outcome()[0] == done:
                 break
@@ -122,7 +133,24 @@ class Recorder:
             _, action = self.legend.vectors[kernel.vector]
             parts = tuple(self._part(instance, way, places) for instance, way in kernel.taken())
             yield TraceStep(done, action, parts, changes)
+        self._finish(recording, verdict)
+
+    def _finish(self, recording: Recording, verdict: int) -> None:
         recording.verdict = verdict
+        recording.end = End.CUT if verdict == UNKNOWN else End(self._kernel.ending())
+        if verdict == FAULTY:
+            recording.problem = Problem(recording.trace, *self._kernel.problem())
+
+    def standstill(self) -> Standstill:
+        """The state that the last walk has reached."""
+        kernel, legend = self._kernel, self.legend
+        instances = legend.layout.instances
+        return Standstill(
+            tuple(instance.automaton for instance in instances),
+            tuple(legend.locations[kernel.location(number)][1] for number in range(len(instances))),
+            tuple(tuple(legend.ways[way][0] for way in kernel.open_ways(n)) for n in range(len(instances))),
+            self.system,
+        )
 
     def reads(self, part: Part) -> set[Variable]:
         """The variables that a part of a step depends on."""

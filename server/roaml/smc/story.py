@@ -11,7 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.jani.model import Automaton
+from roaml.smc.end import End
 from roaml.smc.record import Part, Plain, Recorder, Recording, TraceStep, Variable
+from roaml.smc.standstill import Standstill
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +26,7 @@ class Story:
         variables: what the property reads.
         automata: of each instance that the steps name.
         start: the variables of the model before the first step.
+        standstill: where it has ended, if it is stuck there.
     """
 
     property: str
@@ -34,6 +37,7 @@ class Story:
     variables: tuple[str, ...]
     automata: tuple[Automaton, ...]
     start: Mapping[str, Plain]
+    standstill: Standstill | None = None
 
 
 def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -69,6 +73,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         variables,
         automata,
         start,
+        recorder.standstill() if recording.end is End.STUCK else None,
     )
 
 

@@ -15,6 +15,8 @@ from roaml.model.translated import (
     BLACKBOARD_WRITE_PREFIX,
     CLOCK_ACTION,
     CLOCK_STEP,
+    RECEIVED,
+    WAITING,
     is_internal,
     is_timer,
     on_receive,
@@ -24,8 +26,6 @@ from roaml.to_jani.events import Event
 
 CLOCK_ENABLE = "__as2fm__global_timer_enable"
 BLACKBOARD_ENABLE = "__as2fm__blackboard_requests_enable"
-WAITING = "waiting"
-RECEIVED = "received"
 
 
 def has_automaton(event: Event) -> bool:

@@ -24,11 +24,9 @@ from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import Event
 from roaml.to_jani.moves import Behavior, Move
 from roaml.to_jani.shapes import Shape, shape_of
-from roaml.to_jani.values import Scope, both, negated
+from roaml.to_jani.values import Scope, all_of, negated
 
 FIRST = "-first-exec"
-DRAWS = 100
-"""`Math.random()` is one of 0.00, 0.01, ..., 0.99 (spec/03 §7)."""
 
 
 @dataclass(slots=True)
@@ -77,19 +75,24 @@ class Flow:
     edges: tuple[Edge, ...]
 
 
-def flow_of(behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> Flow:
-    """The flow of an automaton. What waits for an event that nobody sends is left out; its further course stays."""
-    return _FlowBuilder(behavior, table, max_array_size).build()
+def flow_of(behavior: Behavior, table: Mapping[str, Event], max_array_size: int, random_values: int) -> Flow:
+    """The flow of an automaton. What waits for an event that nobody sends is left out; its further course stays.
+
+    Args:
+        random_values: how many values `Math.random()` has (spec/03 §7).
+    """
+    return _FlowBuilder(behavior, table, max_array_size, random_values).build()
 
 
 _CERTAIN = Clause(jani.Real(1.0))
 
 
 class _FlowBuilder:
-    def __init__(self, behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> None:
+    def __init__(self, behavior: Behavior, table: Mapping[str, Event], max_array_size: int, random_values: int) -> None:
         self.behavior = behavior
         self.table = table
         self.max_array_size = max_array_size
+        self.random_values = random_values
         self.variables = {data.id: shape_of(data.type, max_array_size) for data in behavior.automaton.data}
         self.locations: dict[str, Origin] = {state.id: state.origin for state in behavior.automaton.states}
         self.drafts: list[_Draft] = []
@@ -199,10 +202,10 @@ class _FlowBuilder:
         origin = statement.origin
         before, after = self.location(f"{stem}-draw", origin), self.location(f"{stem}-drawn", origin)
         way.location = before
-        chance = Clause(jani.Real(1 / DRAWS**draws))
+        chance = Clause(jani.Real(1 / self.random_values**draws))
         ways = []
-        for numbers in itertools.product(range(DRAWS), repeat=draws):
-            drawn = _with_numbers(statement.value, iter(numbers))
+        for numbers in itertools.product(range(self.random_values), repeat=draws):
+            drawn = _with_numbers(statement.value, (number / self.random_values for number in numbers))
             one = _Way(chance, origin, after)
             one.store(assigned(statement.location, drawn, scope), origin)
             ways.append(one)
@@ -239,10 +242,8 @@ class _FlowBuilder:
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
     """`cond`, and none of the earlier conditions."""
-    for each in earlier:
-        if each is not None:
-            cond = both(cond, negated(each))
-    return cond
+    terms = [] if cond is None else [cond]
+    return all_of([*terms, *(negated(each) for each in earlier if each is not None)])
 
 
 # --------------------------------------------------------------- random numbers
@@ -252,8 +253,8 @@ def _count_draws(expr: Expr) -> int:
     return sum(map(is_draw, walk(expr)))
 
 
-def _with_numbers(expr: Expr, numbers: Iterator[int]) -> Expr:
-    """`expr` with each `Math.random()` replaced by the next number, in hundredths."""
+def _with_numbers(expr: Expr, numbers: Iterator[float]) -> Expr:
+    """`expr` with each `Math.random()` replaced by the next number."""
     if is_draw(expr):
-        return Number(expr.span, next(numbers) / DRAWS, True)
+        return Number(expr.span, next(numbers), True)
     return map_children(expr, lambda part: _with_numbers(part, numbers))

@@ -28,7 +28,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     behaviors = [behavior_of(automaton) for automaton in network.automata]
     table = event_table(behaviors)
     has_clock = any(automaton.role is Role.CLOCK for automaton in network.automata)
-    automata = [_automaton(behavior, table, network.max_array_size) for behavior in behaviors]
+    automata = [_automaton(behavior, table, network) for behavior in behaviors]
     events = [event for event in table.values() if has_automaton(event)]
     # The question to the blackboard comes last, as in the reference.
     events.sort(key=lambda event: event.name == BLACKBOARD_REQUEST)
@@ -52,10 +52,10 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     )
 
 
-def _automaton(behavior: Behavior, table: Mapping[str, Event], max_array_size: int) -> Automaton:
+def _automaton(behavior: Behavior, table: Mapping[str, Event], network: Network) -> Automaton:
     automaton = behavior.automaton
-    flow = flow_of(behavior, table, max_array_size)
-    variables = tuple(v for data in automaton.data for v in _local_variables(data, max_array_size))
+    flow = flow_of(behavior, table, network.max_array_size, network.random_values)
+    variables = tuple(v for data in automaton.data for v in _local_variables(data, network.max_array_size))
     return Automaton(
         automaton.name,
         tuple(sorted(flow.locations, key=lambda location: location.name)),

@@ -10,9 +10,11 @@ from typing import NamedTuple
 from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
+from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Change, Plain
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
+from roaml.views.waiting import Wait, waits
 
 LONGEST = 60
 FIRST, LAST = 30, 50
@@ -47,7 +49,17 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
         found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
+    for wait in _waits(story):
+        place = "" if wait.origin is None else place_of(wait.origin)
+        found.append(
+            Line(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
+        )
     return found
+
+
+def _waits(story: Story) -> tuple[Wait, ...]:
+    """Who waits for whom at the end, if it is stuck."""
+    return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
 def _line(turn: Turn, place_of: PlaceOf) -> Line:
@@ -82,6 +94,10 @@ def heading(story: Story) -> str:
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"
+    if story.recording.end is End.STUCK:
+        text = f"{story.property}: trace {story.recording.trace} gets stuck after {steps}"
+    elif story.recording.end not in (End.DECIDED, End.CUT):
+        text += f" ({story.recording.end.text})"
     text += f", of which {len(story.relevant):,} matter"
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
@@ -121,6 +137,9 @@ def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
         details = "<br/>".join(_escaped(detail) for detail in _details(turn))
         if details:
             body.append(f"Note over {actor(turn)}: {details}")
+    for wait in _waits(story):
+        place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
+        body.append(f"Note over {names.setdefault(wait.who, f'A{len(names)}')}: {_escaped(wait.what + place)}")
     yield "sequenceDiagram"
     yield f"    %% {heading(story)}"
     for name, short in names.items():

@@ -72,8 +72,7 @@ class Turn:
     @property
     def who(self) -> str:
         """The automaton as people call it: a node of a tree by its name and number."""
-        node = _NODE.fullmatch(self.automaton)
-        return f"{node[2]} (bt_{node[1]})" if node else self.automaton
+        return name_of(self.automaton)
 
     @property
     def protocol(self) -> str:
@@ -133,6 +132,12 @@ class Message:
     sender: Turn | None = None
 
 
+def name_of(automaton: str) -> str:
+    """An automaton as people call it: a node of a tree by its name and number."""
+    node = _NODE.fullmatch(automaton)
+    return f"{node[2]} (bt_{node[1]})" if node else automaton
+
+
 def turns(story: Story) -> list[Turn]:
     """The turns that are told, in the order in which they begin."""
     reader = _Reader(story)
@@ -170,7 +175,7 @@ class _Reader:
         self._values = dict(story.start)
         self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
         self._of_events = {name for name in self._values if self._is_of_event(name)}
-        self.inner = frozenset(n for n, automaton in enumerate(story.automata) if _is_inner(automaton))
+        self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._messages: dict[str, Message] = {}
         self._current: dict[int, Turn] = {}
         self.turns: list[Turn] = []
@@ -238,7 +243,8 @@ def _parameter(event: str, variable: str) -> str:
     return variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX)
 
 
-def _is_inner(automaton: Automaton) -> bool:
+def is_inner(automaton: Automaton) -> bool:
+    """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or what ticks the root."""
     node = _NODE.fullmatch(automaton.name)
     comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
     return comes_along and any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)

@@ -14,6 +14,8 @@ import {
 import { TRANSLATE, VERIFY, type Translated } from "../protocol";
 import type { Server } from "../server/server";
 import type { Exit, Session } from "../server/supervisor";
+import { safeFolder, safeVariables } from "../server/surroundings";
+import { isTrusted } from "./trust";
 import { ownsWellFormedness } from "./xmlExtension";
 
 /**
@@ -49,14 +51,19 @@ export interface Connection extends Session {
 }
 
 export async function connect(server: Server, log: vscode.LogOutputChannel, listener: Listener): Promise<Connection> {
-    const process = spawn(server.command, [...server.args], { stdio: "pipe", windowsHide: true });
-    const ended = endOf(process, log);
+    const started = spawn(server.command, [...server.args], {
+        stdio: "pipe",
+        windowsHide: true,
+        cwd: safeFolder(),
+        env: { ...process.env, ...safeVariables(process.env) },
+    });
+    const ended = endOf(started, log);
     const client = new QuietClient(
         "as2fm",
         "AS2FM",
         async () => {
-            await spawned(process);
-            return process;
+            await spawned(started);
+            return started;
         },
         options(log, listener),
     );
@@ -70,7 +77,7 @@ export async function connect(server: Server, log: vscode.LogOutputChannel, list
             }),
         ]);
     } catch (error) {
-        process.kill();
+        started.kill();
         throw error;
     }
     return {
@@ -82,7 +89,7 @@ export async function connect(server: Server, log: vscode.LogOutputChannel, list
             } catch (error) {
                 log.debug(`The server did not stop as asked: ${String(error)}`);
             }
-            process.kill();
+            started.kill();
         },
     };
 }
@@ -104,6 +111,8 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
         // Files that are not open are checked as well, and told of when they change.
         initializationOptions: {
             diagnostics: "push",
+            // The server asks once more before it writes. Once trust is granted, it is started anew.
+            trusted: vscode.workspace.isTrusted,
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
             showCounterexample: SHOW_COUNTEREXAMPLE,
@@ -120,6 +129,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
                 next(uri, isXml(uri) && ownsWellFormedness() ? diagnostics.filter(isOurs) : diagnostics);
             },
             async executeCommand(command, args, next) {
+                if (!isTrusted()) return undefined;
                 if (command === VERIFY && typeof args[0] === "string") {
                     await listener.onVerify(args[0], Array.isArray(args[1]) ? args[1].map(String) : []);
                     return undefined;

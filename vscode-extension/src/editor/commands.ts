@@ -9,11 +9,12 @@ import type { Counterexamples } from "./counterexamples";
 import type { Documents } from "./documents";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
-import type { LanguageServer } from "./server";
+import { untrustedFolders, type LanguageServer } from "./server";
 import type { StatusItem } from "./statusItem";
 import { Tasks } from "./tasks";
 import type { PropertyTests } from "./tests";
 import { newMachine, newSystem, openSample, addToCi } from "./templates";
+import { isTrusted } from "./trust";
 import { tellOrigin } from "./wording";
 
 export interface Parts {
@@ -32,18 +33,18 @@ export interface Parts {
 export function registerCommands(parts: Parts): void {
     const { context, log, server, status, pictures } = parts;
     const commands: Record<string, () => unknown> = {
-        translate: () => translate(parts),
+        translate: trusted(() => translate(parts)),
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
         showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
         showRosGraph: () => withEditor((editor) => showOfSystem(parts, "ros", editor.document)),
-        checkWorkspace: () => checkWorkspace(parts),
-        newSystem: () => newSystem(server),
-        newNode: () => newMachine(context, "node"),
-        newPlugin: () => newMachine(context, "plugin"),
-        migrate: () => migrateSystem(parts),
-        addToCi: () => addToCi(context),
-        openSample: () => openSample(context),
+        checkWorkspace: trusted(() => checkWorkspace(parts)),
+        newSystem: trusted(() => newSystem(server)),
+        newNode: trusted(() => newMachine(context, "node")),
+        newPlugin: trusted(() => newMachine(context, "plugin")),
+        migrate: trusted(() => migrateSystem(parts)),
+        addToCi: trusted(() => addToCi(context)),
+        openSample: trusted(() => openSample(context)),
         restart: () => server.start(),
         install: () => server.install(),
         selectInterpreter: () => selectInterpreter(),
@@ -73,6 +74,11 @@ export function registerCommands(parts: Parts): void {
     for (const [name, run] of Object.entries(commands)) {
         context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
     }
+}
+
+/** A command that writes files or starts programs. */
+function trusted(run: () => unknown): () => unknown {
+    return () => (isTrusted() ? run() : undefined);
 }
 
 /** Open a translation, wherever it was asked for. */
@@ -137,7 +143,7 @@ async function selectInterpreter(): Promise<void> {
     const browse = { label: vscode.l10n.t("$(folder) Browse…"), path: "" };
     const automatic = { label: vscode.l10n.t("$(search) Find one automatically"), path: "" };
     const items = [browse, automatic];
-    for await (const python of pythons(thisMachine, [])) {
+    for await (const python of pythons(thisMachine, [], untrustedFolders())) {
         items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });
     }
     const title = vscode.l10n.t("The Python that the language server is started with, or installed for");

@@ -41,7 +41,7 @@ export class LanguageServer implements vscode.Disposable {
         const folder = join(context.globalStorageUri.fsPath, "environments");
         this.wheel = wheel.id;
         this.recall = new Recall(context.workspaceState);
-        this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.id);
+        this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.requirements, wheel.id);
         this.supervisor = new Supervisor({
             find: (hurry) => this.find(hurry),
             install: (onStep) => this.installWithProgress(onStep),
@@ -76,7 +76,8 @@ export class LanguageServer implements vscode.Disposable {
 
     /** With the window: the server that ran last is started before it is looked for. */
     open(): Promise<void> {
-        const expected = this.recall.server(this.wishes());
+        const recalled = this.recall.server(this.wishes());
+        const expected = vscode.workspace.isTrusted || recalled?.origin === "private" ? recalled : undefined;
         return expected ? this.supervisor.expect(expected) : this.supervisor.start();
     }
 
@@ -169,6 +170,7 @@ export class LanguageServer implements vscode.Disposable {
             return this.environment.install(preferred, {
                 signal: abort.signal,
                 onOutput,
+                avoid: untrustedFolders(),
                 onStep: (step) => {
                     progress.report({ message: tellStep(step) });
                     onStep(step);
@@ -179,6 +181,12 @@ export class LanguageServer implements vscode.Disposable {
         if (!isFailure(installed)) void this.environment.compile(onOutput);
         return installed;
     }
+}
+
+/** From where nothing is started. */
+export function untrustedFolders(): string[] {
+    if (vscode.workspace.isTrusted) return [];
+    return (vscode.workspace.workspaceFolders ?? []).map(({ uri }) => uri.fsPath);
 }
 
 /** A setting that names a program; empty if it is not set. */
@@ -195,12 +203,14 @@ async function tellRestarted(): Promise<void> {
     }
 }
 
-/** The wheel in the extension, with an id that changes with its content. */
-function findWheel(extension: string): { file: string; id: string } {
+/** The wheel in the extension and the packages that it needs, with an id that changes with their content. */
+function findWheel(extension: string): { file: string; requirements: string; id: string } {
     const folder = join(extension, "dist", "wheel");
     const name = fs.readdirSync(folder).find((each) => each.endsWith(".whl"));
     if (name === undefined) throw new Error(`${folder} holds no wheel`);
     const file = join(folder, name);
-    const digest = createHash("sha256").update(fs.readFileSync(file)).digest("hex").slice(0, 12);
-    return { file, id: `${name.split("-")[1] ?? "server"}-${digest}` };
+    const requirements = join(extension, "dist", "requirements.txt");
+    const hash = createHash("sha256").update(fs.readFileSync(file)).update(fs.readFileSync(requirements));
+    const digest = hash.digest("hex").slice(0, 12);
+    return { file, requirements, id: `${name.split("-")[1] ?? "server"}-${digest}` };
 }

@@ -2,6 +2,7 @@
 /** `as2fm-lsp --check` and `translate` as tasks, run by the server that the editor uses. */
 
 import * as vscode from "vscode";
+import { safeVariables } from "../server/surroundings";
 import type { LanguageServer } from "./server";
 
 export interface Definition extends vscode.TaskDefinition {
@@ -26,15 +27,20 @@ export class Tasks implements vscode.TaskProvider {
         return folder && this.task(definition, folder);
     }
 
-    /** Undefined while no server runs. */
+    /** Undefined while no server runs, and in a workspace that is not trusted. */
     task(definition: Definition, folder: vscode.WorkspaceFolder): vscode.Task | undefined {
         const { state } = this.server;
         if (state.kind !== "running" || !["check", "translate"].includes(definition.command)) return undefined;
+        if (!vscode.workspace.isTrusted) return undefined;
         const what = definition.command === "check" ? ["--check"] : ["translate"];
         const path = definition.path ?? (definition.command === "check" ? "." : undefined);
         if (path === undefined) return undefined;
         const args = [...state.server.args, ...what, path, ...(definition.arguments ?? [])];
-        const execution = new vscode.ProcessExecution(state.server.command, args, { cwd: folder.uri.fsPath });
+        const execution = new vscode.ProcessExecution(state.server.command, args, {
+            // Paths that it shows are those of the folder. Its Python takes no modules from there.
+            cwd: folder.uri.fsPath,
+            env: safeVariables(process.env),
+        });
         const name = `${definition.command} ${path}`;
         const task = new vscode.Task(definition, folder, name, "AS2FM", execution, "$as2fm");
         if (definition.command === "check") task.group = vscode.TaskGroup.Test;

@@ -3,11 +3,20 @@
 
 import * as vscode from "vscode";
 import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
-import { properties, VERIFY, type Property, type VerifiableSystem, type Verification, type Wrong } from "../protocol";
+import {
+    properties,
+    STUCK,
+    VERIFY,
+    type Property,
+    type VerifiableSystem,
+    type Verification,
+    type Wrong,
+} from "../protocol";
 import { outcomeOf, type Outcome } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE } from "./client";
 import type { LanguageServer } from "./server";
+import { isTrusted } from "./trust";
 
 const PAUSE = 300;
 
@@ -21,6 +30,7 @@ export class PropertyTests implements vscode.Disposable {
     private readonly subscriptions: { dispose(): unknown }[];
     private readonly asked = new WeakMap<vscode.TestItem, Asked>();
     private readonly stale = new Set<string>();
+    private readonly toldStuck = new WeakMap<vscode.TestRun, Set<string>>();
     private timer: NodeJS.Timeout | undefined;
 
     constructor(
@@ -129,6 +139,7 @@ export class PropertyTests implements vscode.Disposable {
     // ------------------------------------------------------------------- running
 
     private async run(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {
+        if (!isTrusted()) return;
         const items = chosen(this.controller.items, request.include, request.exclude);
         const run = this.controller.createTestRun(request);
         const cancel = new vscode.CancellationTokenSource();
@@ -157,7 +168,7 @@ export class PropertyTests implements vscode.Disposable {
         try {
             const answer = await this.ask(asked, token);
             const result = answer?.results[0];
-            if (result) this.show(run, item, asked, outcomeOf(result));
+            if (result) this.show(run, item, asked, outcomeOf(result, answer.stuck));
             else if (answer && answer.errors.length > 0)
                 run.errored(
                     item,
@@ -185,24 +196,49 @@ export class PropertyTests implements vscode.Disposable {
             run.errored(item, new vscode.TestMessage(outcome.message));
             return;
         }
-        const { short, milliseconds } = outcome;
-        item.description = short;
-        const line = `${asked.property}: ${short}`;
+        const { short, milliseconds, stuck } = outcome;
+        const brief = stuck === undefined ? short : `${short}, ${vscode.l10n.t("gets stuck")}`;
+        item.description = brief;
+        const line = `${asked.property}: ${brief}`;
+        const more = stuck === undefined ? "" : `${stuck.replaceAll(/\r?\n/g, "\r\n")}\r\n`;
+        if (stuck !== undefined) this.tellStuck(run, asked.system);
         if (outcome.kind === "passed") {
-            run.appendOutput(`${line}\r\n`, undefined, item);
+            const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
+            // The Test Explorer knows no more than passed and failed: how it has passed stands beside its name.
+            if (outcome.uniform.length > 0) {
+                const expected = outcome.uniform.join(", ");
+                item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
+            }
+            run.appendOutput(`${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
             run.passed(item, milliseconds);
             return;
         }
-        const missed = vscode.l10n.t("expected {0}", outcome.missed.join(", "));
-        run.appendOutput(`${line}, ${missed}\r\n`, undefined, item);
-        const text = new vscode.MarkdownString(escaped(`${short}, ${missed}`));
-        if (outcome.hasCounterexample) {
-            const link = `${SHOW_COUNTEREXAMPLE}?${encodeURIComponent(JSON.stringify([asked.system, asked.property]))}`;
+        const missed = outcome.missed.length > 0 ? [vscode.l10n.t("expected {0}", outcome.missed.join(", "))] : [];
+        run.appendOutput(`${[line, ...missed].join(", ")}\r\n${more}`, undefined, item);
+        const text = new vscode.MarkdownString(escaped([brief, ...missed].join(", ")));
+        if (stuck !== undefined) text.appendCodeblock(stuck, "text");
+        if (outcome.hasCounterexample || stuck !== undefined) {
+            const property = outcome.hasCounterexample ? asked.property : STUCK;
+            const link = `${SHOW_COUNTEREXAMPLE}?${encodeURIComponent(JSON.stringify([asked.system, property]))}`;
             text.appendMarkdown(`\n\n[${vscode.l10n.t("Show Counterexample")}](command:${link})`);
             text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE] };
         }
         // Without a place: the lens and the hint say the same on that line.
         run.failed(item, new vscode.TestMessage(text), milliseconds);
+    }
+
+    /** Once a run for each system: what its numbers say is chance, and a passed test would hide that. */
+    private tellStuck(run: vscode.TestRun, system: string): void {
+        const told = this.toldStuck.get(run) ?? new Set<string>();
+        this.toldStuck.set(run, told);
+        if (told.has(system)) return;
+        told.add(system);
+        const name = vscode.workspace.asRelativePath(this.uri(system));
+        const text = vscode.l10n.t("{0} gets stuck: its time stands still, because all wait for one another.", name);
+        const show = vscode.l10n.t("Show Who Waits for Whom");
+        void vscode.window.showWarningMessage(text, show).then((pressed) => {
+            if (pressed === show) void vscode.commands.executeCommand(SHOW_COUNTEREXAMPLE, system, STUCK);
+        });
     }
 
     private wrong({ message, uri, range }: Wrong): vscode.TestMessage {

@@ -4,7 +4,8 @@
  *
  * - An environment is named by its wheel, so a new version of the extension makes a new one and the old one goes.
  * - It counts only when its mark has been written, as the last step: one that was interrupted is made anew.
- * - The packages that the server needs come from the index that the user's pip is configured for.
+ * - The packages that the server needs come from the index that the user's pip is configured for. Whatever that index
+ *   answers, only files whose hashes are known are installed, and none of them has code that runs while it is installed.
  */
 
 import * as path from "node:path";
@@ -21,18 +22,22 @@ export interface InstallOptions {
     readonly signal?: AbortSignal;
     readonly onStep?: (step: Step) => void;
     readonly onOutput?: (text: string) => void;
+    /** Folders whose programs are not started: those of a workspace that is not trusted. */
+    readonly avoid?: readonly string[];
 }
 
 export class PrivateEnvironment {
     /**
      * @param folder where environments are kept.
      * @param wheel of the server.
-     * @param id tells this wheel from others.
+     * @param requirements the packages that the server needs, with their hashes.
+     * @param id tells this wheel with these packages from others.
      */
     constructor(
         private readonly machine: Machine,
         private readonly folder: string,
         private readonly wheel: string,
+        private readonly requirements: string,
         private readonly id: string,
     ) {}
 
@@ -56,24 +61,26 @@ export class PrivateEnvironment {
      * @param preferred interpreters to try before those on PATH.
      */
     async install(preferred: readonly string[], options: InstallOptions = {}): Promise<Server | Failure> {
-        const { signal, onOutput, onStep } = options;
+        const { signal, onOutput, onStep, avoid } = options;
         const limits = { ...(signal && { signal }), ...(onOutput && { onOutput }) };
         onStep?.("python");
         let failure: Failure = { kind: "no-python" };
-        for await (const python of pythons(this.machine, preferred)) {
+        for await (const python of pythons(this.machine, preferred, avoid)) {
             onStep?.("venv");
             await this.machine.remove(this.home);
-            const made = await this.machine.run(python.executable, ["-m", "venv", this.home], limits);
+            const made = await this.machine.run(python.executable, ["-I", "-m", "venv", this.home], limits);
             if (made.status !== 0) {
                 failure = { kind: "no-venv", python: python.version, detail: words(made.err, made.out) };
                 continue; // another Python may have what this one lacks
             }
             onStep?.("packages");
-            const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", this.wheel];
-            const installed = await this.machine.run(this.python, pip, limits);
-            if (installed.status !== 0) {
-                await this.machine.remove(this.home);
-                return { kind: "no-packages", python: python.version, detail: words(installed.err, installed.out) };
+            for (const what of this.installed()) {
+                const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", ...what];
+                const ended = await this.machine.run(this.python, pip, limits);
+                if (ended.status !== 0) {
+                    await this.machine.remove(this.home);
+                    return { kind: "no-packages", python: python.version, detail: words(ended.err, ended.out) };
+                }
             }
             return this.finish(python);
         }
@@ -86,6 +93,12 @@ export class PrivateEnvironment {
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
         await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
+    }
+
+    /** What pip is told to install, one after the other. */
+    private installed(): string[][] {
+        const packages = ["--require-hashes", "--only-binary", ":all:", "-r", this.requirements];
+        return [packages, ["--no-index", "--no-deps", this.wheel]];
     }
 
     private async finish(python: Python): Promise<Server | Failure> {

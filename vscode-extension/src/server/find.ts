@@ -4,7 +4,8 @@
  * environment of the extension.
  *
  * - A setting that does not work is a failure: something else in its place would only hide that.
- * - In a workspace that is not trusted nothing of the workspace is started, its Python environment neither.
+ * - In a workspace that is not trusted nothing is started but the private environment: settings, an interpreter and PATH
+ *   may all lead into the workspace.
  */
 
 import * as path from "node:path";
@@ -33,8 +34,9 @@ export async function findServer(
     wishes: Wishes,
     environment: PrivateEnvironment,
 ): Promise<Server | Failure> {
+    if (!wishes.trusted) return (await environment.server()) ?? { kind: "no-server" };
     if (wishes.server !== "") return configured(machine, wishes.server);
-    const interpreters = wishes.interpreter !== "" ? [wishes.interpreter] : wishes.trusted ? wishes.active : [];
+    const interpreters = wishes.interpreter !== "" ? [wishes.interpreter] : wishes.active;
     for (const interpreter of interpreters) {
         const server = await inPython(machine, interpreter);
         if (server !== undefined) return server;
@@ -68,7 +70,7 @@ async function configured(machine: Machine, file: string): Promise<Server | Fail
 async function inPython(machine: Machine, interpreter: string): Promise<Server | undefined> {
     const python = await askPython(machine, interpreter);
     if (!python?.recent || python.server === undefined || !isRecent(python.server)) return undefined;
-    return { origin: "python", command: interpreter, args: ["-m", "as2fm_lsp"], version: python.server };
+    return { origin: "python", command: interpreter, args: ["-I", "-m", "as2fm_lsp"], version: python.server };
 }
 
 async function onPath(machine: Machine): Promise<Server | undefined> {

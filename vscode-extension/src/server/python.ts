@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Machine } from "./machine";
+import { isInside } from "./surroundings";
 
 /** The oldest Python that the server runs on. */
 export const OLDEST: readonly [number, number] = [3, 10];
@@ -35,13 +36,22 @@ export async function askPython(machine: Machine, executable: string): Promise<P
     return { executable: path, version: `${major}.${minor}`, recent, server: server === "" ? undefined : server };
 }
 
-/** Interpreters on this machine that are recent enough, each once. */
-export async function* pythons(machine: Machine, first: readonly string[]): AsyncGenerator<Python> {
+/**
+ * Interpreters on this machine that are recent enough, each once.
+ *
+ * @param first paths to try before the names on PATH.
+ * @param avoid folders from which nothing is started.
+ */
+export async function* pythons(
+    machine: Machine,
+    first: readonly string[],
+    avoid: readonly string[] = [],
+): AsyncGenerator<Python> {
     const seen = new Set<string>();
     const named = machine.windows ? [...NAMES, "py"] : NAMES;
     for (const candidate of [...first, ...named]) {
         const file = first.includes(candidate) ? candidate : await machine.which(candidate);
-        if (file === undefined) continue;
+        if (file === undefined || isInside(file, avoid)) continue;
         const python = await askPython(machine, file);
         if (python?.recent && !seen.has(python.executable)) {
             seen.add(python.executable);

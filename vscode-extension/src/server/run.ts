@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { spawn } from "node:child_process";
+import { safeFolder, safeVariables } from "./surroundings";
 
 /** How a program ended. `status` is null if it could not be started, was killed or took too long. */
 export interface Ended {
@@ -15,7 +16,7 @@ export interface RunOptions {
     readonly onOutput?: (text: string) => void;
 }
 
-/** Run a program to its end. Never throws. */
+/** Run a program to its end, outside of the workspace. Never throws. */
 export function run(command: string, args: readonly string[], options: RunOptions = {}): Promise<Ended> {
     return new Promise((resolve) => {
         const out: string[] = [];
@@ -23,6 +24,8 @@ export function run(command: string, args: readonly string[], options: RunOption
         const child = spawn(command, args, {
             stdio: ["ignore", "pipe", "pipe"],
             windowsHide: true,
+            cwd: safeFolder(),
+            env: { ...process.env, ...safeVariables(process.env) },
             ...(options.timeout === undefined ? {} : { timeout: options.timeout }),
             ...(options.signal === undefined ? {} : { signal: options.signal }),
         });

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /** What an answer of the model checker is as the result of a test. */
 
-import type { Verified } from "../protocol";
+import type { Stuckness, Verified } from "../protocol";
 
 export type Outcome =
-    | { readonly kind: "passed"; readonly short: string; readonly milliseconds: number }
+    | {
+          readonly kind: "passed";
+          readonly short: string;
+          readonly milliseconds: number;
+          /** What is met under uniform choices, and not known to be met under all schedulers. */
+          readonly uniform: readonly string[];
+          /** What the number is not, if the property asks for a minimum or maximum. */
+          readonly warning?: string;
+          /** Who waits for whom, if the system gets stuck. */
+          readonly stuck?: string;
+      }
     | {
           readonly kind: "failed";
           readonly short: string;
@@ -12,15 +22,27 @@ export type Outcome =
           /** What was expected and is not so. */
           readonly missed: readonly string[];
           readonly hasCounterexample: boolean;
+          readonly stuck?: string;
       }
     | { readonly kind: "errored"; readonly message: string };
 
-/** A property of which nothing is expected passes: its probability is what was asked for. */
-export function outcomeOf(verified: Verified): Outcome {
+/**
+ * A property of which nothing is expected passes: its probability is what was asked for. That the system gets stuck is
+ * told beside it, or fails it if that is an error.
+ */
+export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome {
     if (verified.error) return { kind: "errored", message: verified.error.message };
     const { short = "", seconds = 0 } = verified;
     const milliseconds = Math.round(seconds * 1000);
     const missed = (verified.expectations ?? []).filter(({ met }) => !met).map(({ expected }) => expected);
-    if (missed.length === 0) return { kind: "passed", short, milliseconds };
-    return { kind: "failed", short, milliseconds, missed, hasCounterexample: verified.counterexample ?? false };
+    const stuck = known?.example ? { stuck: known.text } : {};
+    const isWrong = known?.example && known.level === "error";
+    if (missed.length === 0 && !isWrong) {
+        const onlyUniform = (verified.expectations ?? []).filter((each) => each.under_uniform_choices_only);
+        const uniform = onlyUniform.map(({ expected }) => expected);
+        const warning = verified.warning === undefined ? {} : { warning: verified.warning };
+        return { kind: "passed", short, milliseconds, uniform, ...warning, ...stuck };
+    }
+    const hasCounterexample = verified.counterexample ?? false;
+    return { kind: "failed", short, milliseconds, missed, hasCounterexample, ...stuck };
 }

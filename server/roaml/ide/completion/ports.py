@@ -15,7 +15,7 @@ from roaml.ide.in_machine import INTERFACE_SYMBOLS
 from roaml.language import ElementType
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
-from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name
+from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
 from roaml.model.typing import INTERFACE_KINDS
 from roaml.xml import Element
 
@@ -89,7 +89,7 @@ def port_values(request: Request, subject: Subject, key: str) -> list[Item]:
         port = None
     else:
         found = {port.key: port for port in ports_of(request, name, _type_of(request, name))}
-        port = found.get(key)
+        port = found.get(port_key(name, key))
         is_port = port is not None
     if not is_port:
         return []

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The text of an open document, exactly as the client has it, and the edits that the client makes in it.
+
+- Lines end at LF, CRLF and CR and nowhere else, as the protocol says; `str.splitlines` knows more ends.
+- A position beyond the end of a line or of the text is moved back to it.
+- A byte order mark at the beginning is part of the text here. Analyses see the text without it, and `Converter` adds it
+  to the columns of the first line again.
+- In UTF-16 a client may cut a character in two, for half a character is a unit like any other there.
+"""
+
+from __future__ import annotations
+
+import re
+
+from lsprotocol import types
+
+from roaml.text import LineIndex
+
+MARK = "\ufeff"
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
+
+class Units:
+    """Columns in a position encoding.
+
+    Args:
+        encoding: `utf-8`, `utf-16` or `utf-32`.
+    """
+
+    def __init__(self, encoding: str) -> None:
+        self._encoding = types.PositionEncodingKind(encoding)
+        self.may_cut = self._encoding is types.PositionEncodingKind.Utf16
+
+    def count(self, text: str) -> int:
+        """How many units `text` has."""
+        if self._encoding is types.PositionEncodingKind.Utf32 or text.isascii():
+            return len(text)
+        if self._encoding is types.PositionEncodingKind.Utf8:
+            return len(text.encode("utf-8", "surrogatepass"))
+        return len(text) + sum(character > "\uffff" for character in text)
+
+    def column(self, line: str, units: int) -> tuple[int, bool]:
+        """The column in code points at `units` units, and whether that is inside of the character there. A column
+        beyond the end of the line is moved back to it."""
+        if self._encoding is types.PositionEncodingKind.Utf32 or line.isascii():
+            return min(units, len(line)), False
+        done = 0
+        for column, character in enumerate(line):
+            if done == units:
+                return column, False
+            done += self.count(character)
+            if done > units:
+                return column, True
+        return len(line), False
+
+    def place(self, text: str, lines: LineIndex, position: types.Position) -> tuple[int, bool]:
+        """The offset of a position in a text with these lines, and whether the position is inside of the character
+        there."""
+        if position.line >= lines.line_count:
+            return len(text), False
+        start = lines.line_start(position.line)
+        line = text[start : lines.line_end(position.line)].rstrip("\r\n")
+        column, is_inside = self.column(line, position.character)
+        return start + column, is_inside
+
+
+def edited(text: str, range_: types.Range, new_text: str, units: Units) -> str:
+    """`text` with `new_text` in place of a range."""
+    lines = LineIndex(text)
+    start, end = sorted((units.place(text, lines, range_.start), units.place(text, lines, range_.end)))
+    before, after = text[: start[0]], text[end[0] :]
+    if units.may_cut:
+        if start[1]:
+            before += _halves(text[start[0]])[0]
+        if end[1]:
+            after = _halves(text[end[0]])[1] + text[end[0] + 1 :]
+        if any(map(_SURROGATE.search, (before[-1:], new_text, after[:1]))):
+            return _joined(before + new_text + after)
+    return before + new_text + after
+
+
+def _halves(character: str) -> str:
+    """The two surrogates that a character beyond U+FFFF is made of in UTF-16."""
+    code = ord(character) - 0x10000
+    return chr(0xD800 + (code >> 10)) + chr(0xDC00 + (code & 0x3FF))
+
+
+def _joined(text: str) -> str:
+    """Two surrogates that have met are one character."""
+    return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")

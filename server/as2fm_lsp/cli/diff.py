@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Differences as `patch` and `git apply` read them: there, lines end at LF and nowhere else."""
+
+from __future__ import annotations
+
+import difflib
+import io
+from collections.abc import Iterator
+
+
+def unified(before: str, after: str, old_name: str, new_name: str) -> Iterator[str]:
+    """The lines of a unified diff of two texts; none if they are equal."""
+    old, new = (list(io.StringIO(text, newline="\n")) for text in (before, after))
+    for line in difflib.unified_diff(old, new, old_name, new_name):
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of the requests that are not of the protocol. They are plain data that nobody has looked at."""
+
+from __future__ import annotations
+
+from pygls.exceptions import JsonRpcInvalidParams
+
+
+def document_uri(params: object) -> str:
+    """The URI in `textDocument`.
+
+    Raises:
+        JsonRpcInvalidParams: there is none.
+    """
+    return string(getattr(params, "textDocument", None), "uri", "textDocument.uri")
+
+
+def string(params: object, name: str, shown: str = "") -> str:
+    """A parameter that is a string.
+
+    Raises:
+        JsonRpcInvalidParams: it is missing, or something else.
+    """
+    value = getattr(params, name, None)
+    if not isinstance(value, str):
+        raise JsonRpcInvalidParams(f"`{shown or name}` must be a string")
+    return value

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the process that has started the server is still alive."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+INTERVAL = 1.0
+"""Seconds between two looks, where the system does not tell by itself."""
+
+GRACE = 10.0
+"""Seconds after which a server that is still busy ends without ceremony."""
+
+UNEXPECTED_END = 1
+
+
+def watch(process_id: int, ended: Callable[[], None]) -> None:
+    """Wait, in a thread of its own, for the end of a process; a process that is not there has ended.
+
+    Args:
+        ended: called in that thread, once. The server then has `GRACE` seconds to end by itself.
+    """
+
+    def wait() -> None:
+        wait_for_end(process_id)
+        ended()
+        time.sleep(GRACE)
+        os._exit(UNEXPECTED_END)
+
+    threading.Thread(target=wait, name="parent", daemon=True).start()
+
+
+def wait_for_end(process_id: int) -> None:
+    """Return when a process has ended, also if nobody has asked for its exit status yet."""
+    if sys.platform == "win32":
+        _wait_on_windows(process_id)
+    elif hasattr(os, "pidfd_open"):
+        _wait_on_linux(process_id)
+    else:
+        _look_again_and_again(process_id)
+
+
+def _wait_on_linux(process_id: int) -> None:
+    import select  # noqa: PLC0415 - not on every system
+
+    try:
+        descriptor = os.pidfd_open(process_id)
+    except ProcessLookupError:
+        return
+    except (OSError, OverflowError):  # an old kernel, or one that forbids it
+        _look_again_and_again(process_id)
+        return
+    try:
+        select.select([descriptor], [], [])
+    finally:
+        os.close(descriptor)
+
+
+def _look_again_and_again(process_id: int) -> None:
+    while _is_alive(process_id):
+        time.sleep(INTERVAL)
+
+
+def _is_alive(process_id: int) -> bool:
+    try:
+        os.kill(process_id, 0)
+    except PermissionError:  # it belongs to another user
+        return True
+    except (OSError, OverflowError):
+        return False
+    return True
+
+
+def _wait_on_windows(process_id: int) -> None:
+    import ctypes  # noqa: PLC0415 - takes a while, and is needed here only
+
+    synchronize, infinite = 0x00100000, 0xFFFFFFFF
+    kernel = ctypes.windll.kernel32  # type: ignore[attr-defined,unused-ignore]
+    handle = kernel.OpenProcess(synchronize, False, process_id)
+    if handle:
+        kernel.WaitForSingleObject(handle, infinite)
+        kernel.CloseHandle(handle)

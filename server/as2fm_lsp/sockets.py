@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Waiting for one client on sockets.
+
+Whoever can reach a port can send to it: other users of the machine, and every web page that is open in a browser, which
+posts whatever it likes. So a client is served only after its first message, and that must be an `initialize` with the
+token that the server was started with. Who begins in any other way, as HTTP does, is disconnected before anything that
+it has sent is looked at. A socket file needs no token: the system lets nobody but its owner connect.
+"""
+
+from __future__ import annotations
+
+import errno
+import ipaddress
+import json
+import logging
+import os
+import re
+import secrets
+import selectors
+import socket
+import stat
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from io import BufferedReader
+from typing import Any, BinaryIO
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
+
+from as2fm_lsp.protocol import error_response
+
+log = logging.getLogger(__name__)
+
+PATIENCE = 30.0
+"""Seconds in which a client must have sent its first message."""
+
+MOST_WAITING = 16
+"""Connections whose first message has not come. Others are refused meanwhile."""
+
+LONGEST_FIRST_MESSAGE = 1 << 24
+"""Bytes."""
+
+_HEADER = re.compile(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]*)\r?\n", re.IGNORECASE)
+_BEGIN = b"content-"
+_LONGEST_HEADER = 1000
+_ABSENT = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
+"""A name may stand for addresses that this machine does not have, as that of IPv6."""
+
+
+class RemoteError(ValueError):
+    """An address at which other machines can connect."""
+
+
+class InUseError(OSError):
+    """Somebody listens at a socket file, or it is another file; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class Client:
+    """A client that may be served.
+
+    Attributes:
+        first: its first message, the `initialize`, without the token.
+        source: what it sends after that.
+        target: where it is answered.
+    """
+
+    first: dict[str, Any]
+    connection: socket.socket
+    source: BinaryIO
+    target: BinaryIO
+
+
+# -------------------------------------------------------------------- listening
+
+
+@contextmanager
+def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[tuple[socket.socket, ...]]:
+    """Sockets that listen at all addresses that `host` stands for.
+
+    Raises:
+        RemoteError: other machines could connect there, and `allow_remote` is False.
+        OSError: an address is taken, or there is none.
+    """
+    found = dict.fromkeys(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE))
+    addresses = [(family, address) for family, _, _, _, address in found]
+    if not allow_remote and not all(_is_loopback(str(address[0])) for _, address in addresses):
+        raise RemoteError(host)
+    with ExitStack() as stack:
+        listeners, absent = [], None
+        for family, address in addresses:
+            try:
+                listeners.append(stack.enter_context(socket.create_server(address[:2], family=family)))
+            except OSError as error:
+                if error.errno not in _ABSENT:
+                    raise
+                absent = error
+        if absent is not None and not listeners:
+            raise absent
+        yield tuple(listeners)
+
+
+@contextmanager
+def listening_at(path: str) -> Iterator[tuple[socket.socket, ...]]:
+    """A socket file that nobody but the user can connect to; it is removed in the end. One that a server has left
+    behind is replaced.
+
+    Raises:
+        InUseError: there is something else.
+        OSError: there can be no such file.
+    """
+    if _is_socket(path):
+        with socket.socket(socket.AF_UNIX) as probe:
+            if probe.connect_ex(path) == 0:
+                raise InUseError("another server listens there; stop it, or name another file")
+        os.unlink(path)
+    elif os.path.lexists(path):
+        raise InUseError("there is another file of that name; remove it, or name another")
+    with socket.socket(socket.AF_UNIX) as listener:
+        before = os.umask(0o177)
+        try:
+            listener.bind(path)
+        finally:
+            os.umask(before)
+        try:
+            listener.listen()
+            yield (listener,)
+        finally:
+            with suppress(OSError):
+                os.unlink(path)
+
+
+def shown_address(listener: socket.socket) -> str:
+    """Where a socket listens, as it is given to `--tcp` or `--socket`."""
+    name = listener.getsockname()
+    if isinstance(name, str):
+        return name
+    host = f"[{name[0]}]" if ":" in name[0] else name[0]
+    return f"{host}:{name[1]}"
+
+
+def _is_loopback(address: str) -> bool:
+    return ipaddress.ip_address(address.partition("%")[0]).is_loopback
+
+
+def _is_socket(path: str) -> bool:
+    try:
+        return stat.S_ISSOCK(os.lstat(path).st_mode)
+    except OSError:
+        return False
+
+
+# --------------------------------------------------------------------- admitting
+
+
+def first_client(listeners: Sequence[socket.socket], token: str) -> Client:
+    """Wait for the first client that may be served. Others are told why not and disconnected.
+
+    Args:
+        token: what the client must send as `token` in its `initializationOptions`; "" if it need not.
+    """
+    admitted: list[Client] = []
+    one = threading.Lock()
+    waiting = threading.Semaphore(MOST_WAITING)
+    news, told = socket.socketpair()
+
+    def greet(connection: socket.socket) -> None:
+        try:
+            client = _admitted(connection, token)
+        except (OSError, ValueError, RecursionError) as error:  # it is gone, or has sent what is not JSON
+            log.warning("a connection was refused: %s", error)
+            client = None
+        finally:
+            waiting.release()
+        if client is not None and one.acquire(blocking=False):
+            admitted.append(client)
+            told.send(b"!")
+        else:
+            connection.close()
+
+    with news, told, selectors.DefaultSelector() as ready:
+        for listener in listeners:
+            listener.setblocking(False)
+            ready.register(listener, selectors.EVENT_READ, listener)
+        ready.register(news, selectors.EVENT_READ)
+        while not admitted:
+            for key, _ in ready.select():
+                if key.data is None:
+                    continue
+                with suppress(OSError):  # whoever has connected is gone already
+                    connection, _ = key.data.accept()
+                    connection.setblocking(True)
+                    if waiting.acquire(blocking=False):
+                        threading.Thread(target=greet, args=(connection,), daemon=True).start()
+                    else:
+                        connection.close()
+    return admitted[0]
+
+
+def _admitted(connection: socket.socket, token: str) -> Client | None:
+    """The client if its first message is as it must be; it has been told if not."""
+    connection.settimeout(PATIENCE)
+    source, target = connection.makefile("rb"), connection.makefile("wb")
+    body = _first_body(source)
+    if body is None:
+        log.warning("a connection that does not begin as the protocol says was refused")
+        return None
+    message = json.loads(body)
+    error = _objection(message, token)
+    if error is not None:
+        log.warning("a client was refused: %s", error)
+        answer = json.dumps(error_response(message, error)).encode()
+        target.write(b"Content-Length: %d\r\n\r\n%b" % (len(answer), answer))
+        target.flush()
+        return None
+    connection.settimeout(None)
+    return Client(message, connection, source, target)
+
+
+def _first_body(source: BufferedReader) -> bytes | None:
+    """None if a line of the header is anything but what the protocol has there."""
+    length = 0
+    begin = source.peek(len(_BEGIN))[: len(_BEGIN)].lower()
+    if not _BEGIN.startswith(begin):  # it need not be a line
+        return None
+    for line in iter(lambda: source.readline(_LONGEST_HEADER), b""):
+        if length and line in (b"\r\n", b"\n"):
+            body = source.read(length)
+            return body if len(body) == length else None
+        header = _HEADER.fullmatch(line)
+        if header is None:
+            return None
+        length = int(header["length"] or length)
+        if length > LONGEST_FIRST_MESSAGE:
+            return None
+    return None
+
+
+def _objection(message: Any, token: str) -> JsonRpcException | None:
+    """Why a first message is refused. The token is taken out of it."""
+    if not isinstance(message, dict) or message.get("method") != types.INITIALIZE:
+        return JsonRpcServerNotInitialized("the first message must be `initialize`")
+    if not token:
+        return None
+    params = message.get("params")
+    options = params.get("initializationOptions") if isinstance(params, dict) else None
+    given = options.pop("token", None) if isinstance(options, dict) else None
+    if isinstance(given, str) and secrets.compare_digest(given.encode(errors="replace"), token.encode()):
+        return None
+    return JsonRpcInvalidRequest("`token` in `initializationOptions` must be the token that the server has printed")

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why traces have ended, in every format."""
+
+from __future__ import annotations
+
+from roaml.smc.end import End
+from roaml.smc.run import Tally
+
+
+def as_line(tally: Tally) -> str:
+    """For people: the reasons that there were, and how many traces have ended for each."""
+    return ", ".join(f"{reason.text} {tally.ends[reason].count:,}" for reason in End if reason in tally.ends)
+
+
+def as_row(tally: Tally) -> dict[str, int]:
+    """For JSON: every reason, and how many traces have ended for it."""
+    return {reason.key: tally.ended(reason) for reason in End}

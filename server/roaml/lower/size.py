@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How large the translation of a system will be, counted without making it.
+
+- Total on systems with errors, too: what cannot be told counts nothing.
+- Follows `roaml.lower` and `roaml.to_jani` step by step where something is multiplied there: a machine by the nodes of
+  the tree and by its threads, a handler by the children it listens to, an alternative by those before it, an array by
+  its bounds, a random number by its hundred values. Tests hold the count against the translation itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.infer import infer
+from roaml.expr.tree import ArrayLiteral, Binary, Expr, Name, ObjectLiteral, String, is_draw, walk
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Type, is_kind, resolve_type, unwrap
+from roaml.lower.interfaces import fields
+from roaml.lower.nodes import builtin_machine
+from roaml.lower.program import Program
+from roaml.lower.statements import combinations
+from roaml.model.globals import GlobalVariable
+from roaml.model.machine import (
+    Assign,
+    CallChild,
+    Chart,
+    Communicate,
+    Handler,
+    If,
+    Machine,
+    Param,
+    Send,
+    SetOutput,
+    State,
+    Statement,
+    statements,
+)
+from roaml.model.size import Share, Size, cells_of
+from roaml.model.syntax import Expression
+from roaml.model.system import Automaton, Channel
+from roaml.model.typing import bindings
+
+_EDGE = 4
+"""What an edge counts besides its expressions: it has a destination, an action and two locations."""
+
+_CHILD_CONDITION = 4
+"""`!(child = 3)`: the parts of one earlier alternative in the guard of a child that is known by a variable."""
+
+_PLACES = 20
+"""Places in synchronisations that count as one part: each of them lists all automata, most as `null`."""
+
+
+def size_of(program: Program, globals_: Mapping[str, GlobalVariable]) -> Size:
+    """The size of a system, the largest shares first.
+
+    Args:
+        globals_: the global variables that the translation will have.
+    """
+    return Size(_sorted(_cells(program, globals_)), _sorted(_parts(program, globals_)))
+
+
+def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
+    """Shares of one thing are added up."""
+    counts: dict[tuple[str, str, Symbol | None], int] = {}
+    for share in shares:
+        key = (share.words, share.path, share.symbol)
+        counts[key] = counts.get(key, 0) + share.count
+    found = (Share(count, *key) for key, count in counts.items())
+    return tuple(sorted(found, key=lambda share: -share.count))
+
+
+# ----------------------------------------------------------------------- cells
+
+
+def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+    most = program.parameters.max_array_size
+    for automaton, machine in _members(program):
+        for chart, copies in _charts(machine):
+            for name, type_ in _variables(chart, program).items():
+                symbol = Symbol(automaton.path, "data", name, chart.scope) if automaton.path else None
+                words = f"the variable `{name}` of `{automaton.outline.name}`"
+                yield Share(copies * cells_of(type_, most), words, automaton.path, symbol)
+    for variable in globals_.values():
+        source = variable.source
+        words = f"the event parameter `{variable.event}__{variable.parameter}`"
+        path = source.path if source else ""
+        yield Share(most ** len(unwrap(variable.type)[1]), words, path, source)  # lengths are variables of their own
+    system = program.system
+    for variable_name in system.blackboard:
+        type_ = BASE_TYPES[system.variable_type(variable_name)]
+        yield Share(cells_of(type_, most), f"the blackboard variable `{variable_name}`", "")
+    channels: list[tuple[Channel, tuple[str, ...], str]] = []
+    channels += [(service, ("request", "response"), "service") for service in system.services.values()]
+    channels += [(action, ("goal", "feedback", "result"), "action") for action in system.actions.values()]
+    for channel, sections, kind in channels:
+        endpoint = channel.endpoints[0]
+        held = (type_ for part in sections for type_ in fields(channel, part, program.environment).values())
+        count = sum(cells_of(type_, most) for type_ in held)
+        yield Share(count, f"what is passed on for the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
+
+
+def _members(program: Program) -> Iterator[tuple[Automaton, Machine]]:
+    for automaton in program.system.automata:
+        machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
+        if machine is not None:
+            yield automaton, machine
+
+
+def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
+    """The charts of a machine and how many copies of each there will be."""
+    yield machine.chart, 1
+    yield from ((thread.chart, thread.count or 0) for thread in machine.threads)
+
+
+def _variables(chart: Chart, program: Program) -> dict[str, Type]:
+    found: dict[str, Type] = {}
+    for data in chart.data:
+        name = data.type.name if data.type else None
+        if data.id is not None:
+            type_ = resolve_type(name, program.environment.struct) if name else None
+            found.setdefault(data.id.value, type_ or UNKNOWN)
+    return found
+
+
+# ----------------------------------------------------------------------- parts
+
+
+def _parts(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+    counted: dict[tuple[int, int], tuple[int, int]] = {}
+    events = sum(variable.parameter == "valid" for variable in globals_.values())
+    automata, syncs = events, 2 * events
+    for automaton, machine in _members(program):
+        children = len(automaton.instance.children) if automaton.instance else 0
+        key = (id(machine), children)
+        if key not in counted:
+            charts = [(copies, _Count(machine, chart, children, program)) for chart, copies in _charts(machine)]
+            parts = sum(copies * count.chart() for copies, count in charts)
+            counted[key] = parts, sum(copies * count.actions() for copies, count in charts)
+        yield Share(counted[key][0], f"`{automaton.outline.name}`", automaton.path, _machine_symbol(automaton))
+        automata += sum(copies for _, copies in _charts(machine))
+        syncs += counted[key][1] + sum(timer.users for timer in automaton.outline.timers)
+    yield Share(automata * syncs // _PLACES, f"the synchronisation of {automata:,} automata", "")
+
+
+def _machine_symbol(automaton: Automaton) -> Symbol | None:
+    return Symbol(automaton.path, "machine", automaton.outline.name) if automaton.path else None
+
+
+@dataclass(eq=False)
+class _Count:
+    """Counts the parts of one copy of a chart, for a node with so many children."""
+
+    machine: Machine
+    of: Chart
+    children: int
+    program: Program
+
+    def chart(self) -> int:
+        self.variables = _variables(self.of, self.program)
+        entries = {s.id.value: self.body(s.entry.statements, None) for s in self.of.states if s.id and s.entry}
+        events = {self.trigger(handler) for state in self.of.states for handler in state.handlers}
+        return sum(self.state(state, entries, len(events)) for state in self.of.states)
+
+    def state(self, state: State, entries: Mapping[str, int], events: int) -> int:
+        """The edges of a state: each transition is guarded against those on the same event before it, and events
+        without one are thrown away."""
+        leaving = self.body(state.exit.statements, None) if state.exit else 0
+        count = events * _EDGE
+        earlier: dict[object, int] = {}
+        for handler in state.handlers:
+            if not handler.effective:
+                continue
+            copies = self.copies(handler)
+            condition = _nodes(handler.cond.tree) + 2 if handler.cond else 0
+            condition += _CHILD_CONDITION if self.by_variable(handler) else 0
+            condition += self.comparisons(handler.cond, handler, "cond")
+            trigger = self.trigger(handler)
+            before = earlier.get(trigger, 0)
+            bodies = sum(
+                leaving + self.body(target.body, handler) + entries.get(target.state.value if target.state else "", 0)
+                for target in handler.targets
+            )
+            count += copies * (_EDGE * (1 + len(handler.targets)) + before + condition + bodies)
+            earlier[trigger] = before + condition
+        return count + sum(earlier.values())
+
+    def actions(self) -> int:
+        """How many actions the copy does by itself, one for each step on the way from state to state."""
+        bodies = [b.statements for s in self.of.states for b in (s.entry, s.exit) if b]
+        count = sum(map(self.steps, bodies)) + 1
+        for state in self.of.states:
+            for handler in state.handlers:
+                count += self.copies(handler) * sum(self.steps(target.body) for target in handler.targets)
+                count += handler.trigger == ""
+        return count
+
+    def steps(self, body: tuple[Statement, ...]) -> int:
+        count = 0
+        for statement in statements(body):
+            match statement:
+                case If():
+                    count += len(statement.branches) + 2
+                case CallChild() if statement.child is not None and not statement.child.value.isdigit():
+                    count += self.children + 2
+                case Assign() if isinstance(statement.value, Expression):
+                    count += 2 * any(map(is_draw, walk(statement.value.tree)))
+        return count
+
+    def trigger(self, handler: Handler) -> object:
+        """What tells the events of handlers apart."""
+        name = handler.event or handler.handle or handler.child
+        return handler.trigger, name.value if name else ""
+
+    def by_variable(self, handler: Handler) -> bool:
+        return handler.child is not None and not handler.child.value.isdigit()
+
+    def copies(self, handler: Handler) -> int:
+        """A handler of a child that is known by a variable is one for each child."""
+        return self.children if self.by_variable(handler) else 1
+
+    def body(self, body: Iterable[Statement], handler: Handler | None) -> int:
+        return sum(self.statement(statement, handler) for statement in body)
+
+    def statement(self, statement: Statement, handler: Handler | None) -> int:
+        match statement:
+            case Assign():
+                return self.assign(statement, handler)
+            case If():
+                return self.choice(statement, handler)
+            case Send():
+                return _EDGE + sum(self.param(param, handler) for param in statement.params)
+            case Communicate():
+                return _EDGE + sum(self.param(param, handler) for param in statement.fields)
+            case SetOutput():
+                return _EDGE + (self.value(statement.value, handler) if statement.value else 0)
+            case CallChild() if statement.child is not None and not statement.child.value.isdigit():
+                k = self.children
+                return 2 * _EDGE * (k + 1) + _CHILD_CONDITION * (k + 1) * (k + 2) // 2
+        return _EDGE
+
+    def assign(self, statement: Assign, handler: Handler | None) -> int:
+        if not isinstance(statement.value, Expression):
+            return _EDGE
+        draws = sum(map(is_draw, walk(statement.value.tree)))
+        location = _nodes(statement.location.tree) if statement.location else 1
+        stored = self.padding(statement, handler)
+        one = location + 1 + self.value(statement.value, handler)
+        if draws == 0:
+            return one + stored
+        values = self.program.parameters.random_values
+        at_once = combinations(statement.value.tree, values)
+        if at_once is not None:
+            return _EDGE + at_once * (one + stored + _EDGE)
+        return draws * _EDGE * (values + 1) + one + stored
+
+    def padding(self, statement: Assign, handler: Handler | None) -> int:
+        """Literals are filled up to the capacity of the array that they are stored in."""
+        assert isinstance(statement.value, Expression)
+        if statement.location is None or not _literals(statement.value.tree):
+            return 0
+        type_ = self.type(statement.location.tree, handler)
+        size = cells_of(type_, self.program.parameters.max_array_size)
+        return size * len(_literals(statement.value.tree)) if size > 1 else 0
+
+    def param(self, param: Param, handler: Handler | None) -> int:
+        """A literal that is sent is filled up to the greatest size of arrays."""
+        if not isinstance(param.value, Expression):
+            return 3
+        literals = _literals(param.value.tree)
+        type_ = self.type(param.value.tree, handler) if literals else UNKNOWN
+        padding = cells_of(type_, self.program.parameters.max_array_size, sent=True) * len(literals) if literals else 0
+        draws = sum(map(is_draw, walk(param.value.tree)))
+        values = self.program.parameters.random_values
+        at_once = combinations(param.value.tree, values) or draws * values
+        drawn = at_once * (_EDGE + _nodes(param.value.tree)) if draws else 0
+        return 3 + self.value(param.value, handler) + padding + drawn
+
+    def value(self, value: Expression, handler: Handler | None) -> int:
+        return _nodes(value.tree) + self.comparisons(value, handler, "body")
+
+    def choice(self, statement: If, handler: Handler | None) -> int:
+        count, earlier = 2 * _EDGE, 0
+        for branch in statement.branches:
+            condition = _nodes(branch.cond.tree) + 2 if branch.cond else 0
+            condition += self.comparisons(branch.cond, handler, "body")
+            count += _EDGE + condition + earlier + self.body(branch.body, handler)
+            earlier += condition
+        otherwise = self.body(statement.otherwise.body, handler) if statement.otherwise else 0
+        return count + _EDGE + earlier + otherwise
+
+    def comparisons(self, value: Expression | None, handler: Handler | None, part: str) -> int:
+        """Two arrays are compared element by element."""
+        count = 0
+        for node in walk(value.tree) if value else ():
+            if isinstance(node, Binary) and node.operator.kind == "equality":
+                sides = [self.type(side, handler, part) for side in (node.left, node.right)]
+                arrays = [side for side in sides if isinstance(side, Array) or is_kind(side, "string")]
+                if len(arrays) == 2 and not any(map(_is_literal, (node.left, node.right))):
+                    count += 10 * min(cells_of(side, self.program.parameters.max_array_size) for side in arrays)
+        return count
+
+    def type(self, tree: Expr, handler: Handler | None, part: str = "body") -> Type:
+        known = bindings(handler, part, self.machine, self.program.environment) if handler else {}
+        return infer(tree, {**self.variables, **known}.get)[0]
+
+
+def _nodes(tree: Expr) -> int:
+    return len(walk(tree)) + sum(len(node.value) for node in walk(tree) if isinstance(node, String))
+
+
+def _is_literal(tree: Expr) -> bool:
+    return isinstance(tree, (ArrayLiteral, ObjectLiteral, String))
+
+
+def _literals(tree: Expr) -> list[Expr]:
+    """The outermost literals that an array is made of."""
+    return [] if isinstance(tree, Name) else [node for node in walk(tree) if _is_literal(node)][:8]

@@ -1,0 +1,369 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the parts of a machine that cannot be read might say to the rest of the system.
+
+- A gap is one possible statement, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`,
+  but it serves nothing. An element that resembles nothing in the language says nothing.
+- A rule that misses something in the system (a publisher of a topic, a sender of an event, ...) asks whether a gap may
+  be it, and keeps quiet if so: one mistake is one report. All other mistakes are reported.
+- Gaps hold no places, so they are parts of outlines. `machine_gaps` gives them with their places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.expr.types import UNKNOWN
+from roaml.language import HL_SCXML, ElementType
+from roaml.language.validate import misfits
+from roaml.model.build_machine import INTERFACE_ATTRIBUTES
+from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
+from roaml.model.spelling import close_names, meant
+from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
+from roaml.model.typing import INTERFACE_KINDS, TypedMachine, Use, find_handle
+from roaml.text import Span
+from roaml.xml import Element
+
+ANYTHING = ""
+"""The act of a gap that may say whatever there is to say."""
+SENDS = "event-sender"
+RECEIVES = "event-receiver"
+PARAMETER = "event-sender parameter"
+PORT = "port"
+VARIABLE = "variable"
+"""Reads or writes a variable of the blackboard."""
+REMAP = "remap"
+"""Gives a subtree a variable, by the name that it has on either side."""
+NODE = "node"
+"""Is a node of the tree."""
+TREE = "tree"
+"""Takes ticks and halts, or answers them."""
+NAME = "name"
+"""Is the name of the machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Something that may be said where the text cannot be read.
+
+    Attributes:
+        act: what is done, with the more special behind the more general: the kind of a declaration (`publisher`), a
+            part of it that is sent or handled (`publisher message`), a field of that (`publisher message field`); or
+            one of the constants of this module.
+        name: the topic, service or action as written, the event, the port; None if it may be any.
+        port: the port that gives the name, if one does.
+    """
+
+    act: str
+    name: str | None = None
+    port: str = ""
+
+
+def answers(act: str, wanted: str) -> bool:
+    """Whether what does `act` may do `wanted`, too: who may declare a publisher may also publish."""
+    return act in (ANYTHING, wanted) or wanted.startswith(f"{act} ")
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedGap:
+    gap: Gap
+    span: Span
+
+
+def machine_gaps(
+    machine: Machine,
+    typed: TypedMachine,
+    namespaces: Mapping[str, str],
+    has_type: Callable[[str, str], bool],
+) -> tuple[PlacedGap, ...]:
+    """The gaps of a machine with the places of their causes, in no particular order.
+
+    Args:
+        namespaces: the prefixes of the document with their namespaces.
+        has_type: whether there is a ROS type of a kind (msg, srv, action) and name as written.
+    """
+    return tuple(_Search(machine, typed, namespaces, has_type).all())
+
+
+class _Search:
+    def __init__(
+        self,
+        machine: Machine,
+        typed: TypedMachine,
+        namespaces: Mapping[str, str],
+        has_type: Callable[[str, str], bool],
+    ) -> None:
+        self.machine = machine
+        self.typed = typed
+        self.has_type = has_type
+        self.misfits = list(misfits(machine.element, namespaces, HL_SCXML))
+        self.hidden = {
+            (kind, attribute.value.strip())
+            for misfit in self.misfits
+            for kind in (self._kind_of(misfit.element, misfit.parent_type),)
+            for attribute in misfit.element.attributes
+            if kind
+        }
+        """The declarations that cannot be read: kind, and each name that may be the handle."""
+
+    def all(self) -> Iterator[PlacedGap]:
+        for misfit in self.misfits:
+            span = misfit.element.name_span
+            yield from (PlacedGap(gap, span) for gap in self._unread(misfit.element, misfit.parent_type))
+            yield from (PlacedGap(gap, span) for gap in self._datum(misfit.element, misfit.parent))
+        if self.machine.name is None:
+            yield PlacedGap(Gap(NAME), self.machine.element.name_span)
+        for declaration in self.machine.declarations:
+            yield from self._declaration(declaration)
+        yield from self._statements()
+        yield from self._handlers()
+        yield from self._ports()
+
+    # ---------------------------------------------------- elements out of place
+
+    def _kind_of(self, element: Element, parent: ElementType) -> str:
+        """The kind of declaration that a misfit may be, or ""."""
+        type_ = HL_SCXML.find(element.name)
+        types = [type_] if type_ is not None else self._resembling(element, parent)
+        return next((kind for each in types if (kind := _kind(each))), "")
+
+    def _unread(self, top: Element, parent: ElementType) -> Iterator[Gap]:
+        """What a misfit and all in it may say."""
+        stack: list[tuple[Element, ElementType | None]] = [(top, parent)]
+        while stack:
+            element, outer = stack.pop()
+            type_ = HL_SCXML.find(element.name)
+            types = [type_] if type_ is not None else self._resembling(element, outer)
+            for each in types:
+                yield from self._said(element, each)
+            stack += [(child, types[0] if types else None) for child in element.elements]
+
+    def _resembling(self, element: Element, parent: ElementType | None) -> list[ElementType]:
+        """What an unknown element may be meant as: the element whose name is nearest, else those for which its
+        attributes are made."""
+        allowed = list(parent.children) if parent is not None else []
+        close = close_names(element.name, allowed, 1) or close_names(element.name, HL_SCXML.elements, 1)
+        if close:
+            found = HL_SCXML.find(close[0])
+            return [found] if found is not None else []
+        names = {attribute.name for attribute in element.attributes}
+        types = [t for name in allowed if (t := HL_SCXML.find(name)) is not None]
+        return [t for t in types if any(self._gives_name(t, name, element) for name in names)]
+
+    def _gives_name(self, type_: ElementType, attribute: str, element: Element) -> bool:
+        """Whether an attribute names a topic, event, port, ... in elements of this type."""
+        known = type_.attributes.get(attribute)
+        if known is None:
+            return False
+        if attribute in (*INTERFACE_ATTRIBUTES, "event", "key"):
+            return True
+        handle = name_of(element.get(attribute))
+        kinds = {d.kind for d in self.machine.declarations if handle and d.handle and d.handle.value == handle.value}
+        return not kinds.isdisjoint(known.refers)
+
+    def _said(self, element: Element, type_: ElementType) -> Iterator[Gap]:
+        """What an element would say if it were one of this type that is read."""
+        if kind := _kind(type_):
+            yield _declared(element, type_, kind)
+        elif type_.sends == "event" or type_.receives == "event":
+            event = meant(element, "event", type_.attributes)
+            if type_.sends or event is not None:
+                yield Gap(SENDS if type_.sends else RECEIVES, event.value if event else None)
+        elif (name := type_.attributes.get("name")) is not None and name.refers and (type_.sends or type_.receives):
+            part = type_.sends or type_.receives
+            handle = meant(element, "name", type_.attributes)
+            for kind in name.refers:
+                if kind in INTERFACE_KINDS:
+                    yield from self._over(f"{kind} {part}", kind, handle)
+        elif "key" in type_.attributes:
+            key = meant(element, "key", type_.attributes)
+            yield Gap(PORT, key.value if key else None)
+        elif type_.sends.startswith("bt-") or type_.receives.startswith("bt-") or "child" in type_.sends:
+            yield Gap(TREE)
+
+    def _over(self, act: str, kind: str, handle: Name | None) -> Iterator[Gap]:
+        """What is done with the declaration called `handle`, or with one that is meant by it."""
+        right = [d for d in self.machine.declarations if d.kind == kind and d.handle is not None]
+        named = [d for d in right if handle and d.handle and d.handle.value == handle.value]
+        if handle is None:
+            # One of those that are declared, or one whose declaration is missing.
+            yield Gap(act)
+            return
+        if not named:
+            if (kind, handle.value) in self.hidden:
+                return  # the declaration is there, but cannot be read: its own gap says more
+            close = close_names(handle.value, [d.handle.value for d in right if d.handle], 1)
+            named = [d for d in right if d.handle and d.handle.value in close]
+            for declaration in named:
+                if declaration.handle is declaration.interface and isinstance(declaration.interface, Name):
+                    # The topic, service or action is the handle, and may be misspelled where it is declared.
+                    yield Gap(kind, handle.value)
+                    yield Gap(OTHER_SIDE[kind], declaration.interface.value)
+        if not named:
+            other = [d for d in self.machine.declarations if d.handle and d.handle.value == handle.value]
+            named = [d for d in other if isinstance(d.interface, (Name, PortRead)) and d.kind in INTERFACE_KINDS]
+        yield from (_about(act, declaration) for declaration in named)
+        if not named:
+            yield Gap(kind)  # the declaration is missing
+
+    def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
+        """A field or parameter that is said in an unknown way: `<feild name="…">` in an element that sends."""
+        if not element.attributes:
+            return
+        for chart in self.machine.charts:
+            for statement in chart.statements:
+                if statement.element is parent and isinstance(statement, Send):
+                    yield Gap(PARAMETER, statement.event.value if statement.event else None)
+                elif statement.element is parent and isinstance(statement, Communicate):
+                    yield from self._fields(statement)
+
+    # ----------------------------------------------------- elements that are read
+
+    def _declaration(self, declaration: Declaration) -> Iterator[PlacedGap]:
+        if declaration.kind not in INTERFACE_KINDS:
+            return
+        element, type_ = declaration.element, HL_SCXML.elements[declaration.element.name]
+        if isinstance(declaration.interface, PortRead):
+            key = declaration.interface.key
+            if key is None or all(port.key is None or port.key.value != key.value for port in self.machine.ports):
+                yield PlacedGap(Gap(declaration.kind), declaration.interface.span)
+        elif declaration.interface is None or not is_interface_name(declaration.interface.value):
+            yield PlacedGap(_declared(element, type_, declaration.kind), element.name_span)
+        unknown = declaration.type is None or not self.has_type(
+            INTERFACE_KINDS[declaration.kind], declaration.type.value
+        )
+        if unknown:
+            span = declaration.type.span if declaration.type else element.name_span
+            for part in _PARTS[declaration.kind]:
+                yield PlacedGap(_about(f"{declaration.kind} {part} field", declaration), span)
+
+    def _statements(self) -> Iterator[PlacedGap]:
+        owners: dict[Element, Communicate] = {}
+        for chart in self.machine.charts:
+            for statement in chart.statements:
+                if isinstance(statement, Send):
+                    yield from self._send(statement)
+                elif isinstance(statement, Communicate):
+                    owners |= {field.element: statement for field in statement.fields}
+                    yield from self._user(statement, statement.type.sends)
+                    if any(field.name is None for field in statement.fields):
+                        yield from (PlacedGap(g, statement.element.name_span) for g in self._fields(statement))
+        # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
+        for value in self.typed.values:
+            owner = owners.get(value.element) if value.use is Use.FIELD else None
+            if owner is not None and (value.wanted is None or value.wanted == UNKNOWN):
+                yield from (PlacedGap(g, value.element.name_span) for g in self._fields(owner))
+
+    def _send(self, send: Send) -> Iterator[PlacedGap]:
+        if send.event is None:
+            event = meant(send.element, "event", HL_SCXML.elements["send"].attributes)
+            yield PlacedGap(Gap(SENDS, event.value if event else None), send.element.name_span)
+        for param in send.params:
+            if param.name is None:
+                yield PlacedGap(Gap(PARAMETER, send.event.value if send.event else None), param.element.name_span)
+
+    def _fields(self, statement: Communicate) -> Iterator[Gap]:
+        declaration = find_handle(self.machine, statement)
+        for kind in statement.type.attributes["name"].refers:
+            act = f"{kind} {statement.type.sends} field"
+            yield _about(act, declaration) if declaration is not None else Gap(act)
+
+    def _user(self, user: Communicate | Handler, part: str) -> Iterator[PlacedGap]:
+        """An element that refers to no declaration, or to one of another kind."""
+        name = user.type.attributes.get("name")
+        kinds = [kind for kind in name.refers if kind in INTERFACE_KINDS] if name else []
+        declaration = find_handle(self.machine, user)
+        if not kinds or (declaration is not None and declaration.kind in kinds):
+            return
+        handle = user.handle or meant(user.element, "name", user.type.attributes)
+        span = user.handle.span if user.handle else user.element.name_span
+        for kind in kinds:
+            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind} {part}", kind, handle))
+            if declaration is not None and declaration.kind in INTERFACE_KINDS:
+                # The declaration may be what is wrong.
+                yield PlacedGap(_about(kind, declaration), span)
+
+    def _handlers(self) -> Iterator[PlacedGap]:
+        for chart in self.machine.charts:
+            for state in chart.states:
+                for handler in state.handlers:
+                    if handler.effective and handler.type.receives != "event":
+                        yield from self._user(handler, handler.trigger)
+                    elif handler.effective and handler.event is None:
+                        event = meant(handler.element, "event", handler.type.attributes)
+                        if event is not None:
+                            yield PlacedGap(Gap(RECEIVES, event.value), handler.element.name_span)
+
+    def _ports(self) -> Iterator[PlacedGap]:
+        declared = {port.key.value for port in self.machine.ports if port.key}
+        for port in self.machine.ports:
+            if port.key is None:
+                key = meant(port.element, "key", HL_SCXML.elements[port.element.name].attributes)
+                yield PlacedGap(Gap(PORT, key.value if key else None), port.element.name_span)
+        for read in reads_of_ports(self.machine, self.typed):
+            if read.key is None or read.key.value not in declared:
+                yield PlacedGap(Gap(PORT), read.span)
+        for chart in self.machine.charts:
+            for statement in chart.statements:
+                if isinstance(statement, SetOutput) and (statement.key is None or statement.key.value not in declared):
+                    yield PlacedGap(Gap(PORT), statement.element.name_span)
+
+
+OTHER_SIDE: Mapping[str, str] = {
+    "publisher": "subscriber",
+    "subscriber": "publisher",
+    "service-client": "service-server",
+    "service-server": "service-client",
+    "action-client": "action-server",
+    "action-server": "action-client",
+}
+"""The kind of declaration that each kind speaks to."""
+
+_PARTS: Mapping[str, tuple[str, ...]] = {
+    "publisher": ("message",),
+    "subscriber": (),
+    "service-client": ("request", "response"),
+    "service-server": ("request", "response"),
+    "action-client": ("goal", "feedback", "result"),
+    "action-server": ("goal", "feedback", "result"),
+}
+"""The parts of an interface with fields in the translation, which the other side may name."""
+
+
+def _kind(type_: ElementType) -> str:
+    """The kind of ROS interface that an element declares, or ""."""
+    return next((a.defines for a in type_.attributes.values() if a.defines in INTERFACE_KINDS), "")
+
+
+def reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
+    """All places of a machine where a port is read."""
+    values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
+    values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
+    yield from (value for value in values if isinstance(value, PortRead))
+
+
+def is_interface_name(name: str) -> bool:
+    """Whether `name` can name a topic, service or action: it becomes a part of event names (spec/01 §8)."""
+    return bool(name) and not any(character.isspace() for character in name)
+
+
+def _about(act: str, declaration: Declaration) -> Gap:
+    if isinstance(declaration.interface, PortRead):
+        key = declaration.interface.key
+        return Gap(act, None, key.value) if key else Gap(act)
+    name = declaration.interface.value if declaration.interface else None
+    return Gap(act, name if name and is_interface_name(name) else None)
+
+
+def _declared(element: Element, type_: ElementType, kind: str) -> Gap:
+    """A declaration that is not read, or whose name is not."""
+    for attribute in INTERFACE_ATTRIBUTES:
+        if attribute in type_.attributes:
+            name = meant(element, attribute, type_.attributes)
+            if name is not None:
+                return Gap(kind, name.value if is_interface_name(name.value) else None)
+            child = element.find(attribute)
+            read = port_read(child) if child is not None else None
+            if read is not None and read.key is not None:
+                return Gap(kind, None, read.key.value)
+    return Gap(kind)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""model-too-large: see model_too_large.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.kinds import FileKind
+from roaml.model.size import Share, total
+from roaml.rules.rule import Rule, SystemContext
+from roaml.text import Span
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    size, limits = context.size, context.limits
+    cells, parts = total(size.cells), total(size.parts)
+    if cells > limits.cells:
+        message = (
+            f"the variables of this system hold {cells:,} cells, and at most {limits.cells:,} are translated: "
+            f"{size.cells[0].words} takes {size.cells[0].count:,}; make arrays smaller, or raise `max-cells`"
+        )
+        yield _finding(context, size.cells[0], message)
+    if parts > limits.parts:
+        message = (
+            f"the translation of this system has about {parts:,} parts, and at most {limits.parts:,} are written: "
+            f"{size.parts[0].words} takes {size.parts[0].count:,}; divide it, or raise `max-parts`"
+        )
+        yield _finding(context, size.parts[0], message)
+
+
+def _finding(context: SystemContext, largest: Share, message: str) -> Finding:
+    related = (Related(largest.symbol, "this takes most"),) if largest.symbol and largest.path else ()
+    return RULE.at(_place(context, largest), message, related=related)
+
+
+def _place(context: SystemContext, largest: Share) -> Span:
+    """Where the file is listed that takes most; what has no file comes from the tree or the system as a whole."""
+    for listed in context.files:
+        of_tree = not largest.path and listed.wanted is FileKind.TREE
+        if listed.input.src is not None and (of_tree or (largest.path and listed.path == largest.path)):
+            return listed.input.src.span
+    return context.file.element.name_span
+
+
+RULE = Rule("model-too-large", Severity.ERROR, "A system is too large to be translated.", system=check)

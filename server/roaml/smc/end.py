@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why a trace has ended.
+
+What can be seen in any model: the goal is decided, no step is possible (DEADLOCK), only steps that change nothing are
+possible (IDLE), or there were too many steps (CUT). Who knows what the automata of a model mean marks their locations,
+and so tells why a trace ends that changes nothing any more: of the marks of all locations that are reached then, the
+least number counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import IntEnum
+from typing import TypeAlias
+
+
+class End(IntEnum):
+    """The numbers are those of the kernel; `TIME` to `QUIET` are the marks of locations."""
+
+    DECIDED = 0
+    """What is asked about the trace was decided."""
+    TIME = 1
+    """The time of the model is over."""
+    FINISHED = 2
+    """The behavior tree has finished."""
+    STUCK = 3
+    """Automata wait for one another."""
+    QUIET = 4
+    """There is nothing left to do."""
+    DEADLOCK = 5
+    """No step is possible."""
+    IDLE = 6
+    """Only steps that change nothing are possible."""
+    CUT = 7
+    """The trace was as long as allowed."""
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        return _TEXTS[self]
+
+    @property
+    def key(self) -> str:
+        """For programs."""
+        return self.text.replace(" ", "_")
+
+
+_TEXTS = {
+    End.DECIDED: "goal decided",
+    End.TIME: "end of time",
+    End.FINISHED: "tree finished",
+    End.STUCK: "stuck",
+    End.QUIET: "nothing left to do",
+    End.DEADLOCK: "no step possible",
+    End.IDLE: "no change possible",
+    End.CUT: "too many steps",
+}
+
+
+Marks: TypeAlias = Mapping[tuple[str, str], End]
+"""(automaton, location) -> what it means that a trace ends there."""

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What it means that a trace of a translated system ends where it ends (`roaml.smc.end`).
+
+The clock is at its end: the time is over. The root of the tree is: the tree has finished. Else a clock that does not go
+on, or an event that nobody takes, means that automata wait for one another. In a system without clock, what is left is
+that nobody has anything to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.jani.model import Automaton, Model
+from roaml.model.translated import (
+    CLOCK,
+    RECEIVED,
+    TIME_IS_OVER,
+    TREE_HAS_FINISHED,
+    TREE_ROOT_PREFIX,
+    WAITING,
+    on_send,
+)
+from roaml.smc.end import End
+
+
+def marks(model: Model) -> Mapping[tuple[str, str], End]:
+    """(automaton, location) -> what it means that a trace ends there; empty for a model that is no translation."""
+    found = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
+    is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
+    return found if is_translated else {}
+
+
+def is_event(automaton: Automaton) -> bool:
+    """Whether it holds an event between being sent and being received, if somebody receives it."""
+    locations = {location.name for location in automaton.locations}
+    sends = on_send(automaton.name)
+    return locations <= {WAITING, RECEIVED} and any(edge.action == sends for edge in automaton.edges)
+
+
+def _mark(automaton: Automaton, location: str) -> End:
+    if automaton.name == CLOCK:
+        return End.TIME if location == TIME_IS_OVER else End.STUCK
+    if automaton.name.startswith(TREE_ROOT_PREFIX):
+        return End.FINISHED if location == TREE_HAS_FINISHED else End.QUIET
+    return End.STUCK if location == RECEIVED and is_event(automaton) else End.QUIET

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Events of a translated system in the words of ROS and BehaviorTree.CPP (spec/04 §2)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+
+from roaml.model.system import safe_name
+from roaml.model.translated import (
+    BLACKBOARD_ANSWER,
+    BLACKBOARD_REQUEST,
+    BLACKBOARD_WRITE_PREFIX,
+    TIMER_PREFIX,
+    is_timer,
+)
+
+_FORMS = (
+    (r"bt_\d+_tick", "its tick"),
+    (r"bt_\d+_halt", "its halt"),
+    (r"bt_\d+_response", "the answer to its tick"),
+    (r"bt_\d+_halt_response", "the answer to its halt"),
+    (r"topic_(.+)_msg", "a message on the topic `/{}`"),
+    (r"srv_(.+)_req(?:uest)?", "a request to the service `/{}`"),
+    (r"srv_(.+)_response", "the response of the service `/{}`"),
+    (r"action_(.+)_goal_(?:req|handle)", "a goal of the action `/{}`"),
+    (r"action_(.+)_goal_(?:accept|accepted|reject|rejected)", "the answer to the goal of the action `/{}`"),
+    (r"action_(.+)_feedback(?:_handle)?", "feedback of the action `/{}`"),
+    (r"action_(.+)_result(?:_handle)?", "the result of the action `/{}`"),
+    (r"action_(.+)_thread_start", "the start of a thread of the action `/{}`"),
+    (r"action_(.+)_thread_free", "the end of a thread of the action `/{}`"),
+)
+_COMPILED = tuple((re.compile(form), text) for form, text in _FORMS)
+
+
+def said(event: str, who: str, clients: Collection[str], taken: bool = False) -> str:
+    """An event as people call it.
+
+    Args:
+        who: the one who waits for it, or takes it.
+        clients: the automata of the system, of which one may be named at the end.
+        taken: whether `who` is to take the tick of a timer, where otherwise it waits for the timer.
+    """
+    if is_timer(event):
+        timer = event.removeprefix(TIMER_PREFIX)
+        for user in clients:
+            timer = timer.removesuffix(f"__{safe_name(user)}")
+        if who == "the tree":
+            return "its next tick"
+        return f"the tick of its timer `{timer}`" if taken else f"its timer `{timer}`"
+    if event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX):
+        return "the blackboard"
+    name, _, client = event.partition("_client_")
+    if client not in clients:
+        name = event
+    for form, text in _COMPILED:
+        found = form.fullmatch(name)
+        if found:
+            return text.format(*(group.replace("__", "/") for group in found.groups()))
+    return f"the event `{event}`"

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Who waits for whom in a translated system that is stuck.
+
+The search begins with the clock, or with an event that nobody takes. What an automaton waits for is the event that
+brings it, in the fewest events, to what the one before waits for; who sends this event comes next. Conditions count
+only where the automaton is. Handlers of services and actions and the inner nodes of a tree, which only pass things on,
+are left out.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.jani.model import Edge
+from roaml.jani.node import Origin
+from roaml.model.translated import (
+    ACTION_HANDLER_PREFIX,
+    BLACKBOARD,
+    CLOCK,
+    RECEIVED,
+    SERVICE_HANDLER_PREFIX,
+    TREE_ROOT_PREFIX,
+    is_timer,
+    on_receive,
+    on_send,
+    received_by,
+    sent_by,
+)
+from roaml.smc.standstill import Standstill
+from roaml.views.ends import is_event
+from roaml.views.event_words import said
+from roaml.views.turns import is_inner, name_of
+
+TICK, HALT = "tick", "halt"
+THE_CLOCK, THE_TREE, THE_BLACKBOARD = "the clock", "the tree", "the blackboard"
+
+
+class Wait(NamedTuple):
+    """One who waits, and for what, in words.
+
+    Attributes:
+        origin: the place in the text that says so.
+        automaton, location: what it is called in the model, and where it is.
+        whom: for whom it waits; "" if that is nobody.
+        unanswered: `TICK` or `HALT` if it waits for the answer to one.
+    """
+
+    who: str
+    what: str
+    origin: Origin | None
+    automaton: str
+    location: str
+    whom: str = ""
+    unanswered: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class _Link:
+    """An automaton, and what it waits for: that each of `others` takes the event, or sends it.
+
+    Attributes:
+        wanted: the action that the one before waits for; "" for the first one.
+        event: "" if it waits for a condition; None if it will never do what is wanted.
+        others: who comes next, and the action that it must do.
+    """
+
+    automaton: int
+    wanted: str
+    event: str | None
+    origin: Origin | None
+    is_taken: bool = False
+    others: tuple[tuple[int, str], ...] = ()
+
+
+def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]:
+    """Who waits for whom, beginning with the clock where there is one; empty if nobody waits.
+
+    Args:
+        time: of the model, in s.
+    """
+    return tuple(_Chain(standstill, time).told())
+
+
+def advice(waiting: Sequence[Wait]) -> str:
+    """What to do about it, where the reason is a node that does not answer the tree in time; else ""."""
+    late = next((wait for wait in waiting if wait.unanswered), None)
+    if late is None or not any(wait.who == THE_CLOCK for wait in waiting):
+        return ""
+    if late.unanswered == HALT:
+        return f"a halt must be answered before time goes on: let {late.whom} answer it at once"
+    return (
+        f"a tick must be answered before time goes on: let {late.whom} answer RUNNING, and the result at a later tick"
+    )
+
+
+class _Chain:
+    def __init__(self, standstill: Standstill, time: float | None) -> None:
+        self.automata = standstill.automata
+        self.locations = standstill.locations
+        self.enabled = standstill.enabled
+        self.ready = {(n, edge.action) for n, edges in enumerate(standstill.enabled) for edge in edges}
+        self.syncs = standstill.system.syncs
+        self.time = time
+        self.index = {automaton.name: number for number, automaton in enumerate(self.automata)}
+        self.events = {automaton.name: n for n, automaton in enumerate(self.automata) if is_event(automaton)}
+        self.does: dict[str, list[int]] = {}
+        for number, automaton in enumerate(self.automata):
+            if automaton.name not in self.events:
+                for action in dict.fromkeys(edge.action for edge in automaton.edges if edge.action):
+                    self.does.setdefault(action, []).append(number)
+        self.links: dict[int, list[_Link]] = {}
+
+    # ------------------------------------------------------------------ the search
+
+    def told(self) -> Iterator[Wait]:
+        clock = self.index.get(CLOCK)
+        if clock is not None:
+            self.follow(clock, "")
+        else:
+            for event in filter(self.is_pending, self.events):
+                for receiver in self.not_taking(event):
+                    self.follow(receiver, on_receive(event))
+        for number, links in self.links.items():
+            if self.is_shown(number):
+                yield from (self.words(link) for link in links)
+
+    def follow(self, first: int, action: str) -> None:
+        """All links from an automaton on, each automaton once, those of one way after each other."""
+        stack = [(first, action)]
+        while stack:
+            number, wanted = stack.pop()
+            if number in self.links:
+                continue
+            self.links[number] = list(self.blocked(number, wanted)) or list(self.waiting(number, wanted))
+            stack += reversed([other for link in self.links[number] for other in link.others])
+
+    def edges(self, number: int) -> list[Edge]:
+        return [edge for edge in self.automata[number].edges if edge.source == self.locations[number]]
+
+    def is_pending(self, event: str) -> bool:
+        return event in self.events and self.locations[self.events[event]] == RECEIVED
+
+    def not_taking(self, event: str) -> list[int]:
+        """Who must take an event and cannot."""
+        action = on_receive(event)
+        return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
+
+    def blocked(self, number: int, wanted: str) -> Iterator[_Link]:
+        """What an automaton waits for that would send something, or let the time pass."""
+        found: dict[tuple[str, int], _Link] = {}
+        for edge in self.edges(number):
+            if edge.action is None or received_by(edge.action) or (number, edge.action) not in self.ready:
+                continue
+            for sync in self.syncs:
+                if (number, edge.action) not in sync.participants:
+                    continue
+                for other, action in sync.participants:
+                    if (other, action) in self.ready:
+                        continue
+                    event = self.automata[other].name
+                    late = [(event, each) for each in self.not_taking(event)] if self.is_pending(event) else []
+                    if event not in self.events:
+                        late = [(received_by(action), other)]
+                    for name, each in late:
+                        link = _Link(number, wanted, name, edge.origin, True, ((each, on_receive(name)),))
+                        found.setdefault((name, each), link)
+        yield from found.values()
+
+    def waiting(self, number: int, wanted: str) -> Iterator[_Link]:
+        """What an automaton waits for that stays in a state until it receives something."""
+        best = self.awaited(number, wanted)
+        if not best:
+            automaton, here = self.automata[number], self.locations[number]
+            origin = next((location.origin for location in automaton.locations if location.name == here), None)
+            yield _Link(number, wanted, None, origin)
+        active = {event: edge for event, edge in best.items() if not self.is_asleep(event, number)}
+        for event, edge in (active or best).items():
+            if self.is_pending(event):
+                others = tuple((each, on_receive(event)) for each in self.not_taking(event) if each != number)
+                yield _Link(number, wanted, event, edge.origin, True, others)
+            else:
+                others = tuple((sender, on_send(event)) for sender in self.senders(event))
+                yield _Link(number, wanted, event, edge.origin, others=others)
+
+    def senders(self, event: str) -> list[int]:
+        return self.does.get(on_send(event), []) if event else []
+
+    def is_asleep(self, event: str, asker: int) -> bool:
+        """Whether all who could send an event wait for the one who waits for it: children that are not ticked."""
+        senders = self.senders(event)
+        return bool(senders) and all(
+            not any(True for _ in self.blocked(sender, ""))
+            and (awaited := self.awaited(sender, on_send(event)))
+            and all(self.senders(each) == [asker] for each in awaited)
+            for sender in senders
+        )
+
+    def awaited(self, number: int, wanted: str) -> dict[str, Edge]:
+        """The events that bring an automaton in the fewest steps to what is wanted; "" for a condition."""
+        distances = self.distances(number, wanted)
+        here = self.locations[number]
+        ways: list[tuple[tuple[int, int], Edge]] = []
+        for edge in self.edges(number):
+            targets = [way.location for way in edge.destinations if way.location != here]
+            costs = [distances[target] for target in targets if target in distances]
+            if costs:
+                is_ready = any(edge is each for each in self.enabled[number])
+                ways.append(((2 - _cost(edge) - is_ready, min(costs)), edge))
+        least = min((cost for cost, _ in ways), default=None)
+        return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
+
+    def distances(self, number: int, wanted: str) -> dict[str, int]:
+        """Location -> how many events bring the automaton from there to one where it can do what is wanted."""
+        edges = self.automata[number].edges
+        found: dict[str, int] = {}
+        queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == wanted)]
+        before: dict[str, list[Edge]] = {}
+        for edge in edges:
+            for way in edge.destinations:
+                before.setdefault(way.location, []).append(edge)
+        while queue:
+            distance, location = heapq.heappop(queue)
+            if location not in found:
+                found[location] = distance
+                for edge in before.get(location, ()):
+                    heapq.heappush(queue, (distance + _cost(edge), edge.source))
+        return found
+
+    # ------------------------------------------------------------------ in words
+
+    def is_shown(self, number: int) -> bool:
+        """Not who only passes on what others do."""
+        automaton = self.automata[number]
+        if automaton.name.startswith(TREE_ROOT_PREFIX) or all(not link.others for link in self.links[number]):
+            return True
+        if automaton.name.startswith((SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX)):
+            return any(received_by(link.wanted) for link in self.links[number])
+        return not is_inner(automaton)
+
+    def who(self, number: int) -> str:
+        name = self.automata[number].name
+        if name.startswith(TREE_ROOT_PREFIX):
+            return THE_TREE
+        for prefix, what in ((SERVICE_HANDLER_PREFIX, "service"), (ACTION_HANDLER_PREFIX, "action")):
+            if name.startswith(prefix):
+                return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
+        return {CLOCK: THE_CLOCK, BLACKBOARD: THE_BLACKBOARD}.get(name, name_of(name))
+
+    def shown_from(self, number: int, event: str) -> tuple[str, str]:
+        """Who does something in the end that an automaton passes on, and the event that is waited for there."""
+        seen = set()
+        while number not in seen and number in self.links and not self.is_shown(number):
+            seen.add(number)
+            link = self.links[number][0]
+            number, event = link.others[0][0], link.event or event
+        return self.who(number), event
+
+    def words(self, link: _Link) -> Wait:
+        number = link.automaton
+        who, here = self.who(number), self.locations[number]
+        is_state = any(received_by(edge.action or "") for edge in self.edges(number)) or not self.edges(number)
+        is_generated = who.startswith("the ")
+        where = f" in `{here}`" if is_state and not is_generated else ""
+        if who == THE_CLOCK and self.time is not None:
+            where = f" at {self.time:g} s"
+        shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
+        others = list(dict.fromkeys(name for name, _ in shown))
+        them = " and ".join(others)
+        unanswered = ""
+        if link.event is None:
+            does = "takes" if received_by(link.wanted) else "sends"
+            event = received_by(link.wanted) or sent_by(link.wanted)
+            what = f"stays{where} and never {does} {said(event, who, self.clients())}"
+        elif not link.event:
+            what = f"waits{where} for a condition that nothing can change any more"
+        elif link.is_taken:
+            what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
+        elif _is_answer(link.event):
+            unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
+            what = f"waits{where} for {them} to answer its {unanswered}"
+        else:
+            senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
+            what = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
+            if is_timer(link.event):
+                what += ", which ticks when the clock goes on"
+        return Wait(who, what, link.origin, self.automata[number].name, here, them, unanswered)
+
+    def clients(self) -> frozenset[str]:
+        return frozenset(self.index)
+
+
+def _cost(edge: Edge) -> int:
+    return 1 if received_by(edge.action or "") else 0
+
+
+def _is_answer(event: str) -> bool:
+    return event.startswith("bt_") and event.endswith(("_response", "_halt_response"))

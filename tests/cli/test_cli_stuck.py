@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `as2fm-lsp verify` says of systems that get stuck, and of the ends of traces."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import pytest
+from command import Command
+from smc_models import automaton, document, edge, op, probability, variable, way
+
+from roaml.smc.end import End
+from stuck_models import hospital
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "verification.md"
+
+
+@pytest.fixture
+def ward(command: Command, tmp_path: Path) -> Path:
+    """Eight machines, of which one makes time stand still; the working directory of the command."""
+    return write(tmp_path, hospital())
+
+
+def write(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def parsed(text: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def test_a_stuck_system_is_told_loudly(command: Command, ward: Path) -> None:
+    done = command("verify", "main.xml")
+    assert done.status == 0
+    lines = done.out.splitlines()
+    assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[1])
+    assert re.fullmatch(r"  [\d,]+ of [\d,]+ traces got stuck, and say nothing about the property", lines[2])
+    assert re.fullmatch(r"stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end", lines[3])
+
+
+def test_who_waits_for_whom_is_told_as_the_manual_shows_it(command: Command, ward: Path) -> None:
+    page = DOCUMENT.read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```text\n(warning: the system gets stuck.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    assert shown in command("verify", "main.xml").out
+
+
+def test_the_manual_names_every_reason() -> None:
+    page = DOCUMENT.read_text(encoding="utf-8")
+    for reason in End:
+        assert f"| {reason.text} | `{reason.key}` |" in page
+
+
+def test_a_mended_system_is_not_told_to_get_stuck(command: Command, tmp_path: Path) -> None:
+    write(tmp_path, hospital(mended=True))
+    done = command("verify", "main.xml", "--stuck", "error")
+    assert done.status == 0
+    assert "warning" not in done.out
+    assert "stuck: 0 in [0, " in done.out
+    assert parsed(command("verify", "main.xml", "--format", "json").out)["stuck"]["example"] is None
+
+
+@pytest.mark.parametrize("level", ["warning", "error"])
+def test_getting_stuck_can_be_an_error(command: Command, ward: Path, level: str) -> None:
+    done = command("verify", "main.xml", "--stuck", level)
+    assert done.status == (level == "error")
+    assert f"\n{level}: the system gets stuck" in done.out
+
+
+def test_json(command: Command, ward: Path) -> None:
+    found = parsed(command("verify", "main.xml", "--format", "json", "--stuck", "error").out)
+    (result,) = found["results"]
+    assert result["ends"] == {
+        **{reason.key: 0 for reason in End},
+        "goal_decided": result["passed"],
+        "stuck": result["failed"],
+    }
+    known = found["stuck"]
+    assert (known["level"], known["traces"], known["cut"]) == ("error", 100, 0)
+    assert known["lower"] < known["stuck"] / 100 < known["upper"]
+    waits = known["example"]["waits"]
+    assert [(row["who"], row["file"], row["line"]) for row in waits] == [
+        ("the clock", "tree.xml", 3),
+        ("the tree", "tree.xml", 3),
+        ("Fetch (bt_1002)", "fetch.ascxml", line(ward, "fetch.ascxml", "ros_service_handle_response")),
+        ("Pharmacy", "pharmacy.ascxml", line(ward, "pharmacy.ascxml", "ros_rate_callback")),
+    ]
+    assert known["example"]["time"] == 2.0
+    assert "answer RUNNING" in known["example"]["advice"]
+
+
+def line(folder: Path, name: str, text: str) -> int:
+    lines = (folder / name).read_text(encoding="utf-8").splitlines()
+    return next(number for number, each in enumerate(lines, 1) if text in each)
+
+
+@pytest.mark.parametrize("level", ["warning", "error"])
+def test_junit(command: Command, ward: Path, level: str) -> None:
+    suites = ET.fromstring(command("verify", "main.xml", "--format", "junit", "--stuck", level).out)
+    cases = {case.get("name"): case for case in suites.iter("testcase")}
+    assert set(cases) == {"delivered", "does not get stuck"}
+    failure = cases["does not get stuck"].find("failure")
+    assert (failure is not None) == (level == "error")
+    assert suites.get("failures") == ("1" if level == "error" else "0")
+    assert suites.get("tests") == "2"
+    told = cases["does not get stuck"].findtext("failure" if level == "error" else "system-out") or ""
+    assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in told
+    assert "ends: goal decided" in (cases["delivered"].findtext("system-out") or "")
+
+
+def test_whether_it_gets_stuck_can_be_asked(command: Command, ward: Path) -> None:
+    found = parsed(command("verify", "main.xml", "--property", "stuck", "--format", "json").out)
+    (result,) = found["results"]
+    assert result["property"] == "stuck"
+    assert result["upper"] - result["lower"] < 0.021
+    assert result["passed"] == result["ends"]["stuck"]
+    assert result["failed"] == result["ends"]["tree_finished"]
+    # It was asked: no more traces are made for it.
+    assert "traces" not in found["stuck"]
+    assert found["stuck"]["example"]["waits"]
+
+
+def test_it_can_be_expected_not_to_get_stuck(command: Command, tmp_path: Path) -> None:
+    write(tmp_path, hospital())
+    done = command("verify", "main.xml", "--expect", "stuck <= 0", "--expect", "delivered >= 0")
+    assert done.status == 1
+    assert "expected ≤ 0: NOT MET" in done.out
+    write(tmp_path, hospital(mended=True))
+    assert command("verify", "main.xml", "--expect", "stuck <= 0").status == 0
+
+
+def test_explained_to_the_end(command: Command, ward: Path) -> None:
+    for options in ((), ("--property", "stuck")):
+        story = command("verify", "main.xml", *options, "--explain").out
+        assert re.search(r": trace \d+ gets stuck after \d+ steps, of which", story)
+        last = story.rstrip().splitlines()[-4:]
+        assert [re.sub(r" {2,}", "  ", text).split("  ")[2] for text in last] == [
+            "the clock",
+            "the tree",
+            "Fetch (bt_1002)",
+            "Pharmacy",
+        ]
+        assert last[-1].endswith("pharmacy.ascxml:8")
+    command("verify", "main.xml", "--explain", "why.mmd", "--explain", "why.html")
+    assert "waits in `busy` for its timer `dispense`" in (ward / "why.mmd").read_text(encoding="utf-8")
+    assert "waits in `busy` for its timer `dispense`" in (ward / "why.html").read_text(encoding="utf-8")
+
+
+def test_traces_say_why_they_have_ended(command: Command, ward: Path) -> None:
+    command("verify", "main.xml", "--traces", "out", "--traces-limit", 1)
+    (failed,) = sorted((ward / "out").glob("*-failed.csv"))
+    with open(failed, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["end"] for row in rows] == [""] * (len(rows) - 1) + ["stuck"]
+    assert [int(row["step"]) for row in rows] == list(range(len(rows)))
+    trace = json.loads(failed.with_suffix(".json").read_text(encoding="utf-8"))
+    assert (trace["verdict"], trace["end"]) == ("failed", "stuck")
+    assert trace["waits"][-1]["who"] == "Pharmacy"
+    passed = min((ward / "out").glob("*-passed.json"))
+    trace = json.loads(passed.read_text(encoding="utf-8"))
+    assert (trace["end"], trace.get("waits")) == ("goal_decided", None)
+
+
+def test_traces_that_were_cut_are_told(command: Command, ward: Path) -> None:
+    done = command("verify", "main.xml", "--max-steps", 30, "--method", "fixed", "--max-traces", 50)
+    assert "  ends: too many steps 50\n" in done.out
+    assert "from 100 traces; 100 of them were cut after 30 steps" in done.out
+
+
+def test_counts_are_kept_for_later(command: Command, ward: Path) -> None:
+    options = ("verify", "main.xml", "--resume", "state.json", "--format", "json", "--method", "fixed", "--max-traces")
+    command(*options, 100)
+    more = parsed(command(*options, 300).out)
+    fresh = parsed(command("verify", "main.xml", "--format", "json", "--method", "fixed", "--max-traces", 300).out)
+    assert more["results"][0]["ends"] == fresh["results"][0]["ends"]
+    assert more["stuck"] == fresh["stuck"]
+
+
+def test_sampled_schedulers_that_get_stuck_are_told(command: Command, ward: Path) -> None:
+    done = command("verify", "main.xml", "--scheduler", "lss", "--epsilon", 0.1)
+    assert "warning: the system gets stuck" in done.out
+
+
+def test_a_trace_that_goes_wrong_after_its_goal_is_told(command: Command, tmp_path: Path) -> None:
+    """The property is answered, since its traces do not go so far."""
+    write(tmp_path, hospital(mended=True))
+    text = (tmp_path / "nurse.ascxml").read_text(encoding="utf-8")
+    text = text.replace(
+        'target="happy" />', 'target="happy"><assign location="a[n]" expr="1" /></ros_topic_callback>'
+    ).replace(
+        "<ros_topic_subscriber",
+        '<datamodel><data id="n" type="int32" expr="7" /><data id="a" type="int32[3]" expr="[1]" /></datamodel>'
+        "<ros_topic_subscriber",
+    )
+    (tmp_path / "nurse.ascxml").write_text(text, encoding="utf-8")
+    done = command("verify", "main.xml")
+    assert done.status == 0
+    assert "delivered: 1 in" in done.out
+    assert "stuck: not known, since a trace that ran on went wrong: " in done.out
+
+
+def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path) -> None:
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+    steps = [edge("s", way("e", 0.3, x=1), way("e", 0.7))]
+    written = document(automaton("a", "s e", steps), variables=[variable("x")], properties=goals)
+    (tmp_path / "model.jani").write_text(json.dumps(written), encoding="utf-8")
+    done = command("verify", "model.jani")
+    assert re.search(r"\n  ends: goal decided [\d,]+, no step possible [\d,]+\n", done.out)
+    assert "stuck" not in done.out
+    assert command("verify", "model.jani", "--property", "stuck").status == 2

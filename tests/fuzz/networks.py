@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Random JANI networks: from one automaton to a hundred, whose actions have more combinations of edges than there are
+numbers of 64 bits."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+Json = dict[str, Any]
+
+ACTIONS = ("a", "b", "c")
+SHARED = ("x", "y", "z")
+LARGE = (1 << 63) - 1
+OPERATORS = ("+", "-", "*", "%", "max", "min")
+COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
+
+
+def network(random: Random) -> Json:
+    """A model with one property."""
+    return wide(random, random.randint(2, 80)) if random.random() < 0.2 else small(random)
+
+
+# ----------------------------------------------------------------------- small
+
+
+def small(random: Random) -> Json:
+    """Some automata with guards, chances, arithmetic that may go wrong, partial synchronisation and silent edges."""
+    count = random.randint(1, 5)
+    automata = [_automaton(random, number) for number in range(count)]
+    syncs = []
+    for _ in range(random.randint(1, 6)):
+        vector = [random.choice((None, *ACTIONS)) for _ in range(count)]
+        if any(vector):
+            syncs.append(vector)
+    return _document(random, automata, syncs)
+
+
+def _automaton(random: Random, number: int) -> Json:
+    locations = ["l", "m", "n"][: random.randint(1, 3)]
+    names = (*SHARED, f"own{number}")
+    edges = []
+    for _ in range(random.randint(1, 8)):
+        row: Json = {"location": random.choice(locations), "destinations": _destinations(random, locations, names)}
+        if random.random() < 0.8:
+            row["action"] = random.choice(ACTIONS)
+        if random.random() < 0.4:
+            row["guard"] = {"exp": _condition(random, names)}
+        edges.append(row)
+    return _written(f"m{number}", locations, edges, [f"own{number}"])
+
+
+def _destinations(random: Random, locations: list[str], names: tuple[str, ...]) -> list[Json]:
+    count = random.choice([1, 1, 1, 2, 3])
+    found = []
+    for share in {1: (1.0,), 2: (0.25, 0.75), 3: (0.5, 0.125, 0.375)}[count]:
+        targets = random.sample([*names, "v"], random.randint(0, 3))
+        assignments = []
+        for target in targets:
+            ref: Any = _cell(_number(random, names)) if target == "v" else target
+            value = _number(random, names, 2)
+            assignments.append({"ref": ref, "value": value, "index": random.randint(0, 1)})
+        way: Json = {"location": random.choice(locations), "assignments": assignments}
+        if count > 1:
+            way["probability"] = {"exp": share}
+        found.append(way)
+    return found
+
+
+def _number(random: Random, names: tuple[str, ...], depth: int = 1) -> Any:
+    kind = random.random()
+    if depth and kind < 0.5:
+        left, right = (_number(random, names, depth - 1) for _ in range(2))
+        return {"op": random.choice(OPERATORS), "left": left, "right": right}
+    if kind < 0.8:
+        return random.choice(names)
+    if kind < 0.9:
+        return _cell(random.choice(names))
+    return random.choice([0, 1, 2, 3, -1, LARGE, -LARGE])
+
+
+def _cell(index: Any) -> Json:
+    # Mostly within bounds.
+    return {"op": "aa", "exp": "v", "index": {"op": "%", "left": index, "right": 3}}
+
+
+def _condition(random: Random, names: tuple[str, ...]) -> Json:
+    left, right = _number(random, names), _number(random, names)
+    return {"op": random.choice(COMPARISONS), "left": left, "right": right}
+
+
+# ------------------------------------------------------------------------ wide
+
+
+def wide(random: Random, count: int) -> Json:
+    """All automata take part in all actions, with up to four edges each, some of them with guards and chances."""
+    kinds = [random.randint(1, 4) for _ in range(4)]
+    automata = []
+    for number in range(count):
+        own = f"own{number}"
+        edges = []
+        for action in ACTIONS[:2]:
+            for pick in range(kinds[number % len(kinds)]):
+                value = {"op": "%", "left": {"op": "+", "left": own, "right": pick}, "right": 5}
+                assigned = [{"ref": own, "value": value}]
+                ways: list[Json] = [{"location": random.choice("st"), "assignments": assigned}]
+                if pick == 1:
+                    ways = [
+                        {"location": "s", "assignments": assigned, "probability": {"exp": 0.25}},
+                        {"location": "t", "probability": {"exp": 0.75}},
+                    ]
+                first: Json = {"location": "s", "action": action, "destinations": ways}
+                if random.random() < 0.1:
+                    first["guard"] = {"exp": {"op": "<", "left": "x", "right": pick + 2}}
+                edges += [first, {"location": "t", "action": action, "destinations": ways}]
+        automata.append(_written(f"m{number}", ["s", "t"], edges, [own]))
+    following = {"op": "%", "left": {"op": "+", "left": "x", "right": 1}, "right": 4}
+    counting: Json = {
+        "location": "l",
+        "destinations": [{"location": "l", "assignments": [{"ref": "x", "value": following}]}],
+    }
+    automata.append(_written("counts", ["l"], [counting], []))
+    return _document(random, automata, [[action] * count + [None] for action in ACTIONS[:2]])
+
+
+# -------------------------------------------------------------------- the text
+
+
+def _written(name: str, locations: list[str], edges: list[Json], variables: list[str]) -> Json:
+    return {
+        "name": name,
+        "locations": [{"name": location} for location in locations],
+        "initial-locations": [locations[0]],
+        "edges": edges,
+        "variables": [{"name": each, "type": "int", "initial-value": 0} for each in variables],
+    }
+
+
+def _document(random: Random, automata: list[Json], syncs: list[list[str | None]]) -> Json:
+    array: Json = {
+        "name": "v",
+        "type": {"kind": "array", "base": "int"},
+        "initial-value": {"op": "av", "elements": [0, 1, 2]},
+    }
+    path: Json = {"op": random.choice("FG"), "exp": _condition(random, SHARED)}
+    if random.random() < 0.3:
+        path["step-bounds"] = {"upper": random.randint(0, 20)}
+    if random.random() < 0.1:
+        path = {"op": "F", "exp": {"op": "deadlock"}}
+    values = {"op": "Pmax", "exp": path}
+    expression = {"op": "filter", "fun": "values", "values": values, "states": {"op": "initial"}}
+    return {
+        "jani-version": 1,
+        "name": "random",
+        "type": "mdp",
+        "features": ["arrays", "derived-operators"],
+        "actions": [{"name": name} for name in ACTIONS],
+        "variables": [*({"name": name, "type": "int", "initial-value": 0} for name in SHARED), array],
+        "automata": automata,
+        "system": {
+            "elements": [{"automaton": each["name"]} for each in automata],
+            "syncs": [{"synchronise": vector} for vector in syncs],
+        },
+        "properties": [{"name": "p", "expression": expression}],
+    }

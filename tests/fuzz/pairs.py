@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One mistake hides no other: pairs of mistakes in different files of one system, each reported as it is alone.
+
+The mistakes are made from a sound system (`pairs.txt`): the name of an element, or the name or value of an attribute,
+is misspelled or left out, or an element is added that the language does not know. What a mistake gives alone must be
+given beside any other, unless the other could be its explanation; then the rule `not-checked` says so.
+"""
+
+from __future__ import annotations
+
+import enum
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from fixture import split_files
+from fuzz.corpus import NOWHERE
+from roaml import api
+from roaml.diagnostics import Severity
+from roaml.project.settings import Settings
+from roaml.text import Span, apply_edits
+from roaml.text import TextEdit as Edit
+from roaml.xml import Element, parse
+
+SYSTEM = Path(__file__).with_name("pairs.txt")
+_WORD = re.compile(r"/?[A-Za-z_][\w/.]{2,}\Z")
+_VARIABLE = re.compile(r'"((?:topic|action|moved)_\w+(?:\.valid)?)"')
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake in one file: what it is, in words, and the text of the file with it."""
+
+    file: str
+    what: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Report:
+    """What is said about a system: file and rule of each error and warning, and the texts of what is not checked."""
+
+    findings: frozenset[tuple[str, str]]
+    not_checked: frozenset[tuple[str, str]]
+
+
+class Outcome(enum.Enum):
+    BOTH = "both are reported"
+    HELD_BACK = "one is held back, and not-checked says so"
+    LOST = "one is lost"
+
+
+@cache
+def base() -> dict[str, str]:
+    """The sound system: file name -> text."""
+    return split_files(SYSTEM.read_text(encoding="utf-8"))
+
+
+@cache
+def mistakes() -> tuple[Mistake, ...]:
+    """All mistakes, in one order; some make no difference."""
+    return tuple(_made())
+
+
+@cache
+def alone(mistake: Mistake) -> Report:
+    return report({**base(), mistake.file: mistake.text})
+
+
+def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
+    """What becomes of two mistakes in different files, and what is lost or held back, in words."""
+    together = report({**base(), first.file: first.text, second.file: second.text})
+    wanted = alone(first).findings | alone(second).findings
+    missing = sorted(wanted - together.findings)
+    if not missing:
+        return Outcome.BOTH, ""
+    said = together.not_checked - alone(first).not_checked - alone(second).not_checked
+    details = "; ".join(f"{code} in {file}" for file, code in missing)
+    return (Outcome.HELD_BACK if said else Outcome.LOST), details
+
+
+def choose(seed: int) -> tuple[Mistake, Mistake]:
+    """Two mistakes in different files, both of which are reported alone."""
+    random = Random(seed)
+    while True:
+        first, second = random.choice(mistakes()), random.choice(mistakes())
+        if first.file != second.file and alone(first).findings and alone(second).findings:
+            return first, second
+
+
+def report(texts: dict[str, str]) -> Report:
+    """What is said about the system of these files, each by its name."""
+    files = {os.path.join(NOWHERE, name): text for name, text in texts.items()}
+    found = api.check(list(files), (), Settings(), files).diagnostics
+    return Report(
+        frozenset((os.path.basename(d.path), d.code) for d in found if d.severity >= Severity.WARNING),
+        frozenset((os.path.basename(d.path), d.message) for d in found if d.code == "not-checked"),
+    )
+
+
+# ------------------------------------------------------------------ the mistakes
+
+
+def _made() -> Iterator[Mistake]:
+    for file, text in base().items():
+        if file.endswith(".jani"):
+            for match in _VARIABLE.finditer(text):
+                edited = text[: match.start(1)] + _misspelled(match[1]) + text[match.end(1) :]
+                yield Mistake(file, f"{match[1]} misspelled", edited)
+            continue
+        root = parse(text).root
+        assert root is not None
+        for element in root.walk():
+            for what, edits in _in_element(element, element is root):
+                yield Mistake(file, what, apply_edits(text, edits))
+
+
+def _in_element(element: Element, is_root: bool) -> Iterator[tuple[str, tuple[Edit, ...]]]:
+    shown = f"<{element.name}> at {element.span.start}"
+    if not is_root:
+        spans = [span for span in (element.name_span, element.close_name_span) if span is not None]
+        yield f"{shown}: misspelled", tuple(Edit(span, _misspelled(element.name)) for span in spans)
+        if element.close_span is not None:
+            start = element.open_span.end
+            yield f"{shown}: <foo/> in it", (Edit(Span(start, start), "<foo/>"),)
+    for attribute in element.attributes:
+        where = f"{shown}: {attribute.name}"
+        yield f"{where} misspelled", (Edit(attribute.name_span, _misspelled(attribute.name)),)
+        yield f"{where} left out", (Edit(attribute.span, ""),)
+        if _WORD.match(attribute.value):
+            yield f"{where}: value misspelled", (Edit(attribute.value_span, _misspelled(attribute.value)),)
+
+
+def _misspelled(name: str) -> str:
+    """The name without one of its last letters."""
+    at = max(len(name) - 2, 1)
+    return name[:at] + name[at + 1 :] if len(name) > 2 else f"{name}{name}"

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The strategies: every module in this folder has one as `STRATEGY`."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from functools import cache
+
+from fuzz.strategy import Strategy
+
+
+@cache
+def strategies() -> dict[str, Strategy]:
+    """All strategies by name, sorted."""
+    modules = (importlib.import_module(f"{__name__}.{info.name}") for info in pkgutil.iter_modules(__path__))
+    found = {module.STRATEGY.name: module.STRATEGY for module in modules}
+    return {name: found[name] for name in sorted(found)}
+
+
+def plan(cases: int, chosen: tuple[Strategy, ...]) -> list[tuple[str, int]]:
+    """(strategy, how many cases it gets) by the shares of the strategies; each gets one at least."""
+    total = sum(strategy.share for strategy in chosen)
+    return [(strategy.name, max(1, cases * strategy.share // total)) for strategy in chosen]

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Random JANI networks in both kernels of the model checker, number by number."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from random import Random
+
+from fuzz.networks import Json, network
+from fuzz.strategy import Failure, Strategy
+from roaml import api
+from roaml.jani.reader import read_model
+from roaml.json import parse
+from roaml.smc.fault import FaultError
+from twin import difference
+
+TRACES = 3
+STEPS = 25
+
+
+@dataclass
+class Network:
+    """Attributes:
+    written: the model.
+    """
+
+    seed: int
+    written: Json
+
+    def description(self) -> Iterator[str]:
+        yield f"a network of {len(self.written['automata'])} automata"
+
+    def files(self) -> dict[str, str | bytes]:
+        return {"model.jani": json.dumps(self.written, indent=1, ensure_ascii=False)}
+
+    def run(self) -> Iterator[Failure]:
+        value, syntax = parse(json.dumps(self.written))
+        model, findings = read_model(value, "model.jani")
+        if syntax or findings or model is None:
+            yield Failure("a sound model is not read", "\n".join(found.message for found in (*syntax, *findings)))
+            return
+        try:
+            checker = api.checker(model)
+        except FaultError:  # it can be told beforehand that it goes wrong
+            return
+        for scheduler in (0, 1 + self.seed % 97):
+            details = difference(checker, checker.asked[0], self.seed, TRACES, STEPS, scheduler)
+            if details:
+                yield Failure("the kernels disagree", details)
+
+
+def make(seed: int) -> Network:
+    return Network(seed, network(Random(seed)))
+
+
+STRATEGY = Strategy("kernels", "runs random JANI networks in both kernels of the model checker", make)

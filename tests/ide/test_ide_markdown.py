@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What editors that show HTML would make of our Markdown, whatever files hold: no tag, no picture, no link."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ide_case import analysis_of, path_of
+from ide_models import CORNERS, ROBOT
+from markdown_it import MarkdownIt
+
+from fixture import split_files
+from roaml.ide.completion import complete
+from roaml.ide.completion.document import document
+from roaml.ide.hints import explain, inlay_hints
+from roaml.ide.hover import hover
+from roaml.ide.markdown import code, file, lines, name, names, paragraphs, plain, prose
+from roaml.ide.signature import signature_help
+from roaml.project.settings import Settings
+from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import Span
+
+COMMONMARK = MarkdownIt("commonmark", {"html": True})
+OURS = ("https://", "http://")
+EVIL = '<img src="x" onerror="alert(1)"> <!-- --> <a@b.c> ![p](x.png) [l](x) [r]: x `<b>` \\`<i>` &lt;b&gt; ```'
+
+
+def live(text: str) -> list[str]:
+    """The tags, pictures and links that a reader of Markdown finds."""
+    found = []
+    for token in COMMONMARK.parse(text):
+        for each in (token, *(token.children or ())):
+            if each.type in ("html_inline", "html_block", "image", "link_open"):
+                found.append(f"{each.type}: {each.content or each.attrs}")
+    return found
+
+
+def test_the_reader_finds_them() -> None:
+    assert {each.partition(":")[0] for each in live(EVIL)} == {"html_inline", "image", "link_open"}
+    assert live("<div>\n\ntext")
+
+
+FRAGMENTS = (
+    *"ab<>&;#/!`\\*_[]():~ \n\"'=-",
+    "<b>",
+    "</b>",
+    "<!--",
+    "![x](",
+    "[x](y)",
+    "&lt;",
+    "\n\n",
+    "```",
+    "<a:b>",
+    "`<i>`",
+    "\\`",
+)
+anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
+
+
+@given(anything, anything, anything)
+def test_pieces(first: str, second: str, third: str) -> None:
+    """However they are put together."""
+    made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))
+    assert live(made) == []
+    assert live(paragraphs(prose(first), code(second), prose(third))) == []
+
+
+PROSE = [
+    # as a user writes it, as Markdown, as it is read
+    ("speed [m/s], at `speed_limit`", None, "speed [m/s], at speed_limit"),
+    ("a < b && c > d", "a &lt; b && c > d", "a < b && c > d"),
+    ("if `a < b` holds", "if a &lt; b holds", "if a < b holds"),
+    ("<b>bold</b>", "&lt;b>bold&lt;/b>", "<b>bold</b>"),
+    ("&lt;b&gt;", "&amp;lt;b&amp;gt;", "&lt;b&gt;"),
+    ("![x](http://a/b.png)", r"\![x\](http://a/b.png)", "![x](http://a/b.png)"),
+    ("one\ntwo\n\nthree", "one two\n\nthree", "one two\n\nthree"),
+    ("# no heading", r"\# no heading", "# no heading"),
+    ("```\nno block", r"\`\`\` no block", "``` no block"),
+    ("a lone ` here", r"a lone \` here", "a lone ` here"),
+]
+
+
+@pytest.mark.parametrize(("written", "markdown", "read"), PROSE)
+def test_prose(written: str, markdown: str | None, read: str) -> None:
+    assert prose(written) == (markdown or written)
+    assert plain(prose(written)).replace("&gt;", ">") == read.replace("&gt;", ">")
+
+
+def hostile(text: str, suffix: str, pattern: str) -> str:
+    """A model whose names end with a suffix, and whose comments hold it."""
+    if text.lstrip().startswith("<"):
+        text = re.sub(
+            rf'\b({pattern})="([^"]+)"', lambda m: f'{m[1]}="{m[2]}{escape(suffix, {chr(34): "&quot;"})}"', text
+        )
+        return re.sub(r"(<[a-z_A-Z]+[ >])", lambda m: f"<!-- {suffix.replace('--', '')} -->{m[1]}", text)
+    written = suffix.replace("\\", "\\\\").replace('"', '\\"')
+    return re.sub(r'"(name|comment)": "([^"]+)"', lambda m: f'"{m[1]}": "{m[2]}{written}"', text)
+
+
+def shown(texts: dict[str, str]) -> Iterator[str]:
+    """All that is told of files, as Markdown."""
+    workspace = Workspace((), Settings())
+    for path, text in texts.items():
+        workspace.open(path_of(path), text)
+    snapshot = workspace.snapshot()
+    for path, text in texts.items():
+        yield from _of_file(snapshot, path_of(path), text)
+
+
+def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
+    analysis = snapshot.analysis
+    for offset in range(0, len(text), 3):
+        found = hover(analysis, path, offset)
+        if found:
+            yield found.text
+        signature = signature_help(analysis, path, offset)
+        if signature:
+            yield signature.documentation
+    for offset in range(0, len(text), 41):
+        completions = complete(snapshot, path, offset)
+        for item in completions.items if completions else ():
+            if item.about is not None:
+                yield document(analysis, item.about)
+    for hint in inlay_hints(analysis, path, Span(0, len(text))):
+        for part in hint.parts:
+            if part.symbol is not None:
+                yield explain(analysis, part.symbol).text
+
+
+@pytest.mark.parametrize("suffix", ["<img src=x onerror=alert(1)>", "`<b>` ![p](x) [l](x)", "\\`<i>` <script>"])
+@pytest.mark.parametrize("pattern", ["id|target|name|ID|event|key", "topic|service_name|expr|cond|location|src|type"])
+@pytest.mark.parametrize("model", [ROBOT, CORNERS], ids=["robot", "corners"])
+def test_what_is_told_of_hostile_models(model: str, pattern: str, suffix: str) -> None:
+    texts = {path: hostile(text, suffix, pattern) for path, text in split_files(model).items()}
+    told = set(filter(None, shown(texts)))
+    assert len(told) > 20
+    for text in told:
+        # Links of our own lead to the documents of the languages.
+        assert [each for each in live(text) if not any(ours in each for ours in OURS)] == [], text
+
+
+def test_analysis_of_hostile_models_is_one() -> None:
+    """The suffix is in what is told: the test above looks at something."""
+    texts = {path: hostile(text, "<img>", "id|target") for path, text in split_files(ROBOT).items()}
+    assert analysis_of(texts)
+    assert any("<img>" in text or "&lt;img>" in text for text in shown(texts))

@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Messages at the wrong time and of the wrong form, and the end of the client's process."""
+
+from __future__ import annotations
+
+import gc
+import json
+import subprocess
+import sys
+import time
+import tracemalloc
+from collections.abc import Callable, Iterator
+from io import BufferedReader, BytesIO, RawIOBase
+from pathlib import Path
+from typing import Any
+
+import pytest
+from client import RawServer, frame, start_raw
+
+import clock
+from as2fm_lsp import inbox, parent
+from as2fm_lsp.inbox import bodies
+from as2fm_lsp.protocol import Protocol
+from as2fm_lsp.server import create
+
+INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
+PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600, -32601, -32602
+NOT_INITIALIZED = -32002
+
+
+def framed(body: bytes) -> bytes:
+    return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
+
+
+async def finish(server: RawServer) -> tuple[int, dict[object, dict[str, Any]], str]:
+    """Shut it down: its exit status, its answers by their ids, and its log."""
+    server.tell("shutdown", id_=1000)
+    server.tell("exit")
+    status, messages, log = await server.end()
+    return status, {message["id"]: message for message in messages if "method" not in message}, log
+
+
+def code(answers: dict[object, dict[str, Any]], id_: object) -> object:
+    return answers[id_].get("error", {}).get("code")
+
+
+# ------------------------------------------------------------------------ time
+
+
+async def test_requests_before_initialize() -> None:
+    """They get the error that the protocol has for them; notifications are dropped."""
+    server = await start_raw()
+    server.tell("textDocument/hover", {"textDocument": 5}, 10)
+    server.tell("no/such", {}, 11)
+    server.tell("shutdown", None, 12)
+    server.tell("textDocument/didOpen", {"wrong": 1})
+    server.tell("initialized", {})
+    server.tell("initialize", INITIALIZE, 13)
+    status, answers, log = await finish(server)
+    assert [code(answers, id_) for id_ in (10, 11, 12, 13)] == [NOT_INITIALIZED] * 3 + [None]
+    assert (status, log) == (0, "")
+
+
+async def test_exit_before_initialize() -> None:
+    server = await start_raw()
+    server.tell("exit")
+    assert (await server.end())[0] == 1
+
+
+async def test_a_second_initialize() -> None:
+    """It is refused and changes nothing."""
+    server = await start_raw()
+    server.tell("initialize", INITIALIZE, 10)
+    encodings = {"general": {"positionEncodings": ["utf-8"]}}
+    server.tell("initialize", {**INITIALIZE, "capabilities": encodings}, 11)
+    document = {"uri": "untitled:1", "languageId": "ascxml", "version": 1, "text": "<!--é--><ascxml"}
+    server.tell("textDocument/didOpen", {"textDocument": document})
+    server.tell("textDocument/documentSymbol", {"textDocument": {"uri": "untitled:1"}}, 12)
+    _, answers, _ = await finish(server)
+    assert [code(answers, id_) for id_ in (10, 11, 12)] == [None, INVALID_REQUEST, None]
+    assert answers[12]["result"][0]["location"]["range"]["start"]["character"] == 8
+
+
+async def test_after_shutdown() -> None:
+    """Requests are refused, notifications dropped; `exit` is still heard."""
+    server = await start_raw()
+    server.tell("initialize", INITIALIZE, 10)
+    server.tell("shutdown", None, 11)
+    server.tell("textDocument/hover", {}, 12)
+    server.tell("shutdown", None, 13)
+    server.tell("initialize", INITIALIZE, 14)
+    server.tell("textDocument/didOpen", {"wrong": 1})
+    server.tell("exit")
+    status, messages, log = await server.end()
+    assert (status, log) == (0, "")
+    found = {message["id"]: message for message in messages}
+    assert [code(found, id_) for id_ in (10, 11, 12, 13, 14)] == [None, None] + [INVALID_REQUEST] * 3
+
+
+# ------------------------------------------------------------------------ form
+
+DEEP = 200_000
+BROKEN: list[tuple[bytes, object, int | None]] = [
+    # what is sent, the id of the answer ("-" if there is none), its code
+    (framed(b"[" * DEEP), None, PARSE_ERROR),
+    (framed(b"[" * DEEP + b"]" * DEEP), None, PARSE_ERROR),
+    (framed(b'{"jsonrpc": "2.0", "id": 5, "method": "x", "params": ' + b'{"a":' * 400 + b"1" + b"}" * 401), 5, -32601),
+    (framed(b"{bad}"), None, PARSE_ERROR),
+    (framed(b'"text"'), None, INVALID_REQUEST),
+    (framed(b"[]"), None, INVALID_REQUEST),
+    (framed(b'{"id": 1' + b"0" * 4301 + b"}"), None, PARSE_ERROR),
+    (b"Content-Length: " + b"9" * 4301 + b"\r\n\r\n{}", "-", None),
+    (b"Content-Length: 999999999999\r\n\r\n{}", "-", None),
+    (b"Content-Length: -5\r\n\r\n{}", "-", None),
+    (b"noise without an end of its line", "-", None),
+    (frame({"id": 6, "method": "shutdown"}), 6, INVALID_REQUEST),
+    (frame({"jsonrpc": "1.0", "id": 7, "method": "shutdown"}), 7, INVALID_REQUEST),
+    (frame({"jsonrpc": "2.0", "id": 8, "method": 5}), 8, INVALID_REQUEST),
+    (frame({"jsonrpc": "2.0", "id": [8], "method": "shutdown"}), None, INVALID_REQUEST),
+    (frame({"jsonrpc": "2.0", "id": None, "method": "shutdown"}), None, INVALID_REQUEST),
+    (frame({"jsonrpc": "2.0", "id": True, "method": "shutdown"}), None, INVALID_REQUEST),
+    (frame({"jsonrpc": "2.0", "id": 9, "method": "textDocument/hover"}), 9, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 10, "method": "textDocument/hover", "params": [1]}), 10, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 11, "method": "as2fm/about", "params": {}}), 11, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 12, "method": "as2fm/about", "params": {"type_name": 5}}), 12, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 13, "method": "as2fm/picture"}), 13, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 14, "method": "no/such"}), 14, METHOD_NOT_FOUND),
+    (frame({"jsonrpc": "2.0", "id": 15, "error": {"code": 1, "message": "?"}}), "-", None),
+    (frame({"jsonrpc": "2.0", "id": [], "result": 5}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "window/workDoneProgress/cancel", "params": {"token": []}}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": {}}}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"wrong": 1}}), "-", None),
+]
+
+
+@pytest.mark.parametrize(("data", "id_", "expected"), BROKEN, ids=[str(data[:60]) for data, *_ in BROKEN])
+def test_what_is_not_understood(data: bytes, id_: object, expected: int | None) -> None:
+    """It is answered as JSON-RPC says, and the message behind it as always."""
+    answers = said(data + frame({"jsonrpc": "2.0", "id": 99, "method": "as2fm/properties", "params": {}}))
+    assert answers.pop() == {"jsonrpc": "2.0", "id": 99, "result": []}
+    assert [(answer["id"], answer["error"]["code"]) for answer in answers] == ([] if id_ == "-" else [(id_, expected)])
+    assert all("\n" not in answer["error"]["message"] for answer in answers)
+
+
+def said(data: bytes) -> list[dict[str, Any]]:
+    """What a server in this process says to some bytes, after it was initialized."""
+    source = BytesIO(frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": INITIALIZE}) + data)
+    target = _Kept()
+    create().serve(source, target)
+    first, *others = (json.loads(body) for body in bodies(BytesIO(target.getvalue())))
+    assert "error" not in first
+    return others
+
+
+class _Kept(BytesIO):
+    """What is written to it can be read after it was closed."""
+
+    def close(self) -> None:
+        pass
+
+
+def test_memory_is_taken_for_what_is_there() -> None:
+    """An announced length costs nothing."""
+
+    class Announced(BytesIO):
+        def read(self, size: int | None = -1) -> bytes:
+            assert size is not None
+            assert size <= inbox.LONGEST_MESSAGE // 100
+            return super().read(size)
+
+    assert list(bodies(Announced(b"Content-Length: 200000000\r\n\r\n{}"))) == []
+
+
+# ----------------------------------------------------------------- odd documents
+
+ODD = [
+    "file:///a/%00b.ascxml",
+    "file:///a/%ED%A0%80.ascxml",
+    "file://[/x.ascxml",
+    "file:",
+    "file:relative.ascxml",
+    "file:///" + "a/" * 3000 + "b.ascxml",
+    "file:///" + "n" * 300 + ".ascxml",
+    "\0",
+    "",
+    "untitled:\0",
+]
+
+
+@pytest.mark.parametrize("uri", ODD, ids=[repr(uri[:30]) for uri in ODD])
+async def test_an_odd_uri(tmp_path: Path, uri: str) -> None:
+    """The document is there for its own features, and all others are as before."""
+    main = clock.write(tmp_path)
+    server = await start_raw()
+    server.tell("initialize", {**INITIALIZE, "workspaceFolders": [{"uri": tmp_path.as_uri(), "name": "robot"}]}, 10)
+    document = {"uri": uri, "languageId": "ascxml", "version": 1, "text": clock.CLOCK}
+    server.tell("textDocument/didOpen", {"textDocument": document})
+    of_it = {"textDocument": {"uri": uri}}
+    server.tell("workspace/symbol", {"query": "count"}, 11)
+    server.tell("textDocument/documentSymbol", of_it, 12)
+    server.tell("textDocument/codeLens", of_it, 13)
+    server.tell("as2fm/about", of_it, 14)
+    server.tell("workspace/executeCommand", {"command": "as2fm.translateToJani", "arguments": [uri]}, 15)
+    server.tell("as2fm/migrate", of_it, 16)
+    server.tell("textDocument/didClose", of_it)
+    server.tell("workspace/symbol", {"query": "count"}, 17)
+    status, answers, log = await finish(server)
+    assert (status, log) == (0, "")
+    assert [code(answers, id_) for id_ in (*range(10, 18), 1000)] == [None] * 9
+    assert len(answers[11]["result"]) == 2 * len(answers[17]["result"]) > 0
+    assert answers[12]["result"][0]["name"] == "Clock"
+    assert not main.with_suffix(".jani").exists()
+
+
+# --------------------------------------------------------------------- its parent
+
+
+async def test_it_ends_with_the_process_of_its_client() -> None:
+    """Though its input stays open, as it does when another process has inherited that."""
+    other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    server = await start_raw()
+    server.tell("initialize", {**INITIALIZE, "processId": other.pid}, 1)
+    await server.said("capabilities")
+    other.kill()  # nobody asks for its status: it stays as a zombie
+    assert await server.ended() == 1
+    other.wait()
+
+
+def test_the_end_of_a_process_is_seen_without_help_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parent, "INTERVAL", 0.01)
+    other = subprocess.Popen([sys.executable, "-c", ""])
+    other.wait()
+    parent._look_again_and_again(other.pid)
+    parent.wait_for_end(other.pid)
+
+
+# ------------------------------------------------------------------------ memory
+
+
+def test_nothing_is_kept_of_notifications() -> None:
+    """Neither a future for each, nor a second copy of the documents."""
+    server = create()
+    seen: list[int] = []
+
+    def messages() -> Iterator[bytes]:
+        yield frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": INITIALIZE})
+        document = {"uri": "untitled:1", "languageId": "ascxml", "version": 1, "text": ""}
+        yield frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": document}})
+        for number in range(200):
+            change = {"textDocument": {"uri": "untitled:1", "version": number}, "contentChanges": [{"text": "<a/>"}]}
+            yield frame({"jsonrpc": "2.0", "method": "textDocument/didChange", "params": change})
+            yield frame({"jsonrpc": "2.0", "method": "$/setTrace", "params": {"value": "off"}})
+            yield frame({"jsonrpc": "2.0", "method": "workspace/didChangeConfiguration", "params": {"settings": {}}})
+
+    protocol = server.protocol
+    assert isinstance(protocol, Protocol)
+    server.serve(BytesIO(b"".join(messages())), _Kept())
+    seen = [len(protocol._request_futures), len(protocol._result_types), len(protocol.workspace.text_documents)]
+    assert seen == [0, 0, 0]
+    assert server.session.text("untitled:1") == "<a/>"
+
+
+class Typing(RawIOBase):
+    """Messages of somebody who types, each sent when those before are handled. What is allocated is noted now and then.
+
+    Args:
+        messages: what is sent.
+        is_busy: whether there are messages that are not handled.
+    """
+
+    def __init__(self, messages: Iterator[bytes], is_busy: Callable[[], bool]) -> None:
+        self._messages, self._is_busy = messages, is_busy
+        self._rest = b""
+        self.sent = 0
+        self.allocated: dict[int, int] = {}
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        if not self._rest:
+            while self._is_busy():
+                time.sleep(0.001)
+            self._rest = next(self._messages, b"")
+            self.sent += 1
+            if self.sent % 100 == 0:
+                gc.collect()
+                self.allocated[self.sent] = tracemalloc.get_traced_memory()[0]
+        size = min(len(buffer), len(self._rest))
+        buffer[:size], self._rest = self._rest[:size], self._rest[size:]
+        return size
+
+
+def test_memory_reaches_a_plateau(tmp_path: Path) -> None:
+    """While somebody types, with all that is computed for it."""
+    clock.write(tmp_path)
+    path = tmp_path / "clock.ascxml"
+    text = path.read_text()
+    line, column = next((n, row.index("count")) for n, row in enumerate(text.split("\n")) if "count" in row)
+
+    def messages() -> Iterator[bytes]:
+        folders = [{"uri": tmp_path.as_uri(), "name": "robot"}]
+        pulls = {"textDocument": {"diagnostic": {}}}
+        params = {**INITIALIZE, "workspaceFolders": folders, "capabilities": pulls}
+        yield frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": params})
+        document = {"uri": path.as_uri(), "languageId": "ascxml", "version": 1, "text": text}
+        yield frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": document}})
+        for number in range(300):
+            start, end = ({"line": line, "character": column + at} for at in (0, number % 2))
+            change = {"range": {"start": start, "end": end}, "text": "" if number % 2 else "x"}
+            params = {"textDocument": {"uri": path.as_uri(), "version": number + 2}, "contentChanges": [change]}
+            yield frame({"jsonrpc": "2.0", "method": "textDocument/didChange", "params": params})
+            asked = {"textDocument": {"uri": path.as_uri()}}
+            yield frame({"jsonrpc": "2.0", "id": number + 1, "method": "textDocument/diagnostic", "params": asked})
+
+    server = create()
+    typing = Typing(messages(), lambda: server.inbox.waiting)
+    target = _Nowhere()
+    tracemalloc.start()
+    try:
+        server.serve(BufferedReader(typing), target)
+    finally:
+        tracemalloc.stop()
+    assert target.written > 1000
+    # What is computed at the moment comes and goes, so the least counts.
+    first, last = (min(typing.allocated[sent] for sent in marks) for marks in ((100, 200, 300), (400, 500, 600)))
+    assert last - first < 40_000, typing.allocated  # 100 bytes for a message, where a future for each takes 1000
+
+
+class _Nowhere(BytesIO):
+    """What is written is counted."""
+
+    written = 0
+
+    def write(self, data: Any) -> int:
+        self.written += len(data)
+        return len(data)
+
+
+def test_a_client_that_never_answers() -> None:
+    """What it is asked is forgotten after a while, the oldest first."""
+    protocol = create().protocol
+    protocol.set_writer(_Kept(), include_headers=True)  # type: ignore[arg-type]
+    futures = [protocol.send_request("workspace/codeLens/refresh") for _ in range(1500)]
+    assert len(protocol._request_futures) == len(protocol._result_types) == 1000
+    assert futures[-1] in protocol._request_futures.values()
+    assert futures[0] not in protocol._request_futures.values()
+
+
+def test_a_header_without_an_end() -> None:
+    """What comes between it and the next message is passed over, and the next message is found."""
+    data = b"Content-Length: 100\r\n{no header}\r\n\r\nContent-Length: 2\r\nContent-Type: x\r\n\r\n{}"
+    assert list(bodies(BytesIO(data))) == [b"{}"]

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why traces end, in models of which nothing but JANI is known, and in translated systems."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+
+import clock
+from roaml import api
+from roaml.jani.writer import write
+from roaml.smc import end, kernel
+from roaml.smc.batch import Task, run
+from roaml.smc.end import End
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool
+from roaml.smc.run import FIXED, Answer, Options, Tally
+from stuck_models import hospital, system
+from twin import plain_kernel
+
+FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
+GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
+
+
+def answer(checker: Checker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
+    options = Options(method=FIXED, max_traces=traces, max_steps=max_steps)
+    with Pool(jobs, patience=0 if jobs > 1 else 1) as pool:
+        return checker.answer(checker.asked[0], options, pool)
+
+
+def of_system(folder: Path, files: dict[str, str], *properties: str) -> Checker:
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return api.checker(api.to_jani(api.load(str(folder / "main.xml"))), properties or None)
+
+
+def counts(found: Answer) -> dict[End, int]:
+    return {reason: ended.count for reason, ended in found.tally.ends.items()}
+
+
+def test_reasons_are_those_of_the_kernel() -> None:
+    for reason in End:
+        if reason is not End.CUT:
+            assert getattr(plain_kernel(), reason.name) == reason.value
+    assert len({reason.key for reason in End}) == len(End) == len(end._TEXTS)
+
+
+ONE_WAY = [edge("s", way("t", x=1))]
+ROUND = [edge("s", way("t", x=1)), edge("t", way("s", x=2))]
+LOOP = [edge("s", way("t", x=1)), edge("t", "t")]
+
+
+@pytest.mark.parametrize(
+    ("edges", "goals", "reason", "value"),
+    [
+        (ONE_WAY, FINALLY, End.DEADLOCK, 0),
+        (ONE_WAY, GLOBALLY, End.DEADLOCK, 1),
+        (LOOP, FINALLY, End.IDLE, 0),
+        (LOOP, GLOBALLY, End.IDLE, 1),
+        (ROUND, FINALLY, End.CUT, 0.5),
+        (ONE_WAY, {"p": probability(op("F", op("=", "x", 1)))}, End.DECIDED, 1),
+        (ROUND, {"p": probability(op("G", op("=", "x", 0)))}, End.DECIDED, 0),
+        # Decided at the start, without any step.
+        (ROUND, {"p": probability(op("F", op("=", "x", 0)))}, End.DECIDED, 1),
+        (ONE_WAY, {"p": probability(op("F", {"op": "deadlock"}))}, End.DEADLOCK, 1),
+        (LOOP, {"p": probability(op("F", {"op": "deadlock"}))}, End.IDLE, 0),
+    ],
+)
+def test_any_model(edges: list[Json], goals: dict[str, Json], reason: End, value: float) -> None:
+    written = document(automaton("a", "s t", edges), variables=[variable("x")], properties=goals)
+    found = answer(Checker(model(written)))
+    assert (counts(found), found.value) == ({reason: 1}, value)
+
+
+def test_reasons_are_counted_with_their_shortest_traces() -> None:
+    """Half of the traces get to the goal at once; of the others some end after two steps, some after three."""
+    ways = [way("goal", 0.5, x=9), way("two", 0.25), way("three", 0.25)]
+    edges = [edge("s", *ways), edge("two", "end"), edge("three", "four"), edge("four", "end")]
+    places = "s goal two three four end"
+    written = document(automaton("a", places, edges), variables=[variable("x")], properties=FINALLY)
+    checker = Checker(model(written))
+    found = answer(checker, traces=500)
+    tally = found.tally
+    assert sum(counts(found).values()) == tally.traces == 500
+    assert counts(found)[End.DECIDED] == tally.successes
+    assert tally.ends[End.DECIDED].shortest.steps == 1
+    assert tally.ends[End.DEADLOCK].shortest == tally.shortest[0]
+    assert tally.ends[End.DEADLOCK].shortest.steps == 2
+    assert Tally.from_json(tally.to_json()) == tally
+    assert counts(answer(checker, traces=500, jobs=2)) == counts(found)
+
+
+def test_goals_decided_early_are_not_told_to_end_otherwise(tmp_path: Path) -> None:
+    """Whether the system would have got stuck later is not known of such a trace."""
+    checker = of_system(tmp_path, hospital())
+    found = answer(checker, traces=300)
+    assert counts(found)[End.DECIDED] == found.tally.successes
+    assert counts(found)[End.STUCK] == found.failures
+    assert 0 < found.failures < 300
+
+
+NO_CLOCK = system(
+    {
+        "Left": """s
+<state id="s"><onentry><send event="go" /></onentry></state>
+""",
+        "Right": """s
+<state id="s"><transition event="go" target="t" /></state>
+<state id="t" />
+""",
+    }
+)
+CROSSED = system(
+    {
+        name: f"""go
+<ros_service_client name="ask" service_name="/{asked}" type="std_srvs/Empty" />
+<ros_service_server name="serve" service_name="/{served}" type="std_srvs/Empty" />
+<state id="go"><transition target="wait"><ros_service_send_request name="ask" /></transition></state>
+<state id="wait"><ros_service_handle_response name="ask" target="free" /></state>
+<state id="free">
+<ros_service_handle_request name="serve" target="free"><ros_service_send_response name="serve" />
+</ros_service_handle_request>
+</state>
+"""
+        for name, asked, served in (("A", "b", "a"), ("B", "a", "b"))
+    }
+)
+"""Each asks the other one, and serves when it has been answered."""
+
+
+@pytest.mark.parametrize(
+    ("files", "reason"),
+    [
+        (clock.FILES, End.TIME),
+        (hospital(mended=True), End.FINISHED),
+        (NO_CLOCK, End.QUIET),
+        (CROSSED, End.STUCK),
+    ],
+)
+def test_translated_systems(tmp_path: Path, files: dict[str, str], reason: End) -> None:
+    found = answer(of_system(tmp_path, files, "stuck"), traces=20, max_steps=10_000)
+    assert counts(found) == {reason: 20}
+    assert found.value == (reason is End.STUCK)
+
+
+@pytest.mark.parametrize(
+    ("files", "value"), [(clock.FILES, 0), (hospital(mended=True), 0), (NO_CLOCK, 1), (CROSSED, 1)]
+)
+def test_the_end_of_time_is_no_deadlock(tmp_path: Path, files: dict[str, str], value: float) -> None:
+    text = """
+{"properties": [{"name": "dead", "expression": {"op": "filter", "fun": "values",
+  "values": {"op": "Pmax", "exp": {"op": "F", "exp": {"op": "deadlock"}}}, "states": {"op": "initial"}}}]}
+"""
+    checker = of_system(tmp_path, {**files, "properties.jani": text}, "dead")
+    assert answer(checker, traces=20, max_steps=10_000).value == value
+
+
+def test_a_translation_that_is_read_again_ends_for_the_same_reasons(tmp_path: Path) -> None:
+    of_system(tmp_path, hospital())
+    loaded = api.load(str(tmp_path / "main.xml"))
+
+    (tmp_path / "main.jani").write_text("".join(write(api.to_jani(loaded))), encoding="utf-8")
+    again, _ = api.read_jani(str(tmp_path / "main.jani"))
+    first = answer(api.checker(api.to_jani(loaded)), traces=50)
+    assert counts(answer(api.checker(again), traces=50)) == counts(first)
+
+
+def test_whether_a_plain_model_gets_stuck_cannot_be_asked() -> None:
+    written = document(automaton("a", "s t", ONE_WAY), variables=[variable("x")], properties=FINALLY)
+    with pytest.raises(api.PropertyError, match="there is no property stuck; the model has: p"):
+        api.checker(model(written), ["stuck"])
+
+
+def test_a_property_of_this_name_is_the_one_that_is_asked(tmp_path: Path) -> None:
+    files = hospital()
+    files["properties.jani"] = files["properties.jani"].replace('"name": "delivered"', '"name": "stuck"')
+    (asked,) = of_system(tmp_path, files, "stuck").asked
+    assert not asked.question.is_stuck
+    assert asked.question.variables == ("topic_delivered_msg.valid",)
+
+
+def test_both_kernels_end_for_the_same_reason(tmp_path: Path) -> None:
+    checker = of_system(tmp_path, hospital())
+    for asked in (*checker.asked, checker.stuck):
+        compiled = checker.compiled(asked)
+        both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
+        ends = []
+        for trace in range(8):
+            found = []
+            for each in both:
+                each.begin(0, trace)
+                each.advance(10_000)
+                found.append((each.ending(), each.open_ways(0), each.outcome()))
+            assert found[0] == found[1]
+            ends.append(found[0][0])
+        assert {End.STUCK.value} < set(ends)
+
+
+def test_a_batch_tells_the_end_of_each_trace(tmp_path: Path) -> None:
+
+    checker = of_system(tmp_path, hospital())
+    outcome = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 10_000))
+    assert len(outcome.ends) == len(outcome.verdicts) == 10
+    assert {(verdict, reason) for verdict, reason in zip(outcome.verdicts, outcome.ends, strict=True)} == {
+        (0, End.STUCK),
+        (1, End.DECIDED),
+    }
+    cut = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 5))
+    assert set(cut.ends) == {End.CUT}

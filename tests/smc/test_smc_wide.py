@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Actions with more combinations of edges than any integer holds: each has its weight, and each edge its share."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
+
+from fuzz.networks import wide as wide_network
+from roaml.smc import kernel
+from roaml.smc.model import Checker
+from roaml.smc.statistics import clopper_pearson
+from twin import difference
+
+SURE = 1 - 1e-9
+"""Tests that hold a probability against an interval fail by chance once in so many times."""
+
+
+def wide(count: int, edges: int, **more: Json) -> Json:
+    """`count` automata with `edges` edges each on one action: which one is taken, `x0`, `x1`, ... say."""
+    parts = []
+    for number in range(count):
+        taken = [edge("s", way("t", **{f"x{number}": pick}), action="a") for pick in range(edges)]
+        parts.append(automaton(f"m{number}", "s t", taken))
+    chosen = (0, count // 2, count - 1)
+    goals = {f"x{n}": probability(op("F", op("=", f"x{n}", edges - 1))) for n in chosen}
+    variables = [variable(f"x{number}", initial=-1) for number in range(count)]
+    return document(*parts, variables=variables, syncs=[["a"] * count], properties=goals, **more)
+
+
+@pytest.mark.parametrize(("count", "edges"), [(11, 2), (12, 2), (13, 2), (31, 3), (63, 2), (64, 2), (1100, 2)])
+def test_each_automaton_draws_its_edge(count: int, edges: int) -> None:
+    """From one combination for each of 2^11 to one of 2^1100, which is no number of any register."""
+    traces = 500
+    for answer in answers(wide(count, edges), traces).values():
+        lower, upper = clopper_pearson(answer.tally.successes, traces, SURE)
+        assert lower < 1 / edges < upper, (answer.question.name, answer.value)
+
+
+def test_one_edge_with_three_among_many_with_two() -> None:
+    """3 * 2^30 combinations by one number of 32 bits: every third one came twice as often as the others."""
+    parts = [automaton("three", "s t", [edge("s", way("t", x=n), action="a") for n in range(3)])]
+    parts += [automaton(f"m{n}", "s t", [edge("s", "t", action="a"), edge("s", "t", action="a")]) for n in range(30)]
+    goals = {"p": probability(op("F", op("=", "x", 0)))}
+    written = document(*parts, variables=[variable("x", initial=-1)], syncs=[["a"] * 31], properties=goals)
+    found = answers(written, 4000)["p"]
+    lower, upper = clopper_pearson(found.tally.successes, 4000, SURE)
+    assert lower < 1 / 3 < upper
+
+
+@pytest.mark.parametrize("common", [8, 40, 1100])
+@pytest.mark.parametrize("more", [0, 2])
+def test_the_weight_of_an_action_is_the_number_of_its_combinations(common: int, more: int) -> None:
+    """Two actions, one with 2^more times as many combinations as the other."""
+    parts = []
+    for number in range(common + more):
+        edges = [edge("s", "t", action="a")] * 2 + [edge("s", "t", action="b")] * (2 if number < common else 1)
+        parts.append(automaton(f"m{number}", "s t", edges))
+    first = automaton("first", "s a b", [edge("s", way("a", x=1), action="a"), edge("s", way("b", x=2), action="b")])
+    goals = {"p": probability(op("F", op("=", "x", 2)))}
+    size = common + more + 1
+    written = document(first, *parts, variables=[variable("x")], syncs=[["a"] * size, ["b"] * size], properties=goals)
+    found = answers(written, 600)["p"]
+    lower, upper = clopper_pearson(found.tally.successes, 600, SURE)
+    assert lower < 1 / (1 + 2**more) < upper
+
+
+def test_an_action_that_is_negligible_is_never_taken() -> None:
+    """A choice of 1 beside 2^1200 others, which is less than the smallest number of 64 bits."""
+    parts = [automaton(f"m{n}", "s t", [edge("s", "t", action="a")] * 2) for n in range(1200)]
+    alone = automaton("alone", "s t", [edge("s", way("t", x=1))])
+    goals = {
+        "p": probability(
+            op(
+                "F",
+                op("=", "x", 1),
+            ),
+            "Pmax",
+        )
+    }
+    written = document(alone, *parts, variables=[variable("x")], syncs=[[None, *["a"] * 1200]], properties=goals)
+    checker = Checker(model(written))
+    compiled = checker.compiled(checker.asked[0])
+    found = kernel.Kernel(compiled.program, compiled.goal)
+    for trace in range(50):
+        found.begin(0, trace)
+        found.step()
+        assert found.integer(0) == 0
+
+
+@pytest.mark.parametrize(("count", "edges"), [(12, 2), (64, 2), (40, 5)])
+@pytest.mark.parametrize("scheduler", [0, 77])
+def test_both_kernels_draw_the_same(count: int, edges: int, scheduler: int) -> None:
+    checker = Checker(model(wide(count, edges)))
+    for asked in checker.asked:
+        assert difference(checker, asked, 7, 10, 3, scheduler) == ""
+
+
+def test_schedulers_choose_every_edge() -> None:
+    """No scheduler looks at all combinations; together they choose all edges alike."""
+    checker = Checker(model(wide(64, 2)))
+    compiled = checker.compiled(checker.asked[0])
+    found = kernel.Kernel(compiled.program, compiled.goal)
+    chosen = [0] * 64
+    for scheduler in range(1, 301):
+        found.begin(0, 0, scheduler)
+        found.step()
+        for number in range(64):
+            chosen[number] += found.integer(number)
+    for ones in chosen:
+        lower, upper = clopper_pearson(ones, 300, SURE)
+        assert lower < 0.5 < upper
+
+
+def test_a_scheduler_is_a_function_of_the_state() -> None:
+    """The same scheduler does the same in the same state, whatever the trace and its random numbers."""
+    checker = Checker(model(wide(64, 3)))
+    compiled = checker.compiled(checker.asked[0])
+    found = kernel.Kernel(compiled.program, compiled.goal)
+    seen = set()
+    for trace in range(20):
+        found.begin(trace, trace, 5)
+        found.step()
+        seen.add(tuple(found.snapshot()[0]))
+    assert len(seen) == 1
+
+
+@settings(max_examples=15, suppress_health_check=list(HealthCheck))
+@given(st.integers(2, 100), st.randoms(use_true_random=False), st.sampled_from([0, 3]))
+def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Random, scheduler: int) -> None:
+    checker = Checker(model(wide_network(random, count)))
+    assert difference(checker, checker.asked[0], 7, 3, 20, scheduler) == ""
