@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -20,11 +21,7 @@ _COMMAND = re.compile(r"^\$ as2fm-lsp (.*)\n((?:(?!\$|```).*\n)*)", re.MULTILINE
 
 
 def test_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    for folder in ("plugins", "nodes", "interfaces"):
-        (tmp_path / folder).symlink_to(ROOT / "examples/case_study" / folder)
-    for path in (ROOT / "examples/case_study").iterdir():
-        if path.is_file():
-            (tmp_path / path.name).write_bytes(path.read_bytes())
+    shutil.copytree(ROOT / "examples/case_study", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     commands = _COMMAND.findall(TEXT)
     assert len(commands) == 3
