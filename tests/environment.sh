@@ -8,20 +8,32 @@ fail() {
     exit 1
 }
 
+is_recent() {
+    "$1" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null
+}
+
+# Says why a Python cannot be used, or nothing if it does not start.
+too_old() {
+    version=$("$1" -c 'import sys; print("%d.%d.%d" % sys.version_info[:3])' 2>/dev/null) || return 0
+    echo "Python $version at $(command -v "$1") is too old; "
+}
+
 find_python() {
-    for candidate in "${PYTHON:-}" python3 python3.13 python3.12 python3.11 python3.10; do
-        if [ -n "$candidate" ] && command -v "$candidate" >/dev/null 2>&1 &&
-            "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+    old=""
+    for candidate in "${PYTHON:-}" python3 python3.14 python3.13 python3.12 python3.11 python3.10 python; do
+        [ -n "$candidate" ] && command -v "$candidate" >/dev/null 2>&1 || continue
+        if is_recent "$candidate"; then
             echo "$candidate"
             return
         fi
+        old=${old:-$(too_old "$candidate")}
     done
-    fail "Python 3.10 or newer is needed: install it, or name it with PYTHON=/path/to/python3"
+    fail "${old}Python 3.10 or newer is needed: install it, or name it with PYTHON=/path/to/python3"
 }
 
 make_environment() {
     python=$(find_python)
-    "$python" -m venv .venv >/dev/null 2>&1 && return
+    "$python" -m venv --clear .venv >/dev/null 2>&1 && return
     rm -rf .venv
     if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
         apt-get -qq update >/dev/null 2>&1 || true
@@ -36,7 +48,7 @@ prepare() {
     case "$(cat .venv/prepared 2>/dev/null)" in
         "$wanted $1" | "$wanted [dev]") return ;;
     esac
-    [ -x .venv/bin/python ] || make_environment
+    is_recent .venv/bin/python || make_environment
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$1" 2>.venv/pip.log ||
         { cat .venv/pip.log >&2; fail "pip could not install the project; is a package index configured and reachable?"; }
     echo "$wanted $1" >.venv/prepared

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The VS Code extension: lint, types, unit tests, the package, and what it does in a real workbench.
 # Arguments choose end-to-end tests by name.
-# Says nothing while all is well.
 set -eu
 cd "$(dirname "$0")/../vscode-extension"
 . ../tests/environment.sh
@@ -13,6 +12,7 @@ command -v node >/dev/null 2>&1 && command -v npm >/dev/null 2>&1 ||
     fail "The VS Code extension cannot be tested: Node.js $(node --version) is too old, 20 is needed"
 
 quietly() {
+    echo "$*"
     log=$(mktemp)
     "$@" >"$log" 2>&1 || {
         cat "$log" >&2
@@ -31,4 +31,4 @@ quietly npm run package
 quietly npm run lint
 quietly npm run unit
 sh e2e/workbench/setup.sh
-quietly npm run e2e -- "$@"
+npm run --silent e2e -- "$@" || fail "failed: npm run e2e"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-PATIENCE = 2.0
+PATIENCE = 10.0
 """Seconds in which a client must say that it shows the work; the work waits for that."""
 
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writing files whole or not at all."""
+"""Writing files whole or not at all.
+
+A file is written under another name, `.as2fm-writing-…` beside it, and then renamed. The writer holds a lock on it. A
+file of such a name without a lock was left behind by a killed process. The next one that writes there removes it.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,13 @@ import contextlib
 import os
 import tempfile
 from collections.abc import Iterable
+
+try:
+    import fcntl
+except ImportError:  # Windows, where what is left behind stays
+    fcntl = None  # type: ignore[assignment]
+
+PREFIX = ".as2fm-writing-"
 
 
 def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
@@ -16,21 +27,29 @@ def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
         content: all of it, or its text in pieces, which are not held together.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: it cannot be written; `filename` is `path`.
     """
     pieces = [content] if isinstance(content, (str, bytes)) else content
     data = (piece.encode("utf-8", "backslashreplace") if isinstance(piece, str) else piece for piece in pieces)
-    if os.path.exists(path) and not os.path.isfile(path):  # a device or pipe is written to, not replaced
-        with open(path, "wb") as file:
-            file.writelines(data)
-        return
-    path = os.path.realpath(path)
-    mode = os.stat(path).st_mode & 0o777 if os.path.exists(path) else 0o666 & ~_umask()
     try:
-        handle, temporary = tempfile.mkstemp(dir=os.path.dirname(path), prefix=".as2fm-")
+        if os.path.exists(path) and not os.path.isfile(path):  # a device or pipe is written to, not replaced
+            with open(path, "wb") as file:
+                file.writelines(data)
+        else:
+            _replace(os.path.realpath(path), data)
     except OSError as error:
-        error.filename = path  # not the name of a file that nobody has asked for
+        # Not the name of a file that nobody has asked for, nor none at all, as of a full disk.
+        error.filename, error.filename2 = path, None
         raise
+
+
+def _replace(path: str, data: Iterable[bytes]) -> None:
+    mode = os.stat(path).st_mode & 0o777 if os.path.exists(path) else 0o666 & ~_umask()
+    folder = os.path.dirname(path)
+    sweep(folder)
+    handle, temporary = _temporary(folder)
+    # The lock outlives `close`, which may be what fails. Windows has none, and renames no file that is open.
+    locked = None if fcntl is None else os.dup(handle)
     try:
         with open(handle, "wb") as file:
             file.writelines(data)
@@ -40,6 +59,48 @@ def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
         with contextlib.suppress(OSError):
             os.unlink(temporary)
         raise
+    finally:
+        if locked is not None:
+            os.close(locked)
+
+
+def _temporary(folder: str) -> tuple[int, str]:
+    """A new file, open and locked; and its name."""
+    while True:
+        handle, path = tempfile.mkstemp(dir=folder, prefix=PREFIX)
+        if fcntl is not None:
+            with contextlib.suppress(OSError):  # a file system without locks
+                fcntl.flock(handle, fcntl.LOCK_EX)
+        if fcntl is None or os.fstat(handle).st_nlink:
+            return handle, path
+        os.close(handle)  # it was swept away before it was locked
+
+
+def sweep(folder: str) -> None:
+    """Remove from a folder what killed processes were writing."""
+    if fcntl is None:
+        return
+    try:
+        names = os.listdir(folder)
+    except OSError:
+        return
+    for name in names:
+        if name.startswith(PREFIX):
+            with contextlib.suppress(OSError):
+                _remove_unlocked(os.path.join(folder, name))
+
+
+def _remove_unlocked(path: str) -> None:
+    """
+    Raises:
+        OSError: somebody is writing the file, or it cannot be removed.
+    """
+    handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.unlink(path)
+    finally:
+        os.close(handle)
 
 
 def _umask() -> int:

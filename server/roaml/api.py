@@ -345,8 +345,26 @@ def source_map(system: LoadedSystem, model: Model) -> SourceMap:
     return _source_map(model, system.analysis, system.path)
 
 
+class SharedFileError(ValueError):
+    """Systems that are not migrated would break. `shared` is each file that they use and that would change."""
+
+    def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
+        path, systems = next(iter(shared.items()))
+        super().__init__(f"{path}: it belongs to {', '.join(systems)}, too")
+        self.shared = shared
+
+    @property
+    def systems(self) -> tuple[str, ...]:
+        """The systems that would have to be migrated as well, each once."""
+        return tuple(dict.fromkeys(system for systems in self.shared.values() for system in systems))
+
+
 def migrate(
-    paths: Iterable[str], ros_paths: Iterable[str] = (), settings: Settings | None = None
+    paths: Iterable[str],
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    *,
+    with_related: bool = False,
 ) -> tuple[Migration, ...]:
     """What becomes of systems when they are moved to the current dialect. Nothing is written.
 
@@ -354,10 +372,12 @@ def migrate(
         paths: system files, or folders in which they are looked for.
         ros_paths: folders with ROS interface packages, besides those configured.
         settings: in place of the configuration found around the first path.
+        with_related: whether to migrate the systems, too, that would break because they share a file, and so on. They
+            are looked for in the repository around each system, or else in the folder around its files.
 
     Raises:
-        PathError: a path cannot be read, or is neither a folder nor a system file; a file is no proper text; or a
-            system that is not moved names a file that would be renamed.
+        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is no proper text.
+        SharedFileError: another system would break; only if not `with_related`.
     """
     paths = [os.path.abspath(path) for path in paths]
     if settings is None:
@@ -377,19 +397,37 @@ def migrate(
     for migration in migrations:
         if result.source(migration.path).undecodable is not None:
             raise PathError(f"{migration.path}: it holds bytes that are no text; mend it first")
-    renamed = [migration.path for migration in migrations if migration.path != migration.new_path]
-    memberships = _around(systems, settings).memberships if renamed else {}
-    for path in renamed:
-        for system in memberships.get(path, ()):
-            if system not in systems:
-                raise PathError(f"{path}: it belongs to {system}, too; name that as well")
-    return migrations
+    around = _around(systems, result.snapshot.analysis, settings) if migrations else None
+    shared = {} if around is None else _broken(migrations, frozenset(systems), around)
+    if not shared:
+        return migrations
+    error = SharedFileError(shared)
+    if not with_related:
+        raise error
+    return migrate([*paths, *error.systems], ros_paths, settings, with_related=True)
 
 
-def _around(paths: Iterable[str], settings: Settings) -> Analysis:
-    """All that lies in the repositories, or else the folders, of some files."""
-    roots = dict.fromkeys(enclosing_root(path) or os.path.dirname(path) for path in paths)
-    return Workspace(roots, settings).snapshot().analysis
+def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
+    """File that changes -> the systems, other than those migrated, that it breaks: it is renamed, or brings errors."""
+    memberships = around.analysis.memberships
+    shared: dict[str, tuple[str, ...]] = {}
+    for each in migrations:
+        others = [system for system in memberships.get(each.path, ()) if system not in migrated]
+        if others and each.path == each.new_path:
+            after = around.with_texts({each.path: each.after})
+            others = [s for s in others if len(after.checker.errors(s)) > len(around.checker.errors(s))]
+        if others:
+            shared[each.path] = tuple(others)
+    return shared
+
+
+def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
+    """All that lies in the configured roots, and in the repositories of some systems or else around their files."""
+    roots = dict.fromkeys(settings.roots)
+    for system in systems:
+        folders = {os.path.dirname(path) for path in analysis.files_of(system)}
+        roots[enclosing_root(system) or os.path.commonpath(folders)] = None
+    return Workspace(roots, settings).snapshot()
 
 
 def _workspace(

@@ -34,6 +34,43 @@ def test_files_are_rewritten(command: Command, folder: Path) -> None:
     assert command("format", "models/model.jani").out == "formatted models/model.jani\n"
 
 
+PLAIN = '<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0">\n<state id="a"/></scxml>'
+OLDER = '<scxml name="A" version="1.0">\n<ros_topic_publisher topic="/a" type="std_msgs/Empty"/><state id="a"/></scxml>'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        PLAIN,
+        PLAIN.replace("<state", '<state type="x"'),
+        '<scxml><state id="a">\n<transition cond="_event.origin"/></state></scxml>',
+        '<types xmlns="urn:other">\n<type name="a"/></types>',
+        "<statechart>\n<state/></statechart>",
+        PAGE,
+    ],
+    ids=["plain", "plain with more", "foreign", "types", "another root", "page"],
+)
+@pytest.mark.parametrize("name", ["x.scxml", "x.xml"])
+def test_what_is_not_ours_is_left_in_peace(command: Command, tmp_path: Path, text: str, name: str) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    for arguments in (["."], [".", "--check"], [tmp_path, "--diff"]):
+        assert command("format", *arguments) == (0, "", "")
+    assert path.read_text() == text
+
+
+def test_plain_scxml_that_is_named_or_listed_is_formatted(command: Command, tmp_path: Path) -> None:
+    for name, text in {"plain.scxml": PLAIN, "listed.scxml": PLAIN, "older.scxml": OLDER}.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "main.xml").write_text(
+        '<roaml>\n    <node_models>\n        <input type="node-ascxml" src="listed.scxml" />\n'
+        "    </node_models>\n</roaml>\n"
+    )
+    assert command("format", ".", "--check").out == "listed.scxml\nolder.scxml\n"
+    assert command("format", "plain.scxml").out == "formatted plain.scxml\n"
+    assert command("format", "plain.scxml", "--check").status == 0
+
+
 def test_check_names_what_would_change(command: Command, folder: Path) -> None:
     assert command("format", "--check", "models") == (1, "models/b.ascxml\nmodels/p.jani\n", "")
     assert command("format", "--check", "models/a.scxml") == (0, "", "")

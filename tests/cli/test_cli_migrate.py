@@ -263,20 +263,65 @@ def test_a_file_is_never_overwritten(command: Command, tmp_path: Path) -> None:
     assert read(tmp_path) == before
 
 
-def test_a_machine_of_a_further_system_is_not_taken_away_from_it(command: Command, tmp_path: Path) -> None:
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("is_repository", [True, False])
+def test_a_machine_of_a_further_system_is_not_taken_away_from_it(
+    command: Command, tmp_path: Path, named: bool, is_repository: bool
+) -> None:
     write(tmp_path / "a")
-    (tmp_path / ".git").mkdir()
+    if is_repository:
+        (tmp_path / ".git").mkdir()
+    else:  # the files of a system show where others may be
+        (tmp_path / "common").mkdir()
+        (tmp_path / "common/bt.xml").write_text(OLD["bt.xml"])
+        (tmp_path / "a/main.xml").write_text(OLD["main.xml"].replace("./bt.xml", "../common/bt.xml"))
     other = tmp_path / "b" / "main.xml"
     other.parent.mkdir()
     other.write_text(OLD["main.xml"].replace('src="', 'src="../a/').replace("src='", "src='../a/"))
     before = read(tmp_path)
     done = command("migrate", "a/main.xml")
     assert done.status == 2
-    assert done.err.endswith(f"it belongs to {other}, too; name that as well\n")
+    assert done.err.endswith(
+        "would change, which breaks b/main.xml; nothing was changed; add --with-related to migrate b/main.xml, too\n"
+    )
     assert read(tmp_path) == before
-    assert command("migrate", "a/main.xml", "b/main.xml").status == 0
+    assert command("migrate", "a/main.xml", *("b/main.xml" if named else "--with-related",)).status == 0
     assert other.read_text() == NEW["main.xml"].replace('src="', 'src="../a/').replace("src='", "src='../a/")
     assert command("--check", ".").status == 0
+
+
+def test_systems_that_share_files_with_each_other_come_along(command: Command, check: Command, tmp_path: Path) -> None:
+    """A shares a machine with B, and B another one with C; D stands alone."""
+    (tmp_path / ".git").mkdir()
+    for name, machines in {"a": "x", "b": "xy", "c": "y", "d": "z"}.items():
+        inputs = "".join(f'<input type="ros-scxml" src="{each}.scxml" />' for each in machines)
+        (tmp_path / f"{name}.xml").write_text(
+            '<convince_mc_tc><mc_parameters><max_time value="1" unit="s" /></mc_parameters>'
+            f'<node_models>{inputs}</node_models><properties><input type="jani" src="p.jani" /></properties>'
+            "</convince_mc_tc>"
+        )
+        for each in machines:
+            (tmp_path / f"{each}.scxml").write_text(OLD["nodes/base.scxml"].replace("Base", f"M{each}"))
+    (tmp_path / "p.jani").write_text(OLD["p.jani"])
+    before = read(tmp_path)
+    done = command("migrate", "a.xml")
+    assert (done.status, read(tmp_path)) == (2, before)
+    assert "breaks b.xml; nothing was changed; add --with-related" in done.err
+    assert command("migrate", "a.xml", "--with-related").status == 0
+    assert sorted(path.name for path in tmp_path.glob("*.*scxml")) == ["x.ascxml", "y.ascxml", "z.scxml"]
+    after = read(tmp_path)
+    assert after["d.xml"] == before["d.xml"]
+    assert [name for name in "abc" if b"<roaml>" in after[f"{name}.xml"]] == ["a", "b", "c"]
+    assert not [row for row in check("a.xml", "b.xml", "c.xml").rows if row["code"] == "missing-file"]
+
+
+def test_a_file_that_is_shared_and_keeps_its_name_does_not_stop_it(command: Command, tmp_path: Path) -> None:
+    write(tmp_path / "a")
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "b.xml").write_text(
+        '<roaml><behavior_tree><input type="bt.cpp-xml" src="a/bt.xml" /></behavior_tree></roaml>'
+    )
+    assert command("migrate", "a").status == 0
 
 
 def test_when_writing_fails_each_system_names_files_that_are_there(

@@ -53,16 +53,29 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
     [
         (["--check"], "--check needs a PATH"),
         (["--check", "nowhere.xml"], "there is no such file or folder"),
-        (["--check", ".", "--select", "no-such-rule"], "there is no rule no-such-rule"),
-        (["--check", ".", "--ignore", "xml-syntax,no-such-rule"], "there is no rule no-such-rule"),
+        (["--check", ".", "--select", "no-such-rule"], "there is no rule `no-such-rule`"),
+        (["--check", ".", "--ignore", "xml-syntax,no-such-rule"], "there is no rule `no-such-rule`"),
         (["--check", ".", "--format", "html"], "invalid choice: 'html'"),
         (["--check", ".", "--severity", "fatal"], "invalid choice: 'fatal'"),
         (["--check", ".", "--frobnicate"], "unrecognized arguments: --frobnicate"),
         (["--check", ".", "--output"], "expected one argument"),
         (["--check", ".", "--stdin-filename", "."], "takes the name of a file"),
-        (["main.xml"], "used with --check only"),
+        (["."], "used with --check only"),
+        (
+            ["main.xml"],
+            "there is no command `main.xml`, and no such file; the commands are `format`, `init`, `migrate`",
+        ),
+        (["verfy", "main.xml", "--expect", "p > 0.5"], "there is no command `verfy`; did you mean `verify`?"),
+        (["Translate", "main.xml"], "there is no command `Translate`; did you mean `translate`?"),
+        (["check", "main.xml"], "there is no command `check`; did you mean `--check`?"),
+        (["help"], "there is no command `help`; did you mean `--help`?"),
+        (["--chekc", "."], "unrecognized arguments: --chekc; did you mean `--check`?"),
+        (["verify", ".", "--epsilom=0.1"], "unrecognized arguments: --epsilom=0.1; did you mean `--epsilon`?"),
+        (["verify", ".", "--method", "spr"], "did you mean `sprt`?"),
+        (["--check", ".", "--ignore", "unknwn-type"], "there is no rule `unknwn-type`; did you mean `unknown-type`?"),
+        (["--check", ".", "--select", "unknwn-type,xml-syntx"], "`xml-syntx`; did you mean `xml-syntax`?"),
         (["--format", "json"], "used with --check only"),
-        (["--explain", "unknwon-element"], "did you mean unknown-element?"),
+        (["--explain", "unknwon-element"], "there is no rule `unknwon-element`; did you mean `unknown-element`?"),
         (["--explain", ""], "there is no rule"),
         (["--tcp", "nonsense"], "--tcp takes HOST:PORT"),
         (["--tcp", "localhost:99999"], "--tcp takes HOST:PORT"),
@@ -77,6 +90,18 @@ def test_wrong_use(command: Command, arguments: list[str], complaint: str) -> No
     assert done.status == 2
     assert complaint in done.err
     assert not done.out
+
+
+def test_all_commands_count_the_same_files(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    told = "3 files checked: 1 error"
+    assert command("--check", "main.xml").out.splitlines()[-1] == told
+    for name in ("translate", "verify"):
+        assert told in command(name, "main.xml").err.splitlines(), name
+    (tmp_path / "clock.ascxml").write_text(clock.CLOCK)
+    command("translate", "main.xml")
+    (tmp_path / "main.jani").write_text((tmp_path / "main.jani").read_text().replace('"automata"', '"automaton"'))
+    assert any(line.startswith("1 file checked: ") for line in command("verify", "main.jani").err.splitlines())
 
 
 def test_help_shows_every_option_with_examples(command: Command) -> None:

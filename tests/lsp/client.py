@@ -17,6 +17,7 @@ from pytest_lsp import LanguageClient
 from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, register_lsp_features
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
+QUICK = "from as2fm_lsp import __main__, diagnostics; diagnostics.QUICK = {}; __main__.main()"
 PATIENCE = 120
 """Seconds to wait for a server: other work on the machine makes it slow, not wrong."""
 
@@ -149,14 +150,15 @@ async def connect(
     options: dict[str, object] | None = None,
     settings: dict[str, object] | None = None,
     is_slow: bool = False,
+    quick: float | None = None,
 ) -> AsyncIterator[Client]:
-    """A server with these folders open."""
+    """A server with these folders open. It shows progress of checks that take longer than `quick` seconds, if given."""
     client = Client(is_slow=is_slow)
     capabilities = capabilities or types.ClientCapabilities()
     if settings is not None:
         client.set_configuration({"as2fm": settings})
         capabilities.workspace = types.WorkspaceClientCapabilities(configuration=True)
-    await client.start_io(*COMMAND)
+    await client.start_io(*(COMMAND if quick is None else (sys.executable, "-c", QUICK.format(quick))))
     try:
         await client.initialize_session(
             types.InitializeParams(

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections import Counter
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.formats.report import Entry
+from as2fm_lsp.cli.output import complain
 from as2fm_lsp.write import write_file
 from roaml.disk import MAX_DATA, required
 
@@ -28,7 +28,7 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
     """The entries that the baseline does not know."""
     if not os.path.exists(path):
         _write(path, entries)
-        print(f"as2fm-lsp: wrote {path} with {len(entries)} known diagnostics", file=sys.stderr)
+        complain(f"wrote {path} with {len(entries)} known diagnostics")
         return []
     known = _read(path)
     fresh = []

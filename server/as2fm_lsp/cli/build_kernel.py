@@ -8,7 +8,6 @@ if it fails: the kernel stays what it was.
 
 from __future__ import annotations
 
-import os
 import shlex
 import subprocess
 import sys
@@ -17,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 import roaml.smc
+from as2fm_lsp.write import write_file
 
 SOURCE = Path(roaml.smc.__file__).with_name("kernel.c")
 FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
@@ -41,7 +41,7 @@ def build(source: Path = SOURCE) -> Path:
     if not linker:
         raise BuildError("this Python does not say how extensions are compiled")
     target = source.with_name(f"kernel{sysconfig.get_config_var('EXT_SUFFIX')}")
-    with tempfile.TemporaryDirectory(dir=source.parent) as folder:
+    with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / target.name
         position = shlex.split(sysconfig.get_config_var("CCSHARED") or "")
         include = f"-I{sysconfig.get_path('include')}"
@@ -53,7 +53,7 @@ def build(source: Path = SOURCE) -> Path:
         if done.returncode != 0:
             reason = next((line for line in done.stderr.splitlines() if "error" in line), f"{linker[0]} failed")
             raise BuildError(f"the kernel does not compile: {reason}")
-        os.replace(made, target)
+        write_file(str(target), made.read_bytes())
     return target
 
 

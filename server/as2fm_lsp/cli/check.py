@@ -12,9 +12,10 @@ from dataclasses import replace
 from typing import TextIO
 
 from as2fm_lsp.cli import baseline
+from as2fm_lsp.cli.arguments import unknown_rule
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Severity
@@ -38,11 +39,13 @@ def run(options: argparse.Namespace) -> int:
         return _usage("--fix changes files; it cannot be used with --stdin-filename")
     unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
     if unknown:
-        return _usage(f"there is no rule {', '.join(unknown)}")
+        return _usage(*map(unknown_rule, unknown))
     paths = [*options.paths, *([] if stdin is None else [stdin])]
     settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
     if problems and not settings.origin:  # else they are among the diagnostics
-        return _usage(problems[0])
+        for problem in problems:
+            complain(problem)
+        return USAGE
     settings = replace(
         settings,
         ament_prefixes=ament_prefixes(),
@@ -55,12 +58,12 @@ def run(options: argparse.Namespace) -> int:
         if options.fix and (fixed := api.fix(result)):
             for path, data in fixed.items():
                 write_file(path, data)
-                print(f"as2fm-lsp: fixed {shown_path(path)}", file=sys.stderr)
+                complain(f"fixed {shown_path(path)}")
             result = api.check(paths, options.ros_path, settings)
     except api.PathError as error:
         return _usage(str(error))
     except OSError as error:
-        return _usage(f"{error.filename}: {error.strerror or error}")
+        return _usage(f"{shown_path(str(error.filename))}: {error.strerror or error}")
     lowest = SEVERITIES[options.severity]
     failed = any(d.code == _CRASH for d in result.diagnostics)
     shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]
@@ -104,6 +107,7 @@ def _statistics(entries: Sequence[Entry]) -> str:
     return "".join(f"{count:6} {severity:<12} {code}\n" for (code, severity), count in rows)
 
 
-def _usage(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+def _usage(*messages: str) -> int:
+    for message in messages:
+        complain(message)
     return USAGE

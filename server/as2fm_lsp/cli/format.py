@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-import argparse
 import os
-import sys
 from collections.abc import Iterator, Sequence
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml.disk import Problem
 from roaml.ide.format import can_format, format_edits, is_ours
+from roaml.language import HL_SCXML
+from roaml.model.dialect import dialect_of
 from roaml.model.kinds import FileKind
+from roaml.model.machine import Dialect
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.discover import candidates
@@ -29,7 +31,8 @@ def run(arguments: Sequence[str]) -> int:
     settings, problems = find_settings(os.path.abspath(options.paths[0]))
     if problems:
         return _fail(problems[0])
-    analysis = Workspace((), settings).snapshot().analysis
+    folders = dict.fromkeys(path for path in map(os.path.abspath, options.paths) if os.path.isdir(path))
+    analysis = Workspace(folders, settings).snapshot().analysis
     for path in options.paths:
         if not os.path.isdir(path) and (problem := _problem(analysis, os.path.abspath(path))):
             return _fail(f"{path}: {problem}")
@@ -39,7 +42,7 @@ def run(arguments: Sequence[str]) -> int:
         if source is None:
             continue
         if source.undecodable is not None or not can_format(analysis, path):
-            print(f"as2fm-lsp: {shown_path(path)}: not well-formed, so it stays as it is", file=sys.stderr)
+            complain(f"{shown_path(path)}: not well-formed, so it stays as it is")
             status = FOUND
             continue
         text = apply_edits(source.text, format_edits(analysis, path))
@@ -60,11 +63,12 @@ def run(arguments: Sequence[str]) -> int:
     return status
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp format",
         description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
-        "space is changed, so never what a file means.",
+        "space is changed, so never what a file means. Plain SCXML, JANI models and files of other tools are laid out "
+        "only if they are named.",
         epilog="exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not "
         "well-formed, 2 wrong use",
     )
@@ -84,14 +88,29 @@ def _problem(analysis: Analysis, path: str) -> str:
 
 
 def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
-    """The files that are named, and those in folders; JANI models there are written by tools and stay as they are."""
+    """The files that are named, and those in folders that are certainly written by hand and in our languages."""
     for path in map(os.path.abspath, paths):
         if not os.path.isdir(path):
             yield path
             continue
         for each in candidates((path,), settings.exclude):
-            if is_ours(analysis, each) and analysis.kind(each) is not FileKind.JANI_MODEL:
+            if is_ours(analysis, each) and _is_hand_written(analysis, each):
                 yield each
+
+
+def _is_hand_written(analysis: Analysis, path: str) -> bool:
+    """Whether a file is neither the output of a tool nor, if no system lists it, of a format that looks like ours."""
+    kind, document = analysis.kind(path), analysis.document(path)
+    if kind is FileKind.JANI_MODEL or path in analysis.memberships:
+        return kind is not FileKind.JANI_MODEL
+    if kind is FileKind.STRUCTS:
+        return document is not None and document.root is not None and document.root.find("struct") is not None
+    if kind is not FileKind.MACHINE:
+        return True
+    machine = analysis.machine(path)
+    if machine is None or document is None or machine.root not in HL_SCXML.roots:
+        return False
+    return dialect_of(machine, document, None) in (Dialect.CURRENT, Dialect.OLDER)
 
 
 def _diff(source: SourceFile, text: str) -> Iterator[str]:
@@ -100,5 +119,5 @@ def _diff(source: SourceFile, text: str) -> Iterator[str]:
 
 
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shlex
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import as2fm_lsp
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 
 
@@ -21,7 +21,7 @@ def run(arguments: Sequence[str]) -> int:
     files = dict(template("delivery_robot"))
     for name in files:
         if os.path.exists(os.path.join(folder, name)):
-            print(f"as2fm-lsp: {os.path.join(folder, name)} exists already; nothing was written", file=sys.stderr)
+            complain(f"{os.path.join(folder, name)} exists already; nothing was written")
             return USAGE
     try:
         for name, text in files.items():
@@ -29,16 +29,16 @@ def run(arguments: Sequence[str]) -> int:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             write_file(path, text)
     except OSError as error:
-        print(f"as2fm-lsp: {folder}: {error.strerror or error}", file=sys.stderr)
+        complain(f"{shown_path(str(error.filename or folder))}: {error.strerror or error}")
         return USAGE
     for name in files:
-        print(f"wrote {shown_path(os.path.join(folder, name))}")
-    print(f"\nnext: as2fm-lsp --check {shlex.quote(os.path.join(folder, 'main.xml'))}")
+        print_text(f"wrote {shown_path(os.path.join(folder, name))}\n")
+    print_text(f"\nnext: as2fm-lsp --check {shlex.quote(os.path.join(folder, 'main.xml'))}\n")
     return CLEAN
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
+def parser() -> ArgumentParser:
+    result = ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
     result.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
     return result
 

@@ -7,15 +7,19 @@ Without a command the language server runs on standard input and output.
 from __future__ import annotations
 
 import argparse
+import importlib
 import logging
 import os
 import sys
 import traceback
 from collections.abc import Sequence
 
-from as2fm_lsp.cli.check import FAILURE, USAGE
+from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.check import CLEAN, FAILURE, USAGE
+from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
 from roaml import __version__
 from roaml.project.settings import SEVERITIES
+from roaml.rules.rule import close_names, did_you_mean, listing
 
 EXAMPLES = """\
 examples:
@@ -41,45 +45,51 @@ INTERRUPTED, PIPE_CLOSED = 130, 141
 
 def run(arguments: Sequence[str]) -> int:
     """Do what the command line says; the exit status."""
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - None if it was closed, as by `>&-`
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     try:
-        status = _dispatch(arguments)
-        if not sys.stdout.closed:  # as the server does to say that it has ended
-            sys.stdout.flush()
+        status = _status(arguments)
+        flush()
         return status
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:
-        # The reader has seen enough. What Python still holds goes nowhere, or it would complain at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # the reader has seen enough
         return PIPE_CLOSED
-    except Exception:
-        traceback.print_exc()
-        print("as2fm-lsp: this is a mistake of the tool itself; please report it", file=sys.stderr)
-        return FAILURE
+    except Exception as error:
+        return _failed(error)
+
+
+def _status(arguments: Sequence[str]) -> int:
+    try:
+        return _dispatch(arguments)
+    except SystemExit as end:  # as argparse ends; what it has printed is not flushed yet
+        return end.code if isinstance(end.code, int) else CLEAN
+
+
+def _failed(error: Exception) -> int:
+    """Tell what has ended the command; the exit status."""
+    if isinstance(error, OSError) and error.filename == STANDARD_OUTPUT:
+        complain(f"{STANDARD_OUTPUT}: {error.strerror or error}")
+        return USAGE
+    print_text("".join(traceback.format_exception(error)), stream=sys.stderr)
+    complain("this is a mistake of the tool itself; please report it")
+    return FAILURE
+
+
+COMMANDS = ("format", "init", "migrate", "translate", "verify")
+"""Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
 
 
 def _dispatch(arguments: Sequence[str]) -> int:
     command = arguments[0] if arguments else ""
-    if command == "init":
-        from as2fm_lsp.cli import init  # noqa: PLC0415 - each command imports only what it needs
-
-        return init.run(arguments[1:])
-    if command == "format":
-        from as2fm_lsp.cli import format  # noqa: A004, PLC0415
-
-        return format.run(arguments[1:])
-    if command == "migrate":
-        from as2fm_lsp.cli import migrate  # noqa: PLC0415
-
-        return migrate.run(arguments[1:])
-    if command == "translate":
-        from as2fm_lsp.cli import translate  # noqa: PLC0415
-
-        return translate.run(arguments[1:])
-    if command == "verify":
-        from as2fm_lsp.cli import verify  # noqa: PLC0415
-
-        return verify.run(arguments[1:])
+    if command in COMMANDS:
+        module = importlib.import_module(f"as2fm_lsp.cli.{command}")
+        status = module.run(arguments[1:])
+        assert isinstance(status, int)
+        return status
+    if command and not command.startswith("-") and not any(len(a) > 2 and "--check".startswith(a) for a in arguments):
+        complain(_misused(command))
+        return USAGE
     options = parser().parse_args(arguments)
     if options.explain is not None:
         from as2fm_lsp.cli import explain  # noqa: PLC0415
@@ -92,7 +102,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
         return check.run(options)
     defaults = vars(parser().parse_args([]))
     if any(value != defaults[name] for name, value in vars(options).items() if name not in _SERVING):
-        print("as2fm-lsp: PATH and the options for checking are used with --check only; see --help", file=sys.stderr)
+        complain(_misused(command))
         return USAGE
     from as2fm_lsp.cli import serve  # noqa: PLC0415
 
@@ -100,10 +110,22 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
+_ALONE = ("check", "explain", "help", "version")
+"""Options that people take for commands."""
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def _misused(first: str) -> str:
+    """What is wrong with arguments that begin with `first`, which is no command, and do not ask for a check."""
+    if first.startswith("-") or os.path.exists(first):
+        return "PATH and the options for checking are used with --check only; see --help"
+    meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
+    if meant:
+        return f"there is no command `{first}`{did_you_mean(meant)}"
+    return f"there is no command `{first}`, and no such file; the commands are {listing(COMMANDS)}; see --help"
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp",
         description="Check HL-SCXML models of ROS 2 robots, or serve an editor.",
         epilog=EXAMPLES,

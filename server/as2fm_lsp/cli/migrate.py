@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shutil
-import sys
 from collections.abc import Sequence
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.project.migrate import Migration
@@ -21,9 +20,11 @@ from roaml.project.migrate import Migration
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
-        migrations = api.migrate(options.paths, options.ros_path)
+        migrations = api.migrate(options.paths, options.ros_path, with_related=options.with_related)
     except api.PathError as error:
         return _fail(str(error))
+    except api.SharedFileError as error:
+        return _fail(_shared(error))
     if options.diff:
         print_text("".join(_diff(migration) for migration in migrations))
         return FOUND if migrations else CLEAN
@@ -33,23 +34,28 @@ def run(arguments: Sequence[str]) -> int:
     try:
         _write(migrations)
     except OSError as error:
-        return _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+        return _fail(f"{shown_path(str(error.filename))}: {error.strerror or error}")
     for migration in migrations:
         renamed = f" -> {shown_path(migration.new_path)}" if migration.new_path != migration.path else ""
         print_text(f"migrated {shown_path(migration.path)}{renamed}\n")
     if not migrations:
-        print("nothing to migrate")
+        print_text("nothing to migrate\n")
     return CLEAN
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp migrate",
         description="Move systems of an older dialect to the current one, keeping comments and layout.",
         epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 wrong use",
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
     result.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    result.add_argument(
+        "--with-related",
+        action="store_true",
+        help="migrate the systems that would break, too: they share a file",
+    )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
     return result
 
@@ -70,6 +76,17 @@ def _write(migrations: Sequence[Migration]) -> None:
             os.unlink(migration.path)
 
 
+def _shared(error: api.SharedFileError) -> str:
+    """What keeps systems from being migrated alone, and what to do."""
+    path, systems = next(iter(error.shared.items()))
+    more = f", and {len(error.shared) - 1} more" if len(error.shared) > 1 else ""
+    owners = ", ".join(map(shown_path, systems))
+    return (
+        f"{shown_path(path)}{more} would change, which breaks {owners}; nothing was changed; add --with-related to "
+        f"migrate {', '.join(map(shown_path, error.systems))}, too"
+    )
+
+
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

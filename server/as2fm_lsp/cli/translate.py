@@ -10,10 +10,11 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import entry, shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.progress import Progress
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
@@ -77,15 +78,15 @@ def run(arguments: Sequence[str]) -> int:
         _report(options.format, failure.result, output)
         return FOUND
     if options.format == "json" and STANDARD_OUTPUT not in (output, options.map):
-        print("[]")
+        print_text("[]\n")
     elif output != STANDARD_OUTPUT:
         told = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
         print_text(f"{shown_path(output)}: {summary(model)}\n", stream=told)
     return CLEAN
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp translate",
         description="Translate a system to JANI, and to plain SCXML on request.",
         epilog=EXAMPLES,
@@ -179,9 +180,9 @@ def _report(format_: str, result: api.CheckResult, output: str) -> None:
         print_text(FORMATS["json"](report), "utf-8")
     else:
         print_text(FORMATS["text"](report), stream=sys.stderr)
-        print(f"as2fm-lsp: {shown_path(output)} was not written", file=sys.stderr)
+        complain(f"{shown_path(output)} was not written")
 
 
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

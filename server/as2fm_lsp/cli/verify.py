@@ -15,10 +15,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.progress import Progress
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck
@@ -109,10 +110,10 @@ def _run(options: argparse.Namespace) -> int:
             progress.stage("compiling")
             checker = api.checker(subject.model, names)
     except api.ModelError as error:
-        return _errors(options, error.result.diagnostics, error.result.source)
+        return _errors(options, error.result.diagnostics, error.result.source, error.result.files)
     except api.JaniError as error:
         source = error.source
-        return _errors(options, error.diagnostics, lambda _: source)
+        return _errors(options, error.diagnostics, lambda _: source, (source.path,))
     except FaultError as fault:
         return _fault(options, subject, fault)
     if not checker.asked and not checker.refused:
@@ -262,7 +263,7 @@ class _Verification:
     def _print(self) -> None:
         text = self._text()
         print_text(text, None if self.options.format == "text" else "utf-8")
-        sys.stdout.flush()
+        flush()
 
     def _text(self) -> str:
         if self.options.format == "json":
@@ -318,7 +319,7 @@ class _Verification:
                 seen = speaking_against(result)
                 if seen is None:
                     what = "fails" if wanted_verdict(result) == FALSE else "holds"
-                    print(f"{result.name}: there is no trace in which it {what}", file=sys.stderr)
+                    print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
                 else:
                     stories.append(tell(recorder, seen.trace, self.subject.clock))
         for target in self.options.explain:
@@ -350,7 +351,7 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
-        raise UsageError("--dask needs the package distributed: pip install 'as2fm-lsp[dask]'") from None
+        raise UsageError("--dask needs the package distributed: pip install distributed") from None
     try:
         client = distributed.Client(address, timeout=10)
     except OSError as error:
@@ -359,8 +360,8 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
         yield client.get_executor(), max(1, sum(client.nthreads().values()))
 
 
-def parser() -> argparse.ArgumentParser:
-    result = argparse.ArgumentParser(
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
         prog="as2fm-lsp verify",
         description="Estimate by random traces how probable the properties of a system or JANI model are.",
         epilog=EXAMPLES,
@@ -487,21 +488,21 @@ def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError) -> 
     """The whole model cannot be run."""
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
-        print(f"as2fm-lsp: {shown_path(options.main)}: {fault.message}", file=sys.stderr)
+        complain(f"{shown_path(options.main)}: {fault.message}")
         if options.format == "json":
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
-    return _errors(options, (diagnostic,), subject.source_of)
+    return _errors(options, (diagnostic,), subject.source_of, subject.files)
 
 
 def _errors(
     options: argparse.Namespace,
     diagnostics: Sequence[Diagnostic],
     source_of: Callable[[str], SourceFile],
+    files: Sequence[str],
 ) -> int:
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
-    files = len({each.file for each in entries})
-    report = Report(entries, files, color=takes_color(sys.stderr))
+    report = Report(entries, len(files), color=takes_color(sys.stderr))
     if options.format == "json":
         print_text(as_json((), [_row(each) for each in entries]), "utf-8")
     elif options.format == "junit":
@@ -517,5 +518,5 @@ def _row(each: Entry) -> dict[str, Any]:
 
 
 def _fail(message: str) -> int:
-    print(f"as2fm-lsp: {message}", file=sys.stderr)
+    complain(message)
     return USAGE

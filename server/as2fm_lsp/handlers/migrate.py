@@ -44,7 +44,7 @@ def register(server: Server) -> None:
         server.trust.require(METHOD)
         path = session.convert.path(document_uri(params))
         try:
-            migrations = api.migrate([path], settings=session.settings_of(path))
+            migrations = api.migrate([path], settings=session.settings_of(path), with_related=True)
         except api.PathError as error:
             return {"edit": None, "files": [], "problem": str(error)}
         taken = [each.new_path for each in migrations if each.new_path != each.path and os.path.exists(each.new_path)]

@@ -34,7 +34,7 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
     try:
         stormpy: Any = importlib.import_module("stormpy")
     except ImportError:
-        raise ExactError("--exact needs the package stormpy: pip install 'as2fm-lsp[exact]'") from None
+        raise ExactError("--exact needs the package stormpy: pip install 'stormpy>=2'") from None
     if asked.goal.is_bounded:
         raise ExactError("step bounds are not computed exactly; leave --exact out")
     try:

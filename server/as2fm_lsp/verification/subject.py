@@ -24,11 +24,13 @@ class Subject:
     """A model, and the texts in which its places are.
 
     Attributes:
+        files: those that were read, the one that was named first.
         source_of: the text of a file that an origin names.
         clock: the variables for seconds and nanoseconds, if the model has them.
     """
 
     path: str
+    files: tuple[str, ...]
     model: Model
     source_of: Callable[[str], SourceFile]
     clock: tuple[str, str] | None
@@ -72,7 +74,7 @@ def load(
             model = with_constants(model, constants)
         except ValueError as error:
             raise ConstantError(str(error)) from None
-        return Subject(path, model, lambda _: source, _clock(model))
+        return Subject(path, (path,), model, lambda _: source, _clock(model))
     if constants:
         raise ConstantError("--constant is for JANI models; a system has no constants")
     return of_system(api.load(path, ros_paths, settings, overrides=overrides))
@@ -90,7 +92,7 @@ def of_system(system: api.LoadedSystem) -> Subject:
     # The translation leaves out bounds that its models cannot have: without them, another question would be answered.
     bounded = {each.name: each for each in system.properties if any(f.code == BOUNDS for f in faults_in(each))}
     model = replace(model, properties=tuple(bounded.get(each.name, each) for each in model.properties))
-    return Subject(system.path, model, source_of, _clock(model))
+    return Subject(system.path, system.files, model, source_of, _clock(model))
 
 
 def _clock(model: Model) -> tuple[str, str] | None:

@@ -113,7 +113,7 @@ class Checker:
             key = (each.span, each.codes)
             if each.codes is None or unused_suppression.RULE.code not in each.codes:
                 codes = None if each.codes is None else sorted(each.codes)
-                yield from unused_suppression.finding(source.text, each.comment, codes, used.get(key, ()))
+                yield from unused_suppression.finding(source.text, each.comment, codes, used.get(key, ()), BY_CODE)
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting

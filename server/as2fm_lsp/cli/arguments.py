@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments of the command line; a misspelled option, command or rule is answered with the nearest one."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from as2fm_lsp.cli.output import print_text
+from roaml.rules import BY_CODE
+from roaml.rules.rule import close_names, did_you_mean
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
+
+
+class ArgumentParser(argparse.ArgumentParser):
+    """Like that of the standard library; what it does not know, it compares with what it knows."""
+
+    def parse_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: None = None
+    ) -> argparse.Namespace:
+        options, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._hint(unknown)}")
+        return options
+
+    def _hint(self, unknown: Sequence[str]) -> str:
+        for each in unknown:
+            if each.startswith("--") and (close := close_names(each.partition("=")[0], self._option_string_actions)):
+                return did_you_mean(close)
+        return ""
+
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        if file is sys.stdout:
+            print_text(message)  # which fails if it cannot be written
+        else:
+            super()._print_message(message, file)
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            close = close_names(str(value), map(str, action.choices or ()))
+            raise argparse.ArgumentError(action, f"{error.message}{did_you_mean(close)}") from None
+
+
+def unknown_rule(code: str) -> str:
+    """What is wrong with a code that no rule has."""
+    return f"there is no rule `{code}`{did_you_mean(close_names(code, BY_CODE))}"

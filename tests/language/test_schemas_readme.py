@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of `schemas/README.md` says which schema a file is valid against; its commands work."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "schemas/README.md").read_text(encoding="utf-8")
+_ROW = re.compile(r"^\| (`<.*?) \| (.*?) \| `(.*?)` \|$", re.MULTILINE)
+SCHEMAS = {
+    (root, namespace.strip("`").replace("none", "")): schema
+    for roots, namespace, schema in _ROW.findall(README)
+    for root in re.findall(r"<(\w+)>", roots)
+}
+MODELS = sorted(path for pattern in ("*.xml", "*.ascxml") for path in (ROOT / "examples").rglob(pattern))
+MODELS = [path for path in MODELS if path.name != "package.xml"]
+
+
+def is_valid(schema: Path, text: bytes) -> bool:
+    """What `xmllint --schema` says, or where that is not installed, the library that it is made of."""
+    if shutil.which("xmllint"):
+        command = ["xmllint", "--noout", "--nonet", "--schema", str(schema), "-"]
+        return subprocess.run(command, input=text, capture_output=True, check=False).returncode == 0
+    return bool(etree.XMLSchema(etree.parse(schema)).validate(etree.fromstring(text)))
+
+
+def schema_of(text: bytes) -> Path:
+    name = etree.QName(etree.fromstring(text))
+    return ROOT / "schemas" / SCHEMAS[name.localname, name.namespace or ""]
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_example_is_valid_against_its_schema(path: Path) -> None:
+    text = path.read_bytes()
+    assert is_valid(schema_of(text), text)
+    broken = text.replace(b"</", b"<nonsense x='1'><a></a></nonsense></", 1)
+    assert not is_valid(schema_of(text), broken) or schema_of(text).name == "behaviortree.xsd"
+
+
+def test_all_schemas_are_listed() -> None:
+    for path in (ROOT / "schemas").iterdir():
+        assert path.name == "README.md" or f"`{path.name}`" in README, path.name
+
+
+def test_the_commands() -> None:
+    for line in re.findall(r"^xmllint (.*)$", README, re.MULTILINE):
+        *_, schema, model = shlex.split(line)
+        assert is_valid(ROOT / schema, (ROOT / model).read_bytes()), line
+
+
+OLD = '<scxml initial="on" version="1.0" name="Base" xmlns="...">\n<state id="on" />\n</scxml>\n'
+
+
+def test_other_namespaces() -> None:
+    (line,) = re.findall(r"^sed '(.*?)' .* --schema (\S+) -$", README, re.MULTILINE)
+    expression, schema = line
+    old, new = expression.removeprefix("s/").removesuffix("/").split("/")
+    stripped = re.sub(old, new, OLD)
+    assert stripped != OLD
+    assert not is_valid(ROOT / schema, OLD.encode())
+    assert is_valid(ROOT / schema, stripped.encode())
