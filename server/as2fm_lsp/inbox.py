@@ -16,7 +16,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeGuard
 
 from lsprotocol import types
 
@@ -25,13 +25,16 @@ log = logging.getLogger(__name__)
 _LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
 """Also behind the rest of what is no message, so that the message after it is found."""
 
+_FIELD = re.compile(rb"[A-Za-z-]+:")
+"""How a line of a header begins."""
+
 LONGEST_MESSAGE = 1 << 28
 """Bytes of one message. What claims to be longer is no message."""
 
 _LONGEST_LINE = 1 << 16
 _PIECE = 1 << 20
 _CHANGES = (types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
-_CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
+CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
 
 
 class Inbox:
@@ -133,7 +136,9 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
         match = _LENGTH.fullmatch(line)
         if match:
             length = int(match[1])
-        elif length and not line.strip():
+        elif line.strip():
+            length = length if _FIELD.match(line) else 0  # the header has ended without an end
+        elif length:
             if length <= LONGEST_MESSAGE:
                 body = b"".join(_pieces(stream, length))
                 if len(body) < length:
@@ -159,11 +164,16 @@ def _params(message: object, *methods: str) -> dict[str, Any] | None:
 
 def _cancelled(message: object) -> str | int | None:
     """The id or token of what a message cancels."""
-    params = _params(message, *_CANCELLATIONS)
+    params = _params(message, *CANCELLATIONS)
     if params is None or not isinstance(message, dict):
         return None
-    found = params.get(_CANCELLATIONS[message["method"]])
-    return found if isinstance(found, (str, int)) and not isinstance(found, bool) else None
+    found = params.get(CANCELLATIONS[message["method"]])
+    return found if is_id(found) else None
+
+
+def is_id(value: object) -> TypeGuard[int | str]:
+    """Whether a request can have this id, or work this token."""
+    return isinstance(value, (int, str)) and not isinstance(value, bool)
 
 
 def _changes(message: object, uri: str) -> bool:

@@ -22,6 +22,8 @@ from pygls.exceptions import (
 )
 from pygls.protocol import JsonRPCProtocol, LanguageServerProtocol
 
+from as2fm_lsp.inbox import CANCELLATIONS, is_id
+
 _DOCUMENTS = (
     types.TEXT_DOCUMENT_DID_OPEN,
     types.TEXT_DOCUMENT_DID_CHANGE,
@@ -76,6 +78,8 @@ class Protocol(LanguageServerProtocol):
             if is_request:
                 raise JsonRpcServerNotInitialized(f"`{_short(method)}` comes before `initialize`")
             return
+        if method in CANCELLATIONS:
+            _check_cancellation(message)
         structured = self._structured(message)
         if method == types.INITIALIZE:
             self._is_initialized = True
@@ -123,9 +127,11 @@ class Protocol(LanguageServerProtocol):
         super()._execute_handler(msg_id, handler, done, args, kwargs)
 
 
-def is_id(id_: object) -> bool:
-    """Whether a request can have this id."""
-    return isinstance(id_, (int, str)) and not isinstance(id_, bool)
+def _check_cancellation(message: dict[str, Any]) -> None:
+    """pygls takes any value for a token."""
+    params, name = message.get("params"), CANCELLATIONS[message["method"]]
+    if not isinstance(params, dict) or not is_id(params.get(name)):
+        raise JsonRpcInvalidParams(f"`{name}` must be a number or a string")
 
 
 def is_answered(message: object) -> bool:

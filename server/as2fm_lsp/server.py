@@ -35,7 +35,7 @@ from as2fm_lsp.sockets import Client
 from as2fm_lsp.trust import DID_CHANGE, Trust
 from as2fm_lsp.verification.verified import Verified
 from roaml import __version__
-from roaml.model.kinds import EXTENSIONS
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
 from roaml.project.settings import CONFIG_FILE
 
 log = logging.getLogger(__name__)
@@ -156,7 +156,8 @@ class Server(LanguageServer):
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
         """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
         if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
-            log.error("%s", source.__name__, exc_info=error)
+            known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
+            log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)
 
     def ask_to_pull(self) -> None:
         """Diagnostics have changed that the client fetches by itself."""
@@ -336,7 +337,10 @@ async def _watch(server: Server) -> None:
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
         return
-    patterns = [f"**/*{extension}" for extension in EXTENSIONS] + [f"**/{CONFIG_FILE}", "**/pyproject.toml"]
+    patterns = [f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)] + [
+        f"**/{CONFIG_FILE}",
+        "**/pyproject.toml",
+    ]
     options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(p) for p in patterns])
     registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:

@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.disk import MAX_DATA, NotReadableError, Problem, required
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.reader import read_model
@@ -35,7 +36,6 @@ from roaml.model.kinds import FileKind
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.discover import is_inside
-from roaml.project.files import Problem
 from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
@@ -259,10 +259,9 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     """
     path = os.path.abspath(path)
     try:
-        with open(path, "rb") as file:
-            source = decode(path, file.read())
-    except OSError as error:
-        raise PathError(f"{path}: {error.strerror or error}") from None
+        source = decode(path, required(path, MAX_DATA))
+    except NotReadableError as error:
+        raise PathError(str(error)) from None
     if source.undecodable is not None:
         raise PathError(f"{path}: it holds bytes that are no text")
     value, syntax = parse(source.text)
@@ -286,7 +285,8 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
 
     Raises:
         PropertyError: the model has no property of a name.
-        FaultError: the model or a property is of a kind that cannot be run; see `roaml.smc.fault`.
+        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
+            are in `refused`.
     """
     from roaml.smc.goal import STUCK_PROPERTY  # noqa: PLC0415 - checking and translating start faster without it
     from roaml.smc.model import Checker  # noqa: PLC0415
@@ -325,12 +325,15 @@ def verify(
 
     Raises:
         PropertyError: the model has no property of a name.
-        FaultError: the model cannot be run, or did something that has no meaning.
+        FaultError: the model cannot be run, or did something that has no meaning; or a property cannot be answered.
+        ValueError: an option makes no sense.
     """
     from roaml.smc.pool import Pool  # noqa: PLC0415
     from roaml.smc.run import Options as _Options  # noqa: PLC0415
 
     ready = checker(model, properties)
+    for fault in ready.refused.values():
+        raise fault
     with Pool(jobs, executor) as pool:
         for asked in ready.asked:
             yield ready.answer(asked, options or _Options(), pool)
@@ -409,6 +412,8 @@ def _workspace(
         if not any(is_inside(path, folder) for folder in folders):
             roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
     interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
+    # Whoever names a link means the file that it leads to.
+    interfaces += [os.path.dirname(os.path.realpath(path)) for path in others if os.path.islink(path)]
     workspace = Workspace(dict.fromkeys(roots), settings, systems, packages=dict.fromkeys((*roots, *interfaces)))
     for path, text in texts.items():
         workspace.open(path, text)

@@ -7,11 +7,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, requests, storm, translate, verify
+from bench import check, growth, requests, storm, translate, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
     **check.BENCHMARKS,
+    **growth.BENCHMARKS,
     **requests.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,

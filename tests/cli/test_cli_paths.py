@@ -11,7 +11,6 @@ import pytest
 from command import Command
 
 import clock
-import roaml.project.files
 from fixture import split_files
 
 PACKAGE_XML = "<package format='3'><name>robot</name></package>"
@@ -163,12 +162,14 @@ def test_what_is_not_there(check: Command, tmp_path: Path, name: str) -> None:
 def test_what_cannot_be_read(check: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock.write(tmp_path)
 
-    def locked(path: str, *arguments: object, **options: object) -> object:
-        if path.endswith("clock.ascxml"):
-            raise PermissionError(13, "Permission denied")
-        return open(path, *arguments, **options)  # type: ignore[call-overload]
+    opened = os.open
 
-    monkeypatch.setattr(roaml.project.files, "open", locked, raising=False)
+    def locked(path: str, *arguments: int, **options: int) -> int:
+        if str(path).endswith("clock.ascxml"):
+            raise PermissionError(13, "Permission denied")
+        return opened(path, *arguments, **options)
+
+    monkeypatch.setattr(os, "open", locked)
     done = check("clock.ascxml")
     assert (done.status, done.err) == (2, f"as2fm-lsp: {tmp_path / 'clock.ascxml'}: it cannot be read\n")
     done = check("main.xml")

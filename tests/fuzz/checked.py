@@ -11,8 +11,12 @@ from fuzz.strategy import Failure
 from fuzz.translation import problems
 from roaml import api
 from roaml.diagnostics import Diagnostic
+from roaml.model.size import Limits
 from roaml.project.settings import Settings
 from roaml.text import Span, apply_edits
+
+LIMITS = Limits(cells=50_000, parts=100_000)
+"""A fraction of the real ones: what is just below them takes about as long as a case may take."""
 
 
 def problems_of_check(
@@ -28,9 +32,9 @@ def problems_of_check(
         main: the file or folder that is checked.
         texts: path -> text in place of what is on the disk.
         random: with it, sometimes one fix is made and everything checked again.
-        settings: those of `Settings()` if not given.
+        settings: the usual ones, but with `LIMITS`, if not given.
     """
-    result = api.check([main], ros_paths, settings or Settings(), texts)
+    result = api.check([main], ros_paths, settings or Settings(limits=LIMITS), texts)
     for diagnostic in result.diagnostics:
         yield from _diagnostic(result, diagnostic)
     for system in result.snapshot.analysis.system_paths:

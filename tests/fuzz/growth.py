@@ -196,7 +196,7 @@ def comments(n: int) -> Files:
 
 def threads(n: int) -> Files:
     """n threads of an action."""
-    head = '<ros_action_server name="a" action_name="/a" type="example_interfaces/action/Fibonacci" />'
+    head = '<ros_action_server name="a" action_name="/a" type="example_interfaces/Fibonacci" />'
     thread = f'<ros_action_thread name="a" n_threads="{n}"><state id="w" /></ros_action_thread>'
     return _system(_machine(head, more=thread))
 
@@ -231,7 +231,7 @@ def structs(n: int) -> Files:
     ]
     types.append(f'<struct id="S{depth}"><member id="x" type="int32" /></struct>')
     declared = '<data_declarations><input type="xml" src="t.xml" /></data_declarations>'
-    head = '<datamodel><data id="a" type="S0" /></datamodel>'
+    head = '<datamodel><data id="a" type="S0"/></datamodel>'
     return _system(_machine(head), types=declared, t_xml=f"<types>{''.join(types)}</types>")
 
 

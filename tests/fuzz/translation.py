@@ -3,19 +3,26 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 
+from fuzz.limits import restart
 from roaml import api
+from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.jani.typecheck import check_model
 from roaml.jani.writer import write as jani_text
 from roaml.json import parse
 from roaml.project.workspace import Snapshot
 from roaml.scxml.writer import write as scxml_texts
+from roaml.smc.fault import FaultError
+from roaml.smc.model import Checker
 
 
 def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     """What does not hold of the system at `path`; nothing if it has errors.
+
+    Each step is what one command does, and may take the whole time of a case.
 
     Raises:
         Exception: whatever the translation raises.
@@ -24,7 +31,9 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
         system = api.loaded(snapshot, path)
     except (api.ModelError, api.PathError):
         return
+    restart()
     model = api.to_jani(system)
+    restart()
     for finding in check_model(model):
         yield f"unsound: {finding.message}"
     table = {variable.name for variable in model.variables} ^ set(system.analysis.globals(path))
@@ -33,7 +42,32 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     api.source_map(system, model)
     if not all(text for _, text in scxml_texts(api.to_scxml(system))):
         yield "an empty document of plain SCXML"
+    restart()
     text = "".join(jani_text(model))
+    restart()
     again, findings = read_model(parse(text)[0])
     if findings or again is None or "".join(jani_text(again)) != text:
-        yield "not read back as it was written"
+        yield f"not read back as it was written: {findings[0].message if findings else 'another text'}"
+        return
+    yield from names_of(again)
+    restart()
+    try:
+        Checker(again, ())
+    except FaultError as error:
+        yield f"verify cannot run it: {error.message}"
+        return
+    for property_ in again.properties:
+        with contextlib.suppress(FaultError):  # the form of a property may be one that is not answered
+            Checker(again, (property_,))
+
+
+def names_of(model: Model) -> Iterator[str]:
+    """What must be unique in a model and is not."""
+    groups = {"automata": [a.name for a in model.automata], "variables": [v.name for v in model.variables]}
+    groups |= {f"locations of {a.name}": [each.name for each in a.locations] for a in model.automata}
+    groups |= {f"variables of {a.name}": [each.name for each in a.variables] for a in model.automata}
+    groups["actions"] = [action.name for action in model.actions]
+    groups["properties"] = [each.name for each in model.properties]
+    for what, names in groups.items():
+        if len(names) != len(set(names)):
+            yield f"{what.partition(' of ')[0]} of the same name"

@@ -7,7 +7,9 @@ model at the place that its first word names.
 
 from __future__ import annotations
 
+import json
 import re
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -409,6 +411,74 @@ def test_only_what_is_without_effect_is_a_warning() -> None:
     assert [finding.severity for finding in findings] == [Severity.WARNING]
     _, findings = read(model_with("initial", "['idel']"))
     assert [finding.severity for finding in findings] == [None]
+
+
+UNKNOWN_MEMBERS = [
+    ("a model", lambda m: m),
+    ("an action", lambda m: m["actions"][0]),
+    ("a constant", lambda m: m["constants"][0]),
+    ("a variable", lambda m: m["variables"][0]),
+    ("a bounded type", lambda m: m["constants"][0]["type"]),
+    ("a function", lambda m: m["functions"][0]),
+    ("a parameter", lambda m: m["functions"][0]["parameters"][0]),
+    ("a system", lambda m: m["system"]),
+    ("an element", lambda m: m["system"]["elements"][0]),
+    ("a synchronisation", lambda m: m["system"]["syncs"][0]),
+    ("an automaton", lambda m: m["automata"][0]),
+    ("a location", lambda m: m["automata"][0]["locations"][0]),
+    ("an edge", lambda m: m["automata"][0]["edges"][0]),
+    ("an expression with a comment", lambda m: m["automata"][0]["edges"][0]["guard"]),
+    ("`<`", lambda m: m["automata"][0]["edges"][0]["guard"]["exp"]),
+    ("a destination", lambda m: m["automata"][0]["edges"][0]["destinations"][0]),
+    ("an assignment", lambda m: m["automata"][0]["edges"][0]["destinations"][0]["assignments"][0]),
+    ("a property", lambda m: m["properties"][0]),
+    ("`filter`", lambda m: m["properties"][0]["expression"]),
+    ("`F`", lambda m: m["properties"][0]["expression"]["values"]["exp"]),
+]
+
+
+def everything() -> dict[str, Any]:
+    """A model with something at each level."""
+    bounded = {"kind": "bounded", "base": "int", "lower-bound": 0}
+    goal = {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 1}}}
+    way = {"location": "l", "assignments": [{"ref": "n", "value": 1}]}
+    guard = {"exp": {"op": "<", "left": "n", "right": "C"}}
+    parameter = {"name": "x", "type": "int"}
+    return {
+        "jani-version": 1,
+        "name": "m",
+        "type": "mdp",
+        "features": ["functions"],
+        "actions": [{"name": "a"}],
+        "constants": [{"name": "C", "type": bounded, "value": 3}],
+        "variables": [{"name": "n", "type": "int", "initial-value": 0}],
+        "functions": [{"name": "f", "type": "int", "parameters": [parameter], "body": "x"}],
+        "automata": [
+            {
+                "name": "A",
+                "locations": [{"name": "l"}],
+                "initial-locations": ["l"],
+                "edges": [{"location": "l", "action": "a", "guard": guard, "destinations": [way]}],
+            }
+        ],
+        "system": {"elements": [{"automaton": "A"}], "syncs": [{"synchronise": ["a"], "result": "a"}]},
+        "properties": [
+            {"name": "p", "expression": {"op": "filter", "fun": "max", "values": goal, "states": {"op": "initial"}}}
+        ],
+    }
+
+
+@pytest.mark.parametrize(("what", "part"), UNKNOWN_MEMBERS, ids=[what for what, _ in UNKNOWN_MEMBERS])
+def test_what_may_have_a_meaning_that_is_not_known_is_an_error(what: str, part: Any) -> None:
+    for key, is_harmless in (("plugins", False), ("comment", True), ("metadata", True)):
+        written = everything()
+        part(written)[key] = {} if key == "metadata" else [] if key == "plugins" else "for people"
+        _, findings = read_model(parse(json.dumps(written))[0])
+        if is_harmless:
+            assert not findings
+        else:
+            assert [finding.message for finding in findings] == [f"there is no member of {what} called `plugins`"]
+            assert findings[0].severity is None
 
 
 def test_origins() -> None:

@@ -17,6 +17,9 @@ from pytest_lsp import LanguageClient
 from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, register_lsp_features
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
+PATIENCE = 120
+"""Seconds to wait for a server: other work on the machine makes it slow, not wrong."""
+
 PULLS = types.ClientCapabilities(
     text_document=types.TextDocumentClientCapabilities(diagnostic=types.DiagnosticClientCapabilities())
 )
@@ -195,21 +198,21 @@ class RawServer:
         assert self._process.stdout is not None
         found = b""
         while text.encode() not in found:
-            piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), 30)
+            piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), PATIENCE)
             assert piece, f"it ends and has not said {text}"
             found += piece
         return found.decode()
 
     async def ended(self) -> int:
         """Wait for its end, while its input is open; its exit status."""
-        return await asyncio.wait_for(self._process.wait(), 30)
+        return await asyncio.wait_for(self._process.wait(), PATIENCE)
 
     async def end(self) -> tuple[int, list[dict[str, object]], str]:
         """Close its input and wait: its exit status, what it said, and its log."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         try:
-            out, err = await asyncio.wait_for(self._process.communicate(), 30)
+            out, err = await asyncio.wait_for(self._process.communicate(), PATIENCE)
         finally:
             if self._process.returncode is None:
                 self._process.kill()

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
-from io import BytesIO
+import time
+import tracemalloc
+from collections.abc import Callable, Iterator
+from io import BufferedReader, BytesIO, RawIOBase
 from pathlib import Path
 from typing import Any
 
@@ -124,6 +127,8 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
     (frame({"jsonrpc": "2.0", "id": 14, "method": "no/such"}), 14, METHOD_NOT_FOUND),
     (frame({"jsonrpc": "2.0", "id": 15, "error": {"code": 1, "message": "?"}}), "-", None),
     (frame({"jsonrpc": "2.0", "id": [], "result": 5}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "window/workDoneProgress/cancel", "params": {"token": []}}), "-", None),
+    (frame({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": {}}}), "-", None),
     (frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"wrong": 1}}), "-", None),
 ]
 
@@ -255,6 +260,83 @@ def test_nothing_is_kept_of_notifications() -> None:
     assert server.session.text("untitled:1") == "<a/>"
 
 
+class Typing(RawIOBase):
+    """Messages of somebody who types, each sent when those before are handled. What is allocated is noted now and then.
+
+    Args:
+        messages: what is sent.
+        is_busy: whether there are messages that are not handled.
+    """
+
+    def __init__(self, messages: Iterator[bytes], is_busy: Callable[[], bool]) -> None:
+        self._messages, self._is_busy = messages, is_busy
+        self._rest = b""
+        self.sent = 0
+        self.allocated: dict[int, int] = {}
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        if not self._rest:
+            while self._is_busy():
+                time.sleep(0.001)
+            self._rest = next(self._messages, b"")
+            self.sent += 1
+            if self.sent % 100 == 0:
+                gc.collect()
+                self.allocated[self.sent] = tracemalloc.get_traced_memory()[0]
+        size = min(len(buffer), len(self._rest))
+        buffer[:size], self._rest = self._rest[:size], self._rest[size:]
+        return size
+
+
+def test_memory_reaches_a_plateau(tmp_path: Path) -> None:
+    """While somebody types, with all that is computed for it."""
+    clock.write(tmp_path)
+    path = tmp_path / "clock.ascxml"
+    text = path.read_text()
+    line, column = next((n, row.index("count")) for n, row in enumerate(text.split("\n")) if "count" in row)
+
+    def messages() -> Iterator[bytes]:
+        folders = [{"uri": tmp_path.as_uri(), "name": "robot"}]
+        pulls = {"textDocument": {"diagnostic": {}}}
+        params = {**INITIALIZE, "workspaceFolders": folders, "capabilities": pulls}
+        yield frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": params})
+        document = {"uri": path.as_uri(), "languageId": "ascxml", "version": 1, "text": text}
+        yield frame({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": document}})
+        for number in range(300):
+            start, end = ({"line": line, "character": column + at} for at in (0, number % 2))
+            change = {"range": {"start": start, "end": end}, "text": "" if number % 2 else "x"}
+            params = {"textDocument": {"uri": path.as_uri(), "version": number + 2}, "contentChanges": [change]}
+            yield frame({"jsonrpc": "2.0", "method": "textDocument/didChange", "params": params})
+            asked = {"textDocument": {"uri": path.as_uri()}}
+            yield frame({"jsonrpc": "2.0", "id": number + 1, "method": "textDocument/diagnostic", "params": asked})
+
+    server = create()
+    typing = Typing(messages(), lambda: server.inbox.waiting)
+    target = _Nowhere()
+    tracemalloc.start()
+    try:
+        server.serve(BufferedReader(typing), target)
+    finally:
+        tracemalloc.stop()
+    assert target.written > 1000
+    # What is computed at the moment comes and goes, so the least counts.
+    first, last = (min(typing.allocated[sent] for sent in marks) for marks in ((100, 200, 300), (400, 500, 600)))
+    assert last - first < 40_000, typing.allocated  # 100 bytes for a message, where a future for each takes 1000
+
+
+class _Nowhere(BytesIO):
+    """What is written is counted."""
+
+    written = 0
+
+    def write(self, data: Any) -> int:
+        self.written += len(data)
+        return len(data)
+
+
 def test_a_client_that_never_answers() -> None:
     """What it is asked is forgotten after a while, the oldest first."""
     protocol = create().protocol
@@ -263,3 +345,9 @@ def test_a_client_that_never_answers() -> None:
     assert len(protocol._request_futures) == len(protocol._result_types) == 1000
     assert futures[-1] in protocol._request_futures.values()
     assert futures[0] not in protocol._request_futures.values()
+
+
+def test_a_header_without_an_end() -> None:
+    """What comes between it and the next message is passed over, and the next message is found."""
+    data = b"Content-Length: 100\r\n{no header}\r\n\r\nContent-Length: 2\r\nContent-Type: x\r\n\r\n{}"
+    assert list(bodies(BytesIO(data))) == [b"{}"]

@@ -18,6 +18,7 @@ from smc_random import networks
 import roaml.smc
 from roaml import api
 from roaml.smc import kernel, program
+from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import Checker
 from roaml.smc.opcodes import Op
 from twin import difference, plain_kernel
@@ -53,7 +54,7 @@ def test_is_compiled_where_there_is_a_compiler() -> None:
 
 def same_traces(checker: Checker, traces: int, steps: int) -> None:
     for asked in checker.asked:
-        for scheduler in (0, 5):
+        for scheduler in (0, 5, MEMORY | 3, STARVE | 2, FAVOUR | 1):
             assert difference(checker, asked, 11, traces, steps, scheduler) == ""
 
 

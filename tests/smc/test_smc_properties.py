@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.smc.fault import FaultError
 from roaml.smc.model import Checker
+from roaml.smc.pool import Pool
+from roaml.smc.run import FIXED, Options
 
 A, B = op("=", op("%", "x", 2), 1), op("≥", "x", 2)
 """`a` holds where the first bit of x is set, `b` where the second one is."""
@@ -202,7 +203,7 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
     ("expression", "message"),
     [
         (probability(op("F", op("G", A))), "inside another one"),
-        (probability({**op("F", A), "time-bounds": {"upper": 3}}), "only step bounds"),
+        (probability({**op("F", A), "time-bounds": {"upper": 3}}), "bounds on the time"),
         ({**probability(op("F", A)), "states": A}, "initial states"),
         ({**probability(op("F", A)), "fun": "argmax"}, "`argmax` is not supported"),
         (A, "neither a probability"),
@@ -211,5 +212,16 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
     ],
 )
 def test_properties_that_cannot_be_answered(expression: Json, message: str) -> None:
-    with pytest.raises(FaultError, match=message):
-        Checker(model(path_model([0, 1], False, {"p": expression})))
+    """Each is refused for a reason of its own, and stops no other."""
+    found = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
+    checker = Checker(model(path_model([0, 1], False, found)))
+    assert [asked.question.name for asked in checker.asked] == ["before", "after"]
+    assert checker.names == ("before", "p", "after")
+    (refused,) = checker.refused.values()
+    assert message in refused.message
+    assert "answered are `Pmin` and `Pmax` of F, G, X, U, W and R" in refused.message
+    assert refused.code in ("unsupported-property", "ignored-bounds")
+    assert refused.origin is not None
+    with Pool() as pool:
+        options = Options(method=FIXED, max_traces=1)
+        assert [checker.answer(asked, options, pool).value for asked in checker.asked] == [1, 0]

@@ -17,6 +17,7 @@ from roaml.smc.statistics import (
     Ratio,
     beta_quantile,
     clopper_pearson,
+    confidence_sequence,
     incomplete_beta,
     okamoto,
     student_quantile,
@@ -120,6 +121,119 @@ def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
     assert covered >= confidence
 
 
+@pytest.mark.parametrize("most", [100, 150, 200, 300])
+@pytest.mark.parametrize("p", [0.05, 0.29, 0.5])
+def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> None:
+    """Exactly: the adaptive method keeps its promise also where `--max-traces` ends it."""
+    confidence, epsilon = 0.95, 0.06
+    open_: dict[int, float] = {0: 1.0}
+    done, covered = 0, 0.0
+    while open_:
+        size = min(FIRST_BATCH, most - done)
+        done += size
+        chances = [math.comb(size, i) * p**i * (1 - p) ** (size - i) for i in range(size + 1)]
+        after: dict[int, float] = {}
+        for k, weight in open_.items():
+            for i, chance in enumerate(chances):
+                if weight * chance > 1e-13:
+                    after[k + i] = after.get(k + i, 0.0) + weight * chance
+        open_ = {}
+        for k, weight in after.items():
+            interval = stop(done, k, confidence, epsilon)
+            if interval is None and done < most:
+                open_[k] = weight
+                continue
+            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * PEEKING)
+            covered += weight if lower <= p <= upper else 0.0
+    assert covered >= confidence
+
+
+@given(st.integers(1, 3000), st.data(), st.sampled_from([0.8, 0.95, 0.999]))
+def test_confidence_sequences_contain_the_estimate_and_the_interval_of_clopper_and_pearson(
+    n: int, data: st.DataObject, confidence: float
+) -> None:
+    """What may be looked at whenever one likes is never narrower than what may be looked at once."""
+    k = data.draw(st.integers(0, n))
+    lower, upper = confidence_sequence(k, n, confidence)
+    once = clopper_pearson(k, n, confidence)
+    assert lower <= k / n <= upper
+    assert lower <= once.lower + 1e-9
+    assert once.upper <= upper + 1e-9
+    assert confidence_sequence(n - k, n, confidence) == pytest.approx((1 - upper, 1 - lower), abs=1e-9)
+
+
+def test_confidence_sequences_end_where_the_martingale_says() -> None:
+    """At both ends the mixture of likelihoods is 1 / error times the likelihood."""
+    for k, n in ((3, 10), (1, 50), (400, 1000)):
+        mixture = math.lgamma(k + 0.5) + math.lgamma(n - k + 0.5) - math.lgamma(n + 1) - math.log(math.pi)
+        for end in confidence_sequence(k, n, 0.95):
+            likelihood = k * math.log(end) + (n - k) * math.log1p(-end)
+            assert mixture - likelihood == pytest.approx(math.log(20), abs=1e-6)
+    assert confidence_sequence(0, 0, 0.95) == (0, 1)
+
+
+def test_undecided_traces_widen_a_confidence_sequence() -> None:
+    sure, unsure = confidence_sequence(50, 100, 0.95), confidence_sequence(50, 100, 0.95, undecided=20)
+    assert unsure.lower == sure.lower
+    assert unsure.upper == confidence_sequence(70, 100, 0.95).upper
+
+
+@pytest.mark.parametrize("p", [0.03, 0.2, 0.5, 0.9])
+def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float) -> None:
+    """Exactly, over all runs: not even who looks after each trace and waits for a miss finds more of them than
+    promised. An interval for one look fails this."""
+    for method, keeps in ((confidence_sequence, True), (clopper_pearson, False)):
+        confidence, open_, missed = 0.9, {0: 1.0}, 0.0
+        for n in range(1, 400):
+            after: dict[int, float] = {}
+            for k, weight in open_.items():
+                after[k] = after.get(k, 0.0) + weight * (1 - p)
+                after[k + 1] = after.get(k + 1, 0.0) + weight * p
+            open_ = {}
+            for k, weight in after.items():
+                if weight < 1e-12:
+                    continue
+                lower, upper = method(k, n, confidence)
+                if lower <= p <= upper:
+                    open_[k] = weight
+                else:
+                    missed += weight
+        assert (missed <= 1 - confidence) is keeps
+
+
+@pytest.mark.parametrize("p", [0.62, 0.65, 0.68, 0.7, 0.73, 0.75, 0.8])
+def test_intervals_and_errors_of_the_sequential_test(p: float) -> None:
+    """Exactly, over all runs until the test decides: the interval beside the decision keeps its promise, and so does
+    the decision outside of the zone of indifference."""
+    error, ratio = 0.05, Ratio(0.7, 0.05, 0.05)
+    open_, covered, above, covered_once = {0: 1.0}, 0.0, 0.0, 0.0
+    n = 0
+    while sum(open_.values()) > 1e-6:
+        n += 1
+        after: dict[int, float] = {}
+        for k, weight in open_.items():
+            after[k] = after.get(k, 0.0) + weight * (1 - p)
+            after[k + 1] = after.get(k + 1, 0.0) + weight * p
+        open_ = {}
+        for k, weight in after.items():
+            decision = ratio.decision(k, n)
+            if decision is None:
+                open_[k] = weight
+                continue
+            above += weight if decision else 0.0
+            lower, upper = confidence_sequence(k, n, 1 - error)
+            covered += weight if lower <= p <= upper else 0.0
+            lower, upper = clopper_pearson(k, n, 1 - error)
+            covered_once += weight if lower <= p <= upper else 0.0
+    assert covered >= 1 - error
+    if p == 0.7:
+        assert covered_once < 1 - error
+    if p >= 0.75:
+        assert 1 - above <= error + 1e-5
+    if p <= 0.65:
+        assert above <= error
+
+
 @pytest.mark.parametrize(("p", "above"), [(0.75, True), (0.65, False)])
 def test_errors_of_the_sequential_test(p: float, above: bool) -> None:
     ratio, wrong, tests = Ratio(0.7, 0.05, 0.05), 0, 400
@@ -134,6 +248,20 @@ def test_errors_of_the_sequential_test(p: float, above: bool) -> None:
         wrong += decision is not above
     # At most 5 percent are expected; more than 9 percent would happen once in ten thousand times.
     assert wrong <= 0.09 * tests
+
+
+def test_means_may_be_looked_at_all_the_time() -> None:
+    """Of many runs, in nearly none the interval ever misses the mean once there are some values."""
+    source, missed, runs = random.Random(3), 0, 300
+    for _ in range(runs):
+        mean, wrong = Mean(), False
+        for number in range(1, 1500):
+            mean = mean.add(source.expovariate(1.0))
+            if number >= 100 and number % 20 == 0:
+                lower, upper = mean.anytime_bounds(0.9)
+                wrong = wrong or not lower <= 1.0 <= upper
+        missed += wrong
+    assert missed <= 0.1 * runs
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=50))

@@ -25,6 +25,7 @@ from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import FIXED, Options
+from roaml.smc.solve import solve
 
 ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
@@ -202,6 +203,30 @@ def test_exact_answers() -> None:
         exactly(checker, checker.asked[0], 2)
     ((successes, traces),) = estimates(found).values()
     assert two_sided(successes, traces, 0.375) > 1e-4
+
+
+def test_extremes_from_all_states_are_those_of_storm() -> None:
+    """Random networks, with the goal, its opposite, and one until: the enclosures hold what Storm computes."""
+    solved = differing = 0
+    for seed in range(80):
+        written = example(seed)
+        goal = written["properties"][0]["expression"]["values"]["exp"]
+        opposite = op("G", op("¬", goal["exp"]))
+        until = op("U", op("<", "y", 2), op("=", "x", 2))
+        for path in (goal, opposite, until):
+            written["properties"] = [{"name": "p", "expression": probability(path)}]
+            found = model(written)
+            checker = Checker(found)
+            solution = solve(checker.compiled(checker.asked[0]), limit=300)
+            if solution is None or solution.minimum is None or solution.maximum is None:
+                continue
+            expected = storm_exact(found, "p")
+            assert solution.minimum.lower - 2e-6 <= expected.least <= solution.minimum.upper + 2e-6, (seed, path)
+            assert solution.maximum.lower - 2e-6 <= expected.greatest <= solution.maximum.upper + 2e-6, (seed, path)
+            solved += solution.minimum.half_width < 1e-6 and solution.maximum.half_width < 1e-6
+            differing += not solution.agrees
+    assert solved > 150
+    assert differing > 30
 
 
 def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:

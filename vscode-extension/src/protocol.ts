@@ -80,7 +80,11 @@ export interface Verified {
         readonly expected: string;
         readonly met: boolean;
         readonly certain: boolean;
+        /** Whether uniform choices meet it, and it is not known whether all schedulers do. */
+        readonly under_uniform_choices_only?: boolean;
     }[];
+    /** What the number is not, if the property asks for a minimum or maximum. */
+    readonly warning?: string;
     /** Whether there is a trace that speaks against what is expected. */
     readonly counterexample?: boolean;
     readonly error?: Wrong;

@@ -10,7 +10,12 @@ const MET = { expected: ">= 0.5", met: true, certain: true };
 const MISSED = { expected: ">= 0.95", met: false, certain: true };
 
 test("a property of which nothing is expected passes, and tells its probability", () => {
-    assert.deepEqual(outcomeOf(ROW), { kind: "passed", short: "0.71 [0.66, 0.76]", milliseconds: 1250 });
+    assert.deepEqual(outcomeOf(ROW), {
+        kind: "passed",
+        short: "0.71 [0.66, 0.76]",
+        milliseconds: 1250,
+        uniform: [],
+    });
 });
 
 test("expectations decide", () => {
@@ -29,7 +34,12 @@ test("expectations decide", () => {
 const STUCK = { level: "warning", text: "who waits for whom", example: { trace: 3 } } as const;
 
 test("a system that gets stuck is told, and fails its properties if that is an error", () => {
-    const passed = { kind: "passed", short: "0.71 [0.66, 0.76]", milliseconds: 1250 };
+    const passed = {
+        kind: "passed",
+        short: "0.71 [0.66, 0.76]",
+        milliseconds: 1250,
+        uniform: [],
+    };
     assert.deepEqual(outcomeOf(ROW, STUCK), { ...passed, stuck: "who waits for whom" });
     assert.deepEqual(outcomeOf(ROW, { ...STUCK, level: "error" }), {
         ...passed,
@@ -46,6 +56,18 @@ test("a system of which no trace got stuck is told nothing of", () => {
     for (const level of ["warning", "error"] as const)
         assert.deepEqual(outcomeOf(ROW, { ...STUCK, level, example: null }), outcomeOf(ROW));
     assert.deepEqual(outcomeOf(ROW, null), outcomeOf(ROW));
+});
+
+test("what only uniform choices are known to meet has passed, and how is told", () => {
+    const warning = "this is the value under uniform choices";
+    const only = { ...MET, under_uniform_choices_only: true };
+    assert.deepEqual(outcomeOf({ ...ROW, expectations: [MET, only], warning }), {
+        kind: "passed",
+        short: "0.71 [0.66, 0.76]",
+        milliseconds: 1250,
+        uniform: [">= 0.5"],
+        warning,
+    });
 });
 
 test("what goes wrong is an error, not a failure", () => {

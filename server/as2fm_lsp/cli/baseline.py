@@ -15,6 +15,7 @@ from collections.abc import Sequence
 
 from as2fm_lsp.cli.formats.report import Entry
 from as2fm_lsp.write import write_file
+from roaml.disk import MAX_DATA, required
 
 VERSION = 1
 
@@ -57,8 +58,7 @@ def _write(path: str, entries: Sequence[Entry]) -> None:
 
 def _read(path: str) -> Counter[str]:
     try:
-        with open(path, encoding="utf-8") as file:
-            table = json.load(file)
+        table = json.loads(required(path, MAX_DATA).decode("utf-8"))
         return Counter({key: int(row["count"]) for key, row in table["known"].items()})
     except OSError as error:
         raise BaselineError(f"{path}: {error.strerror or error}") from None

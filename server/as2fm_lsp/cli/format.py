@@ -13,11 +13,11 @@ from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.write import write_file
+from roaml.disk import Problem
 from roaml.ide.format import can_format, format_edits, is_ours
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.discover import candidates
-from roaml.project.files import Problem
 from roaml.project.settings import Settings, find_settings
 from roaml.project.workspace import Workspace
 from roaml.text import SourceFile, apply_edits

@@ -15,12 +15,13 @@ from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
-from roaml.model.system_file import Overrides, duration
+from roaml.model.system_file import Overrides
 from roaml.project.settings import ament_prefixes, find_settings
 from roaml.scxml.model import Network
 from roaml.scxml.writer import write as scxml_texts
@@ -103,7 +104,9 @@ def parser() -> argparse.ArgumentParser:
         "--property", action="append", default=[], metavar="NAME", help="put only this property into the JANI file"
     )
     result.add_argument("--max-array-size", type=_size, metavar="N", help="in place of that in MAIN.xml")
-    result.add_argument("--max-time", type=_time, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
+    result.add_argument(
+        "--max-time", type=time_of, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"'
+    )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
     result.add_argument("--format", default="text", choices=("text", "json"), help="how errors are written")
     return result
@@ -120,13 +123,6 @@ def _size(text: str) -> int:
     value = int(text)
     if value < 1:
         raise argparse.ArgumentTypeError("an array has room for at least one element")
-    return value
-
-
-def _time(text: str) -> int:
-    value = duration(text)
-    if value is None:
-        raise argparse.ArgumentTypeError("a time is written as a whole number and s, ms, us or ns, such as '100 s'")
     return value
 
 

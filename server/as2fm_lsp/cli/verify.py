@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import math
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import replace
@@ -19,22 +20,27 @@ from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import print_text
 from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck
 from as2fm_lsp.verification.bar import Bar
-from as2fm_lsp.verification.expectations import Expectation, judge, parse
+from as2fm_lsp.verification.choices import asks_for_minimum, under_all_schedulers
+from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge, parse
+from as2fm_lsp.verification.refusal import refusal
 from as2fm_lsp.verification.report import Result, as_json, as_junit, as_text
 from as2fm_lsp.verification.state import State, StateError
-from as2fm_lsp.verification.subject import Subject, load
+from as2fm_lsp.verification.subject import ConstantError, Subject, load
 from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.model.system_file import Overrides
 from roaml.project.settings import ament_prefixes, find_settings
+from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, METHODS, SPRT, Answer, Options, Tally, summary
+from roaml.smc.run import ADAPTIVE, LEAST_EPSILON, METHODS, SPRT, Answer, Options, Tally, summary
 from roaml.text import Location, SourceFile, Span
 
 EXAMPLES = """\
@@ -58,8 +64,6 @@ itself, 130 interrupted
 """
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
-RUN_TIME = "model-fault"
-"""The code of what a model does wrong while it runs, or that the model checker cannot run."""
 
 
 class UsageError(ValueError):
@@ -70,7 +74,9 @@ def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
         return _run(options)
-    except (UsageError, api.PathError, api.PropertyError, StateError, WorkersLostError) as error:
+    except (UsageError, RangeError, ConstantError, StateError) as error:
+        return _fail(str(error))
+    except (api.PathError, api.PropertyError, WorkersLostError) as error:
         return _fail(str(error))
     except BrokenPipeError:
         raise
@@ -80,14 +86,16 @@ def run(arguments: Sequence[str]) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     expectations = _expectations(options.expect)
+    limits = _limits(options)
     settings_found, problems = find_settings(os.path.abspath(options.main))
     if problems:
         raise UsageError(problems[0])
     settings = replace(settings_found, ament_prefixes=ament_prefixes())
+    overrides = Overrides(options.max_time, None)
     try:
         with Progress() as progress:
             progress.stage("reading and translating")
-            subject = load(options.main, options.ros_path, settings)
+            subject = load(options.main, options.ros_path, settings, overrides, options.constant)
             names = options.property or None
             if names is not None:
                 names = [*names, *(each.name for each in expectations)]
@@ -105,52 +113,63 @@ def _run(options: argparse.Namespace) -> int:
         source = error.source
         return _errors(options, error.diagnostics, lambda _: source)
     except FaultError as fault:
-        return _fault(options, subject, fault, [])
-    if not checker.asked:
+        return _fault(options, subject, fault)
+    if not checker.asked and not checker.refused:
         raise UsageError(f"{shown_path(options.main)} has no properties")
-    return _Verification(options, subject, checker, expectations).run()
+    for asked in checker.asked:
+        for expectation in expectations:
+            if expectation.name == asked.question.name:
+                check_range(expectation, asked.question)
+    is_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
+    return _Verification(options, subject, checker, expectations, limits, is_uniform).run()
 
 
 class _Verification:
     """One call of the command, after everything is read."""
 
     def __init__(
-        self, options: argparse.Namespace, subject: Subject, checker: Checker, expectations: list[Expectation]
+        self,
+        options: argparse.Namespace,
+        subject: Subject,
+        checker: Checker,
+        expectations: list[Expectation],
+        limits: Options,
+        is_uniform: bool,
     ) -> None:
         self.options = options
         self.subject = subject
         self.checker = checker
         self.expectations = expectations
-        self.limits = Options(
-            confidence=options.confidence,
-            epsilon=options.epsilon,
-            max_traces=options.max_traces,
-            max_steps=options.max_steps,
-            seed=options.seed,
-            method=options.method,
-        )
+        self.limits = limits
+        self.is_uniform = is_uniform
         self.look: stuck.Look | None = None
         self.state = None if options.resume is None else State(options.resume, self.limits)
         self.results: list[Result] = []
+        self.faults: list[FaultError] = []
 
     def run(self) -> int:
-        asked = [self._with_threshold(each) for each in self.checker.asked]
+        asked = {each.question.name: self._with_threshold(each) for each in self.checker.asked}
         interrupted = False
-        try:
-            with _executor(self.options.dask) as (executor, workers), Bar() as bar:
-                asks_stuck = any(each.question.is_stuck for each in asked)
-                for each in asked:
+        with _executor(self.options.dask) as (executor, workers), Bar() as bar:
+            for name in self.checker.names:
+                try:
+                    if name in self.checker.refused:
+                        raise self.checker.refused[name]
                     with Pool(workers or self.options.jobs, executor) as pool:
-                        result = self._answer(each, pool, bar)
-                    self.results.append(result)
-                    if result.is_interrupted:
-                        interrupted = True
-                        break
-                if not interrupted and not self.options.exact and stuck.can_be_stuck(self.checker):
-                    self.look = self._look(None if asks_stuck else bar)
-        except FaultError as fault:
-            return _fault(self.options, self.subject, fault, self.results)
+                        result = self._answer(asked[name], pool, bar)
+                except FaultError as fault:
+                    self.faults.append(fault)
+                    why = refusal(fault, self.subject, self.limits.seed, shown_path)
+                    result = Result(name, None, (), 0.0, refusal=why)
+                self.results.append(result)
+                if result.is_interrupted:
+                    interrupted = True
+                    break
+            if not interrupted and not self.options.exact and stuck.can_be_stuck(self.checker):
+                asks_stuck = any(each.question.is_stuck for each in asked.values())
+                self.look = self._look(None if asks_stuck or self.faults else bar)
         self._print()
+        self._tell_faults()
         is_met = all(r.is_met for r in self.results) and (self.look is None or self.look.is_met)
         status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
@@ -182,9 +201,10 @@ class _Verification:
         tally = Tally()
         payload = self.checker.payload(asked)
         if self.state is not None:
-            tally = self.state.tally(name, payload)
+            tally = self.state.tally(asked.question, payload)
         bar.begin(asked.question, self.limits, tally)
         interrupted = False
+        choices: Choices | None = None
 
         def watch(found: Tally) -> None:
             bar.watch(found)
@@ -196,19 +216,26 @@ class _Verification:
                 extremes = self.checker.extremes(asked, self.limits, pool, pulse=bar.pulse)
                 found = [self._stuck(asked, extremes.least, extremes.least_by)]
                 found.append(self._stuck(asked, extremes.greatest, extremes.greatest_by))
+                of_side = extremes.least if asks_for_minimum(asked.question) else extremes.greatest
+                verdicts = tuple(judge(each, of_side) for each in self._expected(asked))
                 took = time.monotonic() - began
-                return Result(name, None, (), took, extremes=extremes, stuck=stuck.shortest(found))
+                return Result(name, None, verdicts, took, extremes=extremes, stuck=stuck.shortest(found))
             answer = self.checker.answer(asked, self.limits, pool, tally, watch, bar.pulse)
+            if not self.is_uniform and not asked.question.is_stuck:
+                choices = self.checker.choices(asked, answer, pool, bar.pulse)
         except KeyboardInterrupt:
             if self.options.scheduler == "lss":
                 raise
             interrupted = True
             answer = summary(asked.question, self.limits, tally)
+            if not self.is_uniform:
+                choices = Choices()
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
-        verdicts = tuple(judge(each, answer) for each in self._expected(asked))
+        verdicts = tuple(under_all_schedulers(judge(each, answer), answer, choices) for each in self._expected(asked))
+        took = time.monotonic() - began
         stuck_traces = self._stuck(asked, answer)
-        return Result(name, answer, verdicts, time.monotonic() - began, interrupted, stuck=stuck_traces)
+        return Result(name, answer, verdicts, took, interrupted, stuck=stuck_traces, choices=choices)
 
     def _stuck(self, asked: Asked, answer: Answer, scheduler: int = 0) -> stuck.Stuck | None:
         return stuck.stuck_in(self.subject, self.checker, asked, answer, scheduler)
@@ -238,8 +265,9 @@ class _Verification:
 
     def _text(self) -> str:
         if self.options.format == "json":
+            entries = [_row(each) for each in self._fault_entries()]
             row = None if self.look is None else stuck.as_row(self.look, self._place_row)
-            return as_json(self.results, stuck=row)
+            return as_json(self.results, entries, stuck=row)
         about_stuck = "" if self.look is None else stuck.as_text(self.look, self._place)
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self.look, about_stuck)
@@ -258,7 +286,20 @@ class _Verification:
         path, line, column = self.subject.place(origin) or ("", 0, 0)
         return {"file": shown_path(path), "line": line, "column": column}
 
-    def _tell(self, asked: Sequence[Asked]) -> None:
+    def _fault_entries(self) -> list[Entry]:
+        """What could not be answered, with its place in the model."""
+        diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
+        return [entry(each, self.subject.source_of, shown_path) for each in diagnostics if each is not None]
+
+    def _tell_faults(self) -> None:
+        """The same for people, on standard error."""
+        if self.faults and self.options.format != "json":
+            entries = self._fault_entries()
+            report = Report(entries, len({each.file for each in entries}), color=takes_color(sys.stderr))
+            if entries:
+                print_text(FORMATS["text"](report), stream=sys.stderr)
+
+    def _tell(self, asked: Mapping[str, Asked]) -> None:
         """Write traces and stories."""
         from as2fm_lsp.verification.counterexample import speaking_against, wanted_verdict  # noqa: PLC0415
         from as2fm_lsp.verification.traces import write_traces  # noqa: PLC0415
@@ -266,10 +307,10 @@ class _Verification:
         from roaml.smc.story import Story, tell  # noqa: PLC0415
 
         stories: list[Story] = []
-        for each, result in zip(asked, self.results, strict=True):
+        for result in self.results:
             if result.answer is None:
                 continue
-            recorder = Recorder(self.checker, each, self.limits.seed, self.limits.max_steps)
+            recorder = Recorder(self.checker, asked[result.name], self.limits.seed, self.limits.max_steps)
             if self.options.traces is not None:
                 write_traces(self.options.traces, self.subject, recorder, result.answer, self.options.traces_limit)
             if self.options.explain:
@@ -329,7 +370,7 @@ def parser() -> argparse.ArgumentParser:
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="exit with 1 unless it is so")
     add("--confidence", type=_share, default=0.95, metavar="C", help="that the true value is in the interval (0.95)")
-    add("--epsilon", type=_share, default=0.01, metavar="E", help="half the width of the interval (0.01); of an "
+    add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); of an "
         "expected reward in parts of its value")  # fmt: skip
     add("--method", choices=METHODS, default=ADAPTIVE, help="adaptive: until the interval is narrow enough; okamoto: a "
         "fixed number of traces; sprt: until a threshold is decided; fixed: --max-traces traces")  # fmt: skip
@@ -338,10 +379,14 @@ def parser() -> argparse.ArgumentParser:
         "steps stay undecided (1000000)")  # fmt: skip
     add("--seed", type=_natural, default=0, metavar="N", help="other traces for another number (0)")
     add("--jobs", type=_positive, default=_processors(), metavar="N", help="processes; no influence on results")
-    add("--scheduler", choices=("uniform", "lss"), default="uniform", help="how nondeterminism is resolved: at random, "
-        "or by schedulers that make the probability small or great")  # fmt: skip
+    add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: at random, or by schedulers "
+        "that make the probability small or great; unless said, at random, and whether it matters is looked "
+        "into")  # fmt: skip
     add("--exact", action="store_true", help="compute the least and greatest probability with Storm (needs stormpy)")
     add("--max-states", type=_positive, default=200_000, metavar="N", help="with --exact: refuse more states (200000)")
+    add("--max-time", type=time_of, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="the value of a constant for which "
+        "MODEL.jani has none; may be repeated")  # fmt: skip
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="what it is that traces get stuck: a warning, or "
         "an error, with exit status 1")  # fmt: skip
     add("--resume", metavar="FILE", help="keep what is known in FILE, and go on from it if it is there")
@@ -362,21 +407,38 @@ def _processors() -> int:
 
 
 def _share(text: str) -> float:
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
     if not 0 < value < 1:
         raise argparse.ArgumentTypeError("a number between 0 and 1 is expected")
     return value
 
 
+def _width(text: str) -> float:
+    value = _share(text)
+    if value < LEAST_EPSILON:
+        raise argparse.ArgumentTypeError(f"a number from {LEAST_EPSILON:g} on is expected: no run makes more traces")
+    return value
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text) if len(text) < 30 else -1
+    except ValueError:
+        return -1
+
+
 def _positive(text: str) -> int:
-    value = int(text)
+    value = _whole(text)
     if not 1 <= value < 1 << 62:
         raise argparse.ArgumentTypeError("a whole number from 1 on is expected")
     return value
 
 
 def _natural(text: str) -> int:
-    value = int(text)
+    value = _whole(text)
     if not 0 <= value < 1 << 63:
         raise argparse.ArgumentTypeError("a whole number from 0 to 2^63 - 1 is expected")
     return value
@@ -395,32 +457,52 @@ def _expectations(texts: Sequence[str]) -> list[Expectation]:
         raise UsageError(str(error)) from None
 
 
-def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError, results: Sequence[Result]) -> int:
-    """What a model does wrong while it runs: with its place, and the trace that shows it."""
+def _limits(options: argparse.Namespace) -> Options:
+    try:
+        return Options(
+            confidence=options.confidence,
+            epsilon=options.epsilon,
+            max_traces=options.max_traces,
+            max_steps=options.max_steps,
+            seed=options.seed,
+            method=options.method,
+        )
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:
+    """What a model does wrong while it runs: with its place, and the trace that shows it. None without a place."""
     message = fault.message
     if fault.trace is not None:
         message += f" (in trace {fault.trace} of seed {options.seed})"
-    origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
-    diagnostic = Diagnostic(origin.path, RUN_TIME, Severity.ERROR, origin.span, message)
     if fault.origin is None and not options.main.endswith(".jani"):
-        print(f"as2fm-lsp: {shown_path(options.main)}: {message}", file=sys.stderr)
+        return None
+    origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
+    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, message)
+
+
+def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError) -> int:
+    """The whole model cannot be run."""
+    diagnostic = _diagnostic(options, fault)
+    if diagnostic is None:
+        print(f"as2fm-lsp: {shown_path(options.main)}: {fault.message}", file=sys.stderr)
         if options.format == "json":
-            print_text(as_json(results, [{"message": message}]), "utf-8")
+            print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
-    return _errors(options, (diagnostic,), subject.source_of, results)
+    return _errors(options, (diagnostic,), subject.source_of)
 
 
 def _errors(
     options: argparse.Namespace,
     diagnostics: Sequence[Diagnostic],
     source_of: Callable[[str], SourceFile],
-    results: Sequence[Result] = (),
 ) -> int:
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
     files = len({each.file for each in entries})
     report = Report(entries, files, color=takes_color(sys.stderr))
     if options.format == "json":
-        print_text(as_json(results, [_row(each) for each in entries]), "utf-8")
+        print_text(as_json((), [_row(each) for each in entries]), "utf-8")
     elif options.format == "junit":
         print_text(FORMATS["junit"](report), "utf-8")
     else:

@@ -21,8 +21,9 @@ from as2fm_lsp.handlers.asked import Asked as Document
 from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.verification import background, stuck
+from as2fm_lsp.verification.choices import under_all_schedulers
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
-from as2fm_lsp.verification.expectations import Expectation, judge
+from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge
 from as2fm_lsp.verification.report import Result, as_text, row
 from as2fm_lsp.verification.subject import Subject, of_system
 from as2fm_lsp.verification.verified import Known, missed, short
@@ -34,6 +35,7 @@ from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
+from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
 from roaml.smc.model import Checker
@@ -172,7 +174,8 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             known = server.verified.get(system, each.name)
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
                 continue
-            mark = "✗" if missed(known.result) else "✓" if known.result.verdicts else "="
+            is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
+            mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
             mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
@@ -185,6 +188,7 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
         return []
     wrong = missed(known.result)
     parts = [short(known.result), *([f"not {wrong}"] if wrong else [])]
+    parts += dict.fromkeys(verdict.text for verdict in known.result.verdicts if verdict.is_uniform)
     if known.result.stuck is not None:
         parts.append(f"{known.result.stuck.count:,} traces got stuck")
     if server.verified.is_stale(known, analysis, system):
@@ -229,20 +233,27 @@ class _Run:
                 await self.shown.step(each)
                 began = time.monotonic()
                 checker = api.checker(subject.model, [each])
+                for why in checker.refused.values():
+                    raise why
                 asked = self.with_threshold(checker.asked[0])
-                answer = await self.traces(checker, asked)
+                for expected in self.expected(asked):
+                    check_range(expected, asked.question)
+                answer, choices = await self.traces(checker, asked)
             except FaultError as fault:
                 rows.append({"property": each, "error": self.fault(fault, system.analysis)})
                 self.say_wrong(f"{each}: {fault.message}")
                 continue
-            except (api.PropertyError, WorkersLostError) as error:
+            except (api.PropertyError, RangeError, WorkersLostError) as error:
                 rows.append({"property": each, "error": {"message": str(error)}})
                 self.say_wrong(str(error))
                 continue
-            verdicts = tuple(judge(expected, answer) for expected in self.expected(asked))
+            verdicts = tuple(
+                under_all_schedulers(judge(expected, answer), answer, choices) for expected in self.expected(asked)
+            )
             options = self.wanted.options
             gets_stuck = stuck.stuck_in(subject, checker, asked, answer)
-            result = Result(each, answer, verdicts, time.monotonic() - began, stuck=gets_stuck)
+            took = time.monotonic() - began
+            result = Result(each, answer, verdicts, took, stuck=gets_stuck, choices=choices)
             results.append(result)
             server.verified.put(path, Known(result, subject, system.analysis, checker, asked, options, texts))
             rows.append({**row(result), "short": short(result), "counterexample": speaking_against(result) is not None})
@@ -281,12 +292,15 @@ class _Run:
         row = stuck.as_row(known, lambda origin: _place(self.server, analysis, origin))
         return {**row, "text": text.strip()}
 
-    async def traces(self, checker: Checker, asked: Asked) -> Answer:
+    async def traces(self, checker: Checker, asked: Asked) -> tuple[Answer, Choices | None]:
         def tell(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, self.wanted.options, tally), (), 0)
             self.shown.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
-        return await background.answer(checker, asked, self.wanted.options, self.server.requests.checkpoint, tell)
+        is_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
+        checkpoint = self.server.requests.checkpoint
+        is_uniform = is_uniform or asked.question.is_stuck
+        return await background.answer(checker, asked, self.wanted.options, checkpoint, tell, is_uniform)
 
     def with_threshold(self, asked: Asked) -> Asked:
         """The question with the first number that it is compared with."""
@@ -308,7 +322,7 @@ class _Run:
 
     def fault(self, fault: FaultError, analysis: Analysis) -> Json:
         place = _place(self.server, analysis, fault.origin) if fault.origin is not None else {}
-        return {"message": fault.message, "trace": fault.trace, **place}
+        return {"message": fault.message, "code": fault.code, "trace": fault.trace, **place}
 
     def say_wrong(self, text: str) -> None:
         if not self.wanted.is_silent:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from roaml.project.memo import Interrupted
+from roaml.smc.choices import Choices
 from roaml.smc.goal import Asked
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
@@ -28,11 +29,13 @@ async def answer(
     options: Options,
     checkpoint: Callable[[], None],
     tell: Callable[[Tally], None],
-) -> Answer:
+    is_uniform: bool = False,
+) -> tuple[Answer, Choices | None]:
     """
     Args:
         checkpoint: called in the thread, several times a second; what it raises ends the work.
         tell: called on the event loop with what is known so far.
+        is_uniform: whether uniform choices are what is wanted; else it is looked into whether they matter.
 
     Raises:
         Interrupted: the work is not wanted any more.
@@ -51,16 +54,13 @@ async def answer(
             told = now
             loop.call_soon_threadsafe(tell, replace(latest))
 
-    def work(checked: Callable[[], None]) -> Answer:
+    def work(checked: Callable[[], None]) -> tuple[Answer, Choices | None]:
+        def pulsed(trace: int, steps: int) -> None:
+            pulse(trace, steps, checked)
+
         with Pool(_jobs(), patience=None) as pool:
-            return checker.answer(
-                asked,
-                options,
-                pool,
-                latest,
-                watch=lambda _: pulse(0, 0, checked),
-                pulse=lambda trace, steps: pulse(trace, steps, checked),
-            )
+            found = checker.answer(asked, options, pool, latest, watch=lambda _: pulsed(0, 0), pulse=pulsed)
+            return found, None if is_uniform else checker.choices(asked, found, pool, pulsed)
 
     return await in_thread(work, checkpoint)
 

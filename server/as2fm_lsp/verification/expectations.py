@@ -14,7 +14,7 @@ import re
 from dataclasses import dataclass
 
 from roaml.jani.operators import BinaryOperator
-from roaml.smc.goal import Threshold
+from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 
 _RELATIONS = {
@@ -45,11 +45,22 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether an expectation is met; `is_certain` if the whole interval says the same."""
+    """Whether an expectation is met.
+
+    Attributes:
+        is_certain: whether the whole interval says the same.
+        is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
+    """
 
     expectation: Expectation
     is_met: bool
     is_certain: bool
+    is_uniform: bool = False
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        return "met under uniform choices" if self.is_uniform else "met" if self.is_met else "NOT MET"
 
 
 def parse(text: str) -> Expectation:
@@ -65,6 +76,22 @@ def parse(text: str) -> Expectation:
     if match is None or math.isnan(number):
         raise ValueError(f"an expectation is written like 'NAME >= 0.95', not '{text}'")
     return Expectation(match[1], Threshold(_RELATIONS[match[2]], number))
+
+
+class RangeError(ValueError):
+    """A probability is compared with a number that it cannot have; the message says which."""
+
+
+def check_range(expectation: Expectation, question: Question) -> None:
+    """
+    Raises:
+        RangeError: a probability is compared with a number that is not between 0 and 1.
+    """
+    number = expectation.threshold.number
+    if not question.is_reward and not 0 <= number <= 1:
+        raise RangeError(
+            f"{expectation.name} is a probability and can only be compared with a number from 0 to 1, not {number:g}"
+        )
 
 
 def judge(expectation: Expectation, answer: Answer) -> Verdict:

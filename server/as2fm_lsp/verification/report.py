@@ -11,11 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from as2fm_lsp.verification import ends
+from as2fm_lsp.verification import choices, ends
 from as2fm_lsp.verification.expectations import Verdict
+from as2fm_lsp.verification.refusal import Refusal
 from as2fm_lsp.verification.stuck import NOT_STUCK, Look, Stuck
+from roaml.smc.choices import Choices
 from roaml.smc.lss import Extremes
-from roaml.smc.run import Answer
+from roaml.smc.run import Answer, ratio_of
 
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
@@ -37,6 +39,8 @@ class Result:
         answer: by traces; None if only exact values were asked for.
         seconds: how long it took.
         is_interrupted: whether somebody could not wait.
+        choices: what is known of other schedulers than the uniform one; None if that is the one that is wanted.
+        refusal: why there is no answer.
         stuck: its traces that got stuck, if any did.
     """
 
@@ -48,10 +52,13 @@ class Result:
     extremes: Extremes | None = None
     stuck: Stuck | None = None
     exact: Exact | None = None
+    choices: Choices | None = None
+    refusal: Refusal | None = None
 
     @property
     def is_met(self) -> bool:
-        return all(verdict.is_met for verdict in self.verdicts)
+        """Whether there is an answer, and all is as expected."""
+        return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)
 
 
 def as_text(results: Sequence[Result], note: str) -> str:
@@ -62,6 +69,8 @@ def as_text(results: Sequence[Result], note: str) -> str:
 
 def _block(result: Result) -> str:
     lines = []
+    if result.refusal is not None:
+        lines.append(f"{result.name}: not answered: {result.refusal.text}")
     if result.exact is not None:
         exact = result.exact
         both = _number(exact.least)
@@ -78,7 +87,7 @@ def _block(result: Result) -> str:
         lines.append(f"{result.name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
         lines += _remarks(result)
     for verdict in result.verdicts:
-        text = f"  expected {verdict.expectation.text}: {'met' if verdict.is_met else 'NOT MET'}"
+        text = f"  expected {verdict.expectation.text}: {verdict.text}"
         if not verdict.is_certain and result.answer is not None:
             text += f"; the interval reaches to the other side of {verdict.expectation.threshold.number:g}"
         lines.append(text)
@@ -103,6 +112,17 @@ def _remarks(result: Result) -> list[str]:
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach what the reward is counted to")
+    if about := choices.remark(answer.question, result.choices):
+        lines.append(f"  {about}")
+    ratio = ratio_of(answer.question, answer.options)
+    if answer.tally.accepted is not None and ratio is not None:
+        low, high = max(0.0, ratio.threshold - ratio.epsilon), min(1.0, ratio.threshold + ratio.epsilon)
+        lines.append(
+            f"  decided by Wald's sequential test: wrong with a probability of at most {ratio.error:.6g}, unless the "
+            f"value is between {low:.6g} and {high:.6g}"
+        )
+    if answer.is_anytime and answer.tally.traces:
+        lines.append("  the interval holds whenever one stops: it is one of a confidence sequence")
     if answer.tally.undecided:
         steps = f"{answer.options.max_steps:,}"
         lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
@@ -137,8 +157,13 @@ def as_json(
 def row(result: Result) -> dict[str, Any]:
     """A result as a value for JSON."""
     found: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+    if result.refusal is not None:
+        found["error"] = result.refusal.row()
     if result.answer is not None:
         found.update(_answer(result.answer))
+        found.update(choices.rows(result.choices))
+        if about := choices.warning(result.answer.question, result.choices):
+            found["warning"] = about
     if result.extremes is not None:
         both = result.extremes
         found["least"] = {**_answer(both.least), "scheduler": both.least_by}
@@ -148,7 +173,12 @@ def row(result: Result) -> dict[str, Any]:
         found["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
     found["interrupted"] = result.is_interrupted
     found["expectations"] = [
-        {"expected": verdict.expectation.text, "met": verdict.is_met, "certain": verdict.is_certain}
+        {
+            "expected": verdict.expectation.text,
+            "met": verdict.is_met,
+            "certain": verdict.is_certain,
+            "under_uniform_choices_only": verdict.is_uniform,
+        }
         for verdict in result.verdicts
     ]
     return found
@@ -167,6 +197,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "ends": ends.as_row(tally),
         "steps": tally.steps,
         "complete": answer.is_complete,
+        "interval": answer.interval,
         "confidence": answer.options.confidence,
         "epsilon": answer.options.epsilon,
         "method": answer.options.method,
@@ -183,17 +214,31 @@ def _finite(value: float) -> float | str | None:
 
 
 def as_junit(results: Sequence[Result], title: str, look: Look | None = None, stuck: str = "") -> str:
-    """A test for each property; it fails if an expectation is not met. One more tells whether the system gets stuck:
-    it fails if that is an error; `stuck` is its text."""
-    failures = sum(not result.is_met for result in results) + (look is not None and not look.is_met)
-    counts = {"tests": str(len(results) + (look is not None)), "failures": str(failures), "errors": "0"}
+    """A test for each property; it fails if an expectation is not met, and is an error if there is no answer. One more
+    tells whether the system gets stuck: it fails if that is an error; `stuck` is its text."""
+    errors = sum(result.refusal is not None for result in results)
+    failures = sum(not result.is_met for result in results) - errors + (look is not None and not look.is_met)
+    counts = {
+        "tests": str(len(results) + (look is not None)),
+        "failures": str(failures),
+        "errors": str(errors),
+    }
     suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
     for result in results:
         names = {"classname": _clean(title), "name": _clean(result.name), "time": f"{result.seconds:.3f}"}
         case = ET.SubElement(suite, "testcase", names)
         text = _clean(_block(result))
-        if result.is_met:
+        uniform = [verdict for verdict in result.verdicts if verdict.is_uniform]
+        if uniform:
+            properties = ET.SubElement(case, "properties")
+            for verdict in uniform:
+                ET.SubElement(
+                    properties, "property", {"name": f"expected {verdict.expectation.text}", "value": verdict.text}
+                )
+        if result.refusal is not None:
+            ET.SubElement(case, "error", {"message": result.refusal.message, "type": result.refusal.code}).text = text
+        elif result.is_met:
             ET.SubElement(case, "system-out").text = text
         else:
             missed = [v.expectation.text for v in result.verdicts if not v.is_met]

@@ -13,10 +13,15 @@ import time
 from typing import Any
 
 from as2fm_lsp.write import write_file
+from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
+from roaml.smc.goal import Question
 from roaml.smc.run import Options, Tally
+from roaml.smc.stored import tally_from_json
 
-VERSION = 2
+VERSION = 3
+MAX_STATE = 64 * MEGABYTE
+"""Bytes; the state of some hundred properties has a few million."""
 PAUSE = 1.0
 """Seconds between two times of writing."""
 
@@ -36,12 +41,14 @@ class State:
         if os.path.exists(path):
             self._read()
 
-    def tally(self, name: str, payload: Payload) -> Tally:
+    def tally(self, question: Question, payload: Payload) -> Tally:
         """What is known of a property.
 
         Raises:
-            StateError: the file was written for another model, seed or limit of steps.
+            StateError: the file was written for another model, seed or limit of steps, or holds what traces cannot
+                have given.
         """
+        name = question.name
         known = self._properties.get(name)
         if known is None:
             return Tally()
@@ -50,11 +57,12 @@ class State:
         if (known.get("seed"), known.get("max_steps")) != (self.options.seed, self.options.max_steps):
             raise StateError(f"{self.path} was written with another seed or limit of steps; use these, or another file")
         try:
-            tally = Tally.from_json(known["tally"])
-        except (KeyError, TypeError, ValueError, AttributeError):
-            raise StateError(f"{self.path} is damaged") from None
+            tally = tally_from_json(known.get("tally"), question, self.options)
+        except ValueError as error:
+            raise StateError(f"{self.path} is damaged: of {name}, {error}; remove it to begin again") from None
         if known.get("options") != repr(self.options):
-            tally.is_finished, tally.accepted = False, None
+            # Who changes the options knows what has come of the traces so far.
+            tally.is_finished, tally.accepted, tally.is_revised = False, None, tally.traces > 0
         return tally
 
     def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
@@ -78,12 +86,14 @@ class State:
 
     def _read(self) -> None:
         try:
-            with open(self.path, encoding="utf-8") as file:
-                value = json.load(file)
-            if value["version"] != VERSION:
-                raise StateError(f"{self.path} was written by another version")
-            self._properties = dict(value["properties"])
-        except StateError:
-            raise
-        except (ValueError, KeyError, TypeError):
-            raise StateError(f"{self.path} is no state of a verification") from None
+            value = json.loads(required(self.path, MAX_STATE).decode("utf-8"))
+        except (ValueError, RecursionError):
+            value = None
+        if not isinstance(value, dict) or "version" not in value:
+            raise StateError(f"{self.path} is not the state of a verification")
+        if value["version"] != VERSION:
+            raise StateError(f"{self.path} was written by another version; remove it to begin again")
+        properties = value.get("properties")
+        if not isinstance(properties, dict) or not all(isinstance(each, dict) for each in properties.values()):
+            raise StateError(f"{self.path} is not the state of a verification")
+        self._properties = properties

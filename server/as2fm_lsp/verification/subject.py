@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from roaml import api
+from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
+from roaml.smc.forms import BOUNDS, faults_in
 from roaml.text import SourceFile
 
 CLOCK = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
@@ -39,19 +41,40 @@ class Subject:
         return origin.path, start.line + 1, start.column + 1
 
 
+class ConstantError(ValueError):
+    """A constant cannot be given this value, or a parameter this model does not have; the message says why."""
+
+
 def load(
-    path: str, ros_paths: Sequence[str] = (), settings: Settings | None = None, overrides: Overrides = NO_OVERRIDES
+    path: str,
+    ros_paths: Sequence[str] = (),
+    settings: Settings | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+    constants: Sequence[str] = (),
 ) -> Subject:
     """Read what is to be verified; a file whose name ends in `.jani` is a JANI model, any other one a system.
 
+    Args:
+        overrides: parameters in place of those in the system file.
+        constants: `NAME=VALUE`, for constants that a JANI model leaves open.
+
     Raises:
+        ConstantError: there is no such constant or parameter, or the value does not fit.
         api.PathError: the file cannot be read, or is no system file.
         api.ModelError: the system has errors.
         api.JaniError: the JANI model has errors.
     """
     if path.endswith(".jani"):
+        if overrides != NO_OVERRIDES:
+            raise ConstantError("--max-time is for systems; a JANI model has no such parameter")
         model, source = api.read_jani(path)
+        try:
+            model = with_constants(model, constants)
+        except ValueError as error:
+            raise ConstantError(str(error)) from None
         return Subject(path, model, lambda _: source, _clock(model))
+    if constants:
+        raise ConstantError("--constant is for JANI models; a system has no constants")
     return of_system(api.load(path, ros_paths, settings, overrides=overrides))
 
 
@@ -64,6 +87,9 @@ def of_system(system: api.LoadedSystem) -> Subject:
         return found
 
     model = api.to_jani(system)
+    # The translation leaves out bounds that its models cannot have: without them, another question would be answered.
+    bounded = {each.name: each for each in system.properties if any(f.code == BOUNDS for f in faults_in(each))}
+    model = replace(model, properties=tuple(bounded.get(each.name, each) for each in model.properties))
     return Subject(system.path, model, source_of, _clock(model))
 
 

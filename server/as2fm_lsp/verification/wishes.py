@@ -16,7 +16,7 @@ from typing import Any
 
 from as2fm_lsp.verification.expectations import Expectation, parse
 from as2fm_lsp.verification.stuck import LEVELS, WARNING
-from roaml.smc.run import Options
+from roaml.smc.run import LEAST_EPSILON, Options
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +53,10 @@ def wishes(settings: object, options: object = None) -> Wishes:
 
     default = Options()
     share, whole = "a number between 0 and 1", "a whole number"
+    width = f"a number from {LEAST_EPSILON:g} to 1"
     chosen = Options(
         confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
-        epsilon=number("epsilon", default.epsilon, lambda value: 0 < value < 1, share),
+        epsilon=number("epsilon", default.epsilon, lambda value: LEAST_EPSILON <= value < 1, width),
         max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{whole} from 1 on"),
         seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
     )

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from roaml.disk import Problem
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
-from roaml.project.files import Problem
 from roaml.text import Span
 
 

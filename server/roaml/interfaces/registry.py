@@ -33,6 +33,7 @@ class Reason(enum.Enum):
     UNKNOWN_PACKAGE = "unknown package"
     UNKNOWN_TYPE = "the package has no such type"
     UNREADABLE = "the file cannot be read"
+    TOO_LARGE = "it holds too many fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class NotFound:
 
     `wanted` is the name as asked for. `close` are names of the same kind, `package/Name`, the nearest first.
     `other_kind` is set if the type exists but is, say, a service and not a message. `looked_in` are the places in
-    words. `path` is the file that could not be read.
+    words. `path` is the file that could not be read. `size` tells in words how large a type is that is too large.
     """
 
     reason: Reason
@@ -51,6 +52,7 @@ class NotFound:
     other_kind: Kind | None = None
     looked_in: tuple[str, ...] = ()
     path: str | None = None
+    size: str = ""
 
     @property
     def message(self) -> str:
@@ -69,6 +71,8 @@ class NotFound:
                 return f"the package `{package}` has no {kind} `{name}`{hint}"
             case Reason.UNREADABLE:
                 return f"the definition of `{self.wanted}` cannot be read: {self.path}"
+            case Reason.TOO_LARGE:
+                return f"`{self.wanted}` is too large: with all messages in it, it has {self.size}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +92,7 @@ class Registry:
     def __init__(self, search_path: SearchPath, read: Callable[[str], SourceFile | None]) -> None:
         self.search_path = search_path
         self._read = read
-        self._parsed: dict[tuple[Kind, str, str], tuple[str, bytes, Parsed]] = {}
+        self._parsed: dict[str, tuple[tuple[Kind, str, str, bytes], Parsed]] = {}
 
     def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
         """The same registry with another view of the files; what was parsed before is kept for both."""
@@ -116,6 +120,17 @@ class Registry:
         parsed = self.parsed(kind, package, name)
         return parsed.definition if isinstance(parsed, Parsed) else parsed
 
+    def other_definition(self, kind: Kind, package: str, name: str) -> Definition | None:
+        """A definition of the same type that says something else and does not count, because another is found first."""
+        first = self.find(kind, package, name)
+        if isinstance(first, NotFound) or not _is_type_name(package, name):
+            return None
+        for path in self.search_path.repetitions(package, kind, name)[1:]:
+            parsed = self._parse(path, kind, package, name)
+            if parsed is not None and parsed.definition.sections != first.sections:
+                return parsed.definition
+        return None
+
     def parsed(self, kind: Kind, package: str, name: str) -> Parsed | NotFound:
         """Like `find`, with the mistakes in the definition's file."""
         if not _is_type_name(package, name):
@@ -123,16 +138,21 @@ class Registry:
         path = self.search_path.locate(package, kind, name)
         if path is None:
             return self._not_found(kind, package, name)
+        return self._parse(path, kind, package, name) or NotFound(
+            Reason.UNREADABLE, kind, f"{package}/{name}", path=path
+        )
+
+    def _parse(self, path: str, kind: Kind, package: str, name: str) -> Parsed | None:
+        """What a file defines; None if it cannot be read."""
         source = self._read(path)
         if source is None:
-            return NotFound(Reason.UNREADABLE, kind, f"{package}/{name}", path=path)
-        key = (kind, package, name)
-        known = self._parsed.get(key)
-        if known and known[:2] == (path, source.digest):
-            return known[2]
+            return None
+        known = self._parsed.get(path)
+        if known and known[0] == (kind, package, name, source.digest):
+            return known[1]
         definition, findings = parse(source.text, package, name, kind)
         parsed = Parsed(replace(definition, path=path), findings)
-        self._parsed[key] = (path, source.digest, parsed)
+        self._parsed[path] = ((kind, package, name, source.digest), parsed)
         return parsed
 
     def _not_found(self, kind: Kind, package: str, name: str) -> NotFound:

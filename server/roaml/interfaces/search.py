@@ -17,8 +17,9 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Protocol, TypeAlias
+from typing import NamedTuple, Protocol, TypeAlias
 
+from roaml.disk import read
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
 
@@ -62,6 +63,22 @@ class SearchPath:
             if path := place.files(package)[kind].get(name):
                 return path
         return None
+
+    def repetitions(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
+        """All files that define `package/name`, the one that counts first.
+
+        Those of the standard packages are not among them: they are there for those who have no others. Of the ament
+        prefixes only the first that has the type counts, because one is laid over another on purpose.
+        """
+        found: list[str] = []
+        in_prefix = False
+        for place in self._places()[:-1]:
+            is_prefix = isinstance(place, _Share)
+            if not (is_prefix and in_prefix):
+                paths = place.all_files(package, kind, name)
+                in_prefix = in_prefix or (is_prefix and bool(paths))
+                found += paths
+        return tuple(dict.fromkeys(found))
 
     def packages(self) -> Mapping[str, Mapping[Kind, tuple[str, ...]]]:
         """All that can be located: package -> kind -> names, packages and names sorted; every kind is there."""
@@ -107,6 +124,9 @@ class _Place(Protocol):
     def files(self, package: str) -> _Files:
         """The definition files of a package here: kind -> name -> path; every kind is there."""
 
+    def all_files(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
+        """All files here that define a type, the one that counts first."""
+
     def packages(self) -> Iterable[str]: ...
 
 
@@ -123,6 +143,10 @@ class _Share:
             known = self._known[package] = self._list(package)
         return known
 
+    def all_files(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
+        path = self.files(package)[kind].get(name)
+        return () if path is None else (path,)
+
     def packages(self) -> Iterable[str]:
         return [name for name in _subfolders(self._folder) if any(self.files(name).values())]
 
@@ -138,23 +162,36 @@ class _Tree:
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
-        self._known: Mapping[str, _Files] | None = None
+        self._known: _Listing | None = None
 
     def files(self, package: str) -> _Files:
-        return self._listed().get(package, _NO_FILES)
+        return self._listed().files.get(package, _NO_FILES)
+
+    def all_files(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
+        listed = self._listed()
+        path = listed.files.get(package, _NO_FILES)[kind].get(name)
+        return () if path is None else (path, *listed.hidden.get((package, kind, name), ()))
 
     def packages(self) -> Iterable[str]:
-        return self._listed()
+        return self._listed().files
 
-    def _listed(self) -> Mapping[str, _Files]:
+    def _listed(self) -> _Listing:
         if self._known is None:
             self._known = _scan(self._folder)
         return self._known
 
 
-def _scan(root: str) -> Mapping[str, _Files]:
+class _Listing(NamedTuple):
+    """The packages of a place, and the files that others hide."""
+
+    files: Mapping[str, _Files]
+    hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]
+
+
+def _scan(root: str) -> _Listing:
     """The packages in and below `root`, level by level, so that of two equal types the nearer one wins."""
     found: dict[str, dict[Kind, dict[str, str]]] = {}
+    hidden: dict[tuple[str, Kind, str], tuple[str, ...]] = {}
     entered: set[tuple[int, int]] = set()
     level = [root]
     for _ in range(MAX_DEPTH + 1):
@@ -167,12 +204,16 @@ def _scan(root: str) -> Mapping[str, _Files]:
             subfolders = _subfolders(folder)
             files = _definitions(folder, subfolders)
             if any(files.values()):
-                package = found.setdefault(_package_name(folder), {kind: {} for kind in KINDS})
+                package_name = _package_name(folder)
+                package = found.setdefault(package_name, {kind: {} for kind in KINDS})
                 for kind in KINDS:
+                    for name in files[kind].keys() & package[kind].keys():
+                        key = (package_name, kind, name)
+                        hidden[key] = (*hidden.get(key, ()), files[kind][name])
                     package[kind] = {**files[kind], **package[kind]}
             below += (os.path.join(folder, name) for name in subfolders if _is_entered(name))
         level = below
-    return found
+    return _Listing(found, hidden)
 
 
 def _is_entered(folder_name: str) -> bool:
@@ -195,11 +236,8 @@ def _named_files(folder: str, kind: Kind) -> Mapping[str, str]:
 
 def _package_name(folder: str) -> str:
     """The name in the folder's `package.xml`, else the folder's own."""
-    try:
-        with open(os.path.join(folder, "package.xml"), "rb") as file:
-            head = file.read(_PACKAGE_XML_HEAD).decode("utf-8", "replace")
-    except OSError:
-        head = ""
+    content = read(os.path.join(folder, "package.xml"), head=_PACKAGE_XML_HEAD)
+    head = content.decode("utf-8", "replace") if isinstance(content, bytes) else ""
     name = _XML_NAME.search(_XML_COMMENT.sub("", head))
     return name[1] if name else os.path.basename(folder)
 

@@ -2,7 +2,8 @@
 """JSON objects that should have a known shape: what they have, with everything else reported.
 
 - A member is reported once: if it is there, but not readable as JSON or of the wrong kind, it counts as absent.
-- An unknown member is a warning, since it is without effect.
+- An unknown member is an error: it may say something without which the model means something else. Only what is known
+  to be for people (`HARMLESS`) is passed over where JANI does not provide for it.
 """
 
 from __future__ import annotations
@@ -15,19 +16,24 @@ from roaml.jani.notes import SYNTAX, Notes
 from roaml.json import JsonArray, JsonBool, JsonError, JsonNumber, JsonObject, JsonString, JsonValue, kind
 from roaml.text import Span
 
+HARMLESS = frozenset(("comment", "metadata"))
+"""Members that never carry meaning, wherever they stand."""
+
 
 class Shape(NamedTuple):
-    """What an object is, with its article, and the members that it must and may have."""
+    """What an object is, with its article, and the members that it must and may have. `is_open`: whatever else it has
+    is for people, too."""
 
     what: str
     required: frozenset[str]
     allowed: frozenset[str]
+    is_open: bool = False
 
 
-def shape(what: str, required: str, optional: str = "") -> Shape:
+def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> Shape:
     """`required` and `optional` are names, separated by spaces."""
     needed = frozenset(required.split())
-    return Shape(what, needed, needed | frozenset(optional.split()))
+    return Shape(what, needed, needed | frozenset(optional.split()), is_open)
 
 
 class Source:
@@ -68,9 +74,12 @@ class Members:
             if key not in form.allowed:
                 if not key and member.start == member.key_end:
                     continue  # the parser has reported that there is no name
+                if key in HARMLESS:
+                    continue
                 what = f"member of {form.what} called"
                 place, known = member.key_content_span, sorted(form.allowed)
-                self.notes.unknown(what, key, place, known, code=SYNTAX, severity=Severity.WARNING)
+                severity = Severity.WARNING if form.is_open else None
+                self.notes.unknown(what, key, place, known, code=SYNTAX, severity=severity)
             elif member.value is not None and not isinstance(member.value, JsonError):
                 self.values[key] = member.value
         if missing:

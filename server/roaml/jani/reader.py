@@ -69,7 +69,7 @@ _MODEL = shape(
     "jani-version type automata system",
     "name metadata features actions constants variables datatypes functions restrict-initial properties",
 )
-_METADATA = shape("metadata", "", "version author description doi url")
+_METADATA = shape("metadata", "", "version author description doi url", is_open=True)
 _AUTOMATON = shape(
     "an automaton", "name locations initial-locations edges", "variables functions restrict-initial comment"
 )

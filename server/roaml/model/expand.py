@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
+from roaml.model.spelling import close_names
 from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes, port_key
 
 ROOT_NUMBER = 1000
@@ -20,7 +21,8 @@ ROOT_NUMBER = 1000
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without places. `position` counts the nodes of its tree in pre-order from 0."""
+    """A node without places. `position` counts the nodes of its tree in pre-order from 0; `condition` tells that it is
+    written as `<Condition>`."""
 
     position: int
     plugin: str
@@ -28,6 +30,7 @@ class NodeOutline:
     is_subtree: bool
     attributes: tuple[tuple[str, str], ...]
     children: tuple[NodeOutline, ...]
+    condition: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +42,21 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places. `defaults` are (plugin, port, value) of `<TreeNodesModel>`."""
+    """A file of trees without places.
+
+    Attributes:
+        defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
+        conditions: the plugins that `<TreeNodesModel>` declares as conditions.
+        from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+    """
 
     path: str
     main: str
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
+    declared: tuple[tuple[str, str], ...] = ()
+    conditions: frozenset[str] = frozenset()
+    from_project: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +94,7 @@ class Instance:
         automaton: `BT_plugin_<number>_<name>`.
         ports: what the tree sets, defaults of `<TreeNodesModel>` included.
         children: the numbers of its children.
+        condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
     """
 
     number: int
@@ -91,6 +104,7 @@ class Instance:
     parent: int | None
     children: tuple[int, ...]
     source: Source
+    condition: bool = False
 
     @property
     def automaton(self) -> str:
@@ -114,6 +128,10 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
             for port in model.ports
             if model.id and port.name and port.default is not None
         ),
+        tuple(
+            (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
+        ),
+        frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
     )
 
 
@@ -131,6 +149,7 @@ def _outlines(root: TreeNode) -> NodeOutline:
             node.is_subtree,
             tuple((port_key(plugin, attribute.name), attribute.value) for attribute in node.element.attributes),
             tuple(convert(child) for child in node.children),
+            node.element.name == "Condition",
         )
 
     return convert(root)
@@ -161,6 +180,7 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
                 return tree
         # A file of one tree needs no names: its only tree is meant whatever it is called (spec/02 §3.1).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
+    trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:
         return trees[0]
     used = {node.plugin for tree in trees for node in _walk(tree.root) if node.is_subtree}
@@ -335,6 +355,7 @@ class _Placed:
     ports: tuple[tuple[str, PortValue], ...]
     parent: int | None
     source: Source
+    condition: bool
     children: list[int]
 
 
@@ -347,6 +368,7 @@ class _Expansion:
         for file in files:
             for plugin, port, value in file.defaults:
                 self.defaults.setdefault(plugin, {}).setdefault(port, value)
+        self.conditions = frozenset(name for file in files for name in file.conditions)
         self.placed: list[_Placed] = []
         self.prefixes: set[str] = set()
         self.counts: dict[str, int] = {}
@@ -367,12 +389,23 @@ class _Expansion:
             settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
             ports = tuple((key, frame.value(text)) for key, text in settings.items())
             source = Source(frame.tree.path, frame.tree.id, node.position)
-            self.placed.append(_Placed(node.plugin, node.name or node.plugin, ports, parent, source, []))
+            condition = node.condition or node.plugin in self.conditions
+            name = node.name or node.plugin
+            self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, []))
             if parent is not None:
                 self.placed[parent - ROOT_NUMBER].children.append(number)
             pending += ((child, frame, number) for child in reversed(node.children))
         return tuple(
-            Instance(number, each.plugin, each.name, each.ports, each.parent, tuple(each.children), each.source)
+            Instance(
+                number,
+                each.plugin,
+                each.name,
+                each.ports,
+                each.parent,
+                tuple(each.children),
+                each.source,
+                each.condition,
+            )
             for number, each in enumerate(self.placed, ROOT_NUMBER)
         )
 
@@ -412,3 +445,78 @@ def _names(tree: TreeOutline) -> frozenset[str]:
         for _, text in node.attributes
         if (variable := blackboard_variable(text)) is not None
     )
+
+
+# ------------------------------------------------------------------- remappings
+
+
+@dataclass(frozen=True, slots=True)
+class StrayRemap:
+    """An attribute of a `<SubTree>` that names no variable of the subtree.
+
+    Attributes:
+        source: the node of the `<SubTree>`.
+        key: the attribute; `outer` is its value.
+        meant: the variables of the subtree that look like it and are not given, the nearest first.
+        names: the variables of the subtree.
+    """
+
+    source: Source
+    key: str
+    outer: str
+    meant: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+def stray_remaps(files: tuple[TreeFileOutline, ...]) -> tuple[StrayRemap, ...]:
+    """All attributes of subtrees, in all trees of a system, that name nothing in their subtree."""
+    trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
+    declared = {pair for file in files for pair in file.declared}
+    words = {name: _words(tree) for name, tree in trees.items()}
+    return tuple(
+        stray
+        for file in files
+        for tree in file.trees
+        for node in _walk(tree.root)
+        if node.is_subtree and node.plugin in trees
+        for stray in _strays(tree, node, _known_inside(node.plugin, trees, words), declared)
+    )
+
+
+def _strays(
+    tree: TreeOutline, node: NodeOutline, known: frozenset[str], declared: set[tuple[str, str]]
+) -> Iterator[StrayRemap]:
+    given = {key: text for key, text in node.attributes if key not in _NO_REMAPS and not key.startswith("_")}
+    for key, text in given.items():
+        if key not in known and (node.plugin, key) not in declared and ":" not in key:
+            free = sorted(known - given.keys())
+            source = Source(tree.path, tree.id, node.position)
+            yield StrayRemap(source, key, text, close_names(key, free), tuple(free))
+
+
+def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[str, frozenset[str]]) -> frozenset[str]:
+    """The names that a tree uses, with those of subtrees that take all names from it."""
+    found, pending, seen = set(words[name]), [name], {name}
+    while pending:
+        for node in _walk(trees[pending.pop()].root):
+            takes_all = any(dict(node.attributes).get(auto) in ("true", "1") for auto in _AUTOREMAP)
+            if node.is_subtree and takes_all and node.plugin in trees and node.plugin not in seen:
+                seen.add(node.plugin)
+                pending.append(node.plugin)
+                found |= words[node.plugin]
+    return frozenset(found)
+
+
+def _words(tree: TreeOutline) -> frozenset[str]:
+    """Every name in the values of a tree's attributes: variables, and what scripts may name; `{=}` is the attribute's
+    own name."""
+    found: set[str] = set()
+    for node in _walk(tree.root):
+        for key, text in node.attributes:
+            if key not in _OWN_ATTRIBUTES:
+                found |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
+    return frozenset(found)
+
+
+_NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)

@@ -32,6 +32,8 @@ PARAMETER = "event-sender parameter"
 PORT = "port"
 VARIABLE = "variable"
 """Reads or writes a variable of the blackboard."""
+REMAP = "remap"
+"""Gives a subtree a variable, by the name that it has on either side."""
 NODE = "node"
 """Is a node of the tree."""
 TREE = "tree"
@@ -192,12 +194,17 @@ class _Search:
                 return  # the declaration is there, but cannot be read: its own gap says more
             close = close_names(handle.value, [d.handle.value for d in right if d.handle], 1)
             named = [d for d in right if d.handle and d.handle.value in close]
+            for declaration in named:
+                if declaration.handle is declaration.interface and isinstance(declaration.interface, Name):
+                    # The topic, service or action is the handle, and may be misspelled where it is declared.
+                    yield Gap(kind, handle.value)
+                    yield Gap(OTHER_SIDE[kind], declaration.interface.value)
         if not named:
             other = [d for d in self.machine.declarations if d.handle and d.handle.value == handle.value]
             named = [d for d in other if isinstance(d.interface, (Name, PortRead)) and d.kind in INTERFACE_KINDS]
         yield from (_about(act, declaration) for declaration in named)
         if not named:
-            yield Gap(act)
+            yield Gap(kind)  # the declaration is missing
 
     def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
         """A field or parameter that is said in an unknown way: `<feild name="…">` in an element that sends."""
@@ -301,6 +308,16 @@ class _Search:
                 if isinstance(statement, SetOutput) and (statement.key is None or statement.key.value not in declared):
                     yield PlacedGap(Gap(PORT), statement.element.name_span)
 
+
+OTHER_SIDE: Mapping[str, str] = {
+    "publisher": "subscriber",
+    "subscriber": "publisher",
+    "service-client": "service-server",
+    "service-server": "service-client",
+    "action-client": "action-server",
+    "action-server": "action-client",
+}
+"""The kind of declaration that each kind speaks to."""
 
 _PARTS: Mapping[str, tuple[str, ...]] = {
     "publisher": ("message",),

@@ -24,6 +24,8 @@ class FileKind(enum.Enum):
 
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
 INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")
+PROJECT_EXTENSION = ".btproj"
+"""Projects of Groot2, which list files of trees. They are read where a tree beside them is, and never changed."""
 EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
 """Files with other extensions are looked at only when they are named."""
 

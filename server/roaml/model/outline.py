@@ -15,10 +15,13 @@ from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.behavior.summary import ChartOutline, summarised
 from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
     CallChild,
+    Chart,
     Communicate,
+    Declaration,
     Handler,
     Machine,
     ReturnHalted,
@@ -60,6 +63,7 @@ class InterfaceUse:
         sends, receives: the parts, as in the roles of the schema.
         fields: of each part that is sent, the fields with the types that they are sent with, those that are not set
             included.
+        awaited: of a subscriber, that the machine can come into a state in which it waits for this topic alone.
     """
 
     kind: str
@@ -70,6 +74,7 @@ class InterfaceUse:
     sends: frozenset[str]
     receives: frozenset[str]
     fields: tuple[tuple[str, tuple[SentField, ...]], ...]
+    awaited: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +136,7 @@ class MachineOutline:
     Attributes:
         gaps: what it may say besides, where it cannot be read.
         all_ports: `ports` are all that it means to declare.
+        charts: how it behaves; of a chart that cannot be looked through nothing is said.
     """
 
     name: str
@@ -145,6 +151,7 @@ class MachineOutline:
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
     all_ports: bool = True
+    charts: tuple[ChartOutline, ...] = ()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -193,6 +200,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         ),
         _plugin(machine),
         _declares_all_ports(machine),
+        tuple(summarised(machine, chart) for chart in machine.charts),
     )
 
 
@@ -261,10 +269,29 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 (part, tuple(SentField(name, type_) for name, type_ in known.items()))
                 for part, known in fields[declaration.element].items()
             ),
+            declaration.kind == "subscriber" and any(_awaits(machine, chart, declaration) for chart in machine.charts),
         )
         for declaration in machine.declarations
         if declaration.kind != "timer"
     )
+
+
+def _awaits(machine: Machine, chart: Chart, subscriber: Declaration) -> bool:
+    """Whether a chart comes, without a message of the topic, into a state in which only a message makes it go on."""
+    states = {state.id.value: state for state in chart.states if state.id}
+    pending = [chart.initial.value] if chart.initial else []
+    seen = set(pending)
+    while pending:
+        state = states.get(pending.pop())
+        if state is None or not state.handlers:
+            continue
+        others = [h for h in state.handlers if h.effective and find_handle(machine, h) is not subscriber]
+        if not others:
+            return True
+        new = {target.state.value for h in others for target in h.targets if target.state} - seen
+        seen |= new
+        pending += new
+    return False
 
 
 def _timers(machine: Machine) -> tuple[TimerOutline, ...]:

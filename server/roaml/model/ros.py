@@ -8,19 +8,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, leaves
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, leaves, unwrap
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, FieldType, Kind, Section
+from roaml.model.nesting import Extent, extents
 
 FindMessage: TypeAlias = Callable[[str], Definition | NotFound]
 """`package/Name` -> the message."""
 
 _HL_NAMES = {"byte": "uint8", "char": "uint8", "wstring": "string"}
 _REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatedType:
+    """A ROS type that two files define, not in the same way.
+
+    Attributes:
+        used_by: the declared type that it is, or is a part of, as written.
+        path: of the file that counts; `other` is the one that does not.
+    """
+
+    used_by: str
+    package: str
+    name: str
+    path: str
+    other: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,43 +68,65 @@ class InterfaceType:
 
 
 def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
-    """`definition` in HL types; nested messages are looked up with `find`."""
+    """`definition` in HL types; nested messages are looked up with `find`. It must not be too large (`extent_of`)."""
     parts, optional = [], []
+    reader = _Reader(find)
     for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
-        reader = _Reader(find)
         what = name if definition.kind == "msg" else f"{name} of {definition.full_name}"
         title = definition.full_name if definition.kind == "msg" else f"{definition.full_name} {name}"
-        own = (definition.full_name,) if definition.kind == "msg" else ()
-        parts.append((name, Struct(title, reader.members(section, (), own), what)))
-        optional.append((name, frozenset(reader.optional)))
+        if definition.kind == "msg":
+            reader.inside.append(definition.full_name)
+        parts.append((name, Struct(title, reader.members(section), what)))
+        optional.append((name, frozenset(_optional(section, (), parts[-1][1], find))))
     return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
 
 
+def extent_of(definitions: Iterable[Definition]) -> Extent:
+    """How large the first of some definitions is, the others being the messages in it."""
+    fields = {each.full_name: [f.type.name for s in each.sections for f in s.fields] for each in definitions}
+    return extents(fields)[next(iter(fields))]
+
+
 class _Reader:
+    """Makes the type of each message once: `inside` are those that are being made."""
+
     def __init__(self, find: FindMessage) -> None:
         self.find = find
-        self.optional: list[str] = []
+        self.inside: list[str] = []
+        self.known: dict[str, Type] = {}
 
-    def members(self, section: Section, path: tuple[str, ...], inside: tuple[str, ...]) -> tuple[tuple[str, Type], ...]:
-        return tuple((field.name, self.member(field, (*path, field.name), inside)) for field in section.fields)
+    def members(self, section: Section) -> tuple[tuple[str, Type], ...]:
+        return tuple((field.name, self.member(field)) for field in section.fields)
 
-    def member(self, field: Field, path: tuple[str, ...], inside: tuple[str, ...]) -> Type:
-        type_ = self.element(field.type.element, path, inside)
-        if not known_to_reference(field.type):
-            self.optional.append(".".join(path))
+    def member(self, field: Field) -> Type:
+        type_ = self.element(field.type.element)
         if field.type.is_array:
             bound = None if field.type.array is ArrayKind.UNBOUNDED else field.type.size
             return Array(type_, bound)
         return type_
 
-    def element(self, type_: FieldType, path: tuple[str, ...], inside: tuple[str, ...]) -> Type:
+    def element(self, type_: FieldType) -> Type:
         if type_.is_primitive:
             return BASE_TYPES[_HL_NAMES.get(type_.name, type_.name)]
-        definition = self.find(type_.name)
-        if isinstance(definition, NotFound) or type_.name in inside:
-            return UNKNOWN
-        section = definition.sections[0]
-        return Struct(type_.name, self.members(section, path, (*inside, type_.name)), "message")
+        if type_.name not in self.known:
+            definition = self.find(type_.name)
+            if isinstance(definition, NotFound) or type_.name in self.inside:
+                return UNKNOWN
+            self.inside.append(type_.name)
+            self.known[type_.name] = Struct(type_.name, self.members(definition.sections[0]), "message")
+            self.inside.pop()
+        return self.known[type_.name]
+
+
+def _optional(section: Section, path: tuple[str, ...], struct: Struct, find: FindMessage) -> Iterator[str]:
+    """The dotted paths of the fields that need not be set."""
+    for field, (_, type_) in zip(section.fields, struct.members, strict=True):
+        if not known_to_reference(field.type):
+            yield ".".join((*path, field.name))
+        inner, _ = unwrap(type_)
+        definition = find(field.type.name) if isinstance(inner, Struct) else None
+        if isinstance(inner, Struct) and isinstance(definition, Definition):
+            yield from _optional(definition.sections[0], (*path, field.name), inner, find)
 
 
 def known_to_reference(type_: FieldType) -> bool:

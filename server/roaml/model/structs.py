@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
+from roaml.model.nesting import Extent, extents
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
 from roaml.text import Span
 from roaml.xml import Document, Element
@@ -71,44 +72,51 @@ def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
     """All structs by name, their members resolved. Of equal names the last counts.
 
     A member whose type is not known, or that would contain the struct itself, has an unknown type, and so has a struct
-    whose declaration is not complete.
+    whose declaration is not complete, or that is too large.
     """
     by_name = {outline.name: outline for outline in outlines}
     resolved: dict[str, Type] = {}
-
-    def resolve(name: str, inside: tuple[str, ...]) -> Type:
-        if name in BASE_TYPES:
-            return BASE_TYPES[name]
-        if name in resolved:
-            return resolved[name]
-        outline = by_name.get(name)
-        if outline is None or name in inside:
-            return UNKNOWN
-        path = (*inside, name)
-        members = tuple((m, wrap(resolve(t.base, path), t.dimensions) if t else UNKNOWN) for m, t in outline.members)
-        struct = Struct(name, members) if outline.complete else UNKNOWN
-        if not inside:
-            resolved[name] = struct
-        return struct
-
-    for name in by_name:
-        resolve(name, ())
-    return resolved
+    for name, extent in extents(_graph(by_name)).items():
+        members = tuple((m, _member_type(t, resolved)) for m, t in by_name[name].members)
+        known = by_name[name].complete and not extent.is_too_large
+        resolved[name] = Struct(name, members) if known else UNKNOWN
+    return {name: resolved[name] for name in by_name}
 
 
-def struct_cycle(name: str, outlines: Mapping[str, StructOutline]) -> tuple[str, ...]:
-    """The names on a path of members from struct `name` back to itself, both ends included; empty if there is none."""
-    stack: list[tuple[str, ...]] = [(name,)]
-    seen: set[str] = set()
-    while stack:
-        path = stack.pop()
-        outline = outlines.get(path[-1])
-        for _, type_ in outline.members if outline else ():
-            if type_ is None:
-                continue
-            if type_.base == name:
-                return (*path, name)
-            if type_.base in outlines and type_.base not in seen:
-                seen.add(type_.base)
-                stack.append((*path, type_.base))
-    return ()
+def _member_type(name: TypeName | None, resolved: Mapping[str, Type]) -> Type:
+    if name is None:
+        return UNKNOWN
+    return wrap(BASE_TYPES.get(name.base) or resolved.get(name.base, UNKNOWN), name.dimensions)
+
+
+def struct_extents(outlines: Mapping[str, StructOutline]) -> Mapping[str, Extent]:
+    """How large structs are with all that is in them."""
+    return extents(_graph(outlines))
+
+
+def _graph(by_name: Mapping[str, StructOutline]) -> dict[str, list[str]]:
+    """Struct -> the types of its members."""
+    return {name: [t.base if t else "" for _, t in outline.members] for name, outline in by_name.items()}
+
+
+def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """The members by which structs contain themselves: struct and member -> the names on the way round, both ends the
+    same. Of each cycle it is the member that leads back to the struct that was declared first."""
+    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    done: set[str] = set()
+    for start in outlines:
+        path = [] if start in done else [start]
+        places = dict.fromkeys(path, 0)
+        stack: list[Iterator[tuple[str, TypeName | None]]] = [iter(outlines[name].members) for name in path]
+        while stack:
+            member, type_ = next(stack[-1], ("", None))
+            if not member and type_ is None:
+                stack.pop()
+                done.add(path.pop())
+            elif type_ is not None and type_.base in places and type_.base not in done:
+                found[path[-1], member] = (*path[places[type_.base] :], type_.base)
+            elif type_ is not None and type_.base in outlines and type_.base not in done:
+                places[type_.base] = len(path)
+                path.append(type_.base)
+                stack.append(iter(outlines[type_.base].members))
+    return found

@@ -25,6 +25,7 @@ from roaml.model.gaps import (
     PARAMETER,
     PORT,
     RECEIVES,
+    REMAP,
     SENDS,
     TREE,
     VARIABLE,
@@ -229,6 +230,9 @@ class System:
         """What a gap may say, in an automaton or in the files around the automata."""
         if gap.act == NODE:
             return self._facts_of_any_node()
+        if gap.act == REMAP:
+            named = [v for v in self.blackboard if gap.name is not None and f"__{v}".endswith(f"__{gap.name}")]
+            return {(VARIABLE, variable) for variable in named}
         if gap.act == PORT:
             ports = automaton.instance.ports if automaton is not None and automaton.instance is not None else ()
             bound = [value for key, value in ports if gap.name in (None, key)]

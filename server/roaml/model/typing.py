@@ -34,7 +34,7 @@ from roaml.model.machine import (
     Statement,
 )
 from roaml.model.ros import InterfaceType
-from roaml.model.syntax import Expression, PortRead, Value
+from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.xml import Element
 
 
@@ -46,6 +46,9 @@ class Environment(Protocol):
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
         """The ROS type `name` (as written in the model) of kind msg, srv or action."""
+
+    def published(self, topic: str) -> tuple[InterfaceType, ...]:
+        """The types with which other machines publish on the topic, as written, where they are known."""
 
     def event_data(self, event: str) -> Struct | None:
         """The parameters that the senders of a plain event send; None if that is not known."""
@@ -227,7 +230,21 @@ def interface_part(part: str, declaration: Declaration | None, environment: Envi
         return UNKNOWN
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     section = SECTIONS.get(part, part)
-    return dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+    own = dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
+    if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and isinstance(own, Struct):
+        return _with_published(own, environment.published(declaration.interface.value))
+    return own
+
+
+def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
+    """A message with the fields of its own type and those of the types that are published (spec/07 1.11): that they are
+    not the same is a warning, and each field is there."""
+    members = dict(own.members)
+    for other in published:
+        part = dict(other.parts).get("message", UNKNOWN)
+        for name, type_ in part.members if isinstance(part, Struct) else ():
+            members.setdefault(name, type_)
+    return own if len(members) == len(own.members) else replace(own, members=tuple(members.items()))
 
 
 def unset_fields(statement: Communicate, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:

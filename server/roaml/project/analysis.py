@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
 from roaml.diagnostics import Finding
+from roaml.disk import Problem
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.interfaces.registry import NotFound, Registry
-from roaml.interfaces.types import Definition
+from roaml.interfaces.registry import NotFound, Reason, Registry
+from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
 from roaml.json import JsonValue
@@ -26,16 +27,19 @@ from roaml.json import parse as parse_json
 from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
-from roaml.model.expand import TreeFileOutline, expand, is_whole, tree_file_outline
-from roaml.model.gaps import ANYTHING, NODE, Gap, PlacedGap, machine_gaps
+from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
+from roaml.model.gaps import ANYTHING, NODE, RECEIVES, REMAP, SENDS, Gap, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, global_variables
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
+from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
+from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
-from roaml.model.ros import InterfaceType, interface_type
+from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
+from roaml.model.spelling import close_names
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
-from roaml.model.system import System
+from roaml.model.syntax import Name
+from roaml.model.system import System, sanitise
 from roaml.model.system_file import (
     NO_OVERRIDES,
     Input,
@@ -45,9 +49,9 @@ from roaml.model.system_file import (
     build_system_file,
     wanted_kind,
 )
-from roaml.model.tree import TreeFile, build_tree_file
+from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
-from roaml.project.files import MAX_CHARACTERS, Files, Problem, resolve
+from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile, Span
 from roaml.xml import Document
@@ -79,10 +83,20 @@ NO_STRUCTS = Structs((), {}, complete=True)
 class _MachineEnvironment:
     """`roaml.model.typing.Environment` for one machine."""
 
-    def __init__(self, analysis: Analysis, structs: Structs, events: Mapping[str, Struct]) -> None:
+    def __init__(
+        self,
+        analysis: Analysis,
+        structs: Structs,
+        events: Mapping[str, Struct],
+        published: Mapping[str, tuple[InterfaceType, ...]],
+    ) -> None:
         self.struct = structs.types.get
         self.event_data = events.get
         self._analysis = analysis
+        self._published = published
+
+    def published(self, topic: str) -> tuple[InterfaceType, ...]:
+        return self._published.get(sanitise(topic), ())
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
         found = self._analysis.interface(kind, name)
@@ -117,6 +131,8 @@ class Analysis:
         self._systems: dict[str, System | None] = {}
         self._listed: dict[str, tuple[ListedFile, ...]] = {}
         self._structs: dict[str, Structs] = {}
+        self._published_types: dict[str, Mapping[str, tuple[str, ...]]] = {}
+        self._trees: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {}
         self._gaps: dict[str, tuple[tuple[str, PlacedGap], ...]] = {}
 
     # ---------------------------------------------------------- single files
@@ -199,16 +215,38 @@ class Analysis:
 
     def _find_interface(self, kind: str, name: str) -> InterfaceType | NotFound:
         assert kind in ("msg", "srv", "action")
-        definition = self.registry.resolve(kind, name)  # type: ignore[arg-type]
+        key: tuple[Kind, str] = (kind, name)  # type: ignore[assignment]
+        definition = self.registry.resolve(*key)
         if isinstance(definition, NotFound):
             return definition
         parts = tuple(self._closure(definition))
+        extent = self.memo.get("interface extent", key, parts, lambda: extent_of(parts))
+        if extent.is_too_large:
+            fields = f"{extent.fields:,} fields (at most {MAX_FIELDS:,} are read)"
+            deep = f"messages in each other {extent.depth} deep (at most {MAX_DEPTH} are read)"
+            size = fields if extent.fields > MAX_FIELDS else deep
+            return NotFound(Reason.TOO_LARGE, key[0], name, size=size)
         return self.memo.get(
             "interface",
-            (kind, name),
+            key,
             parts,
             lambda: interface_type(definition, lambda n: self.registry.resolve("msg", n)),
         )
+
+    def repeated_types(self, machine: Machine) -> tuple[RepeatedType, ...]:
+        """The ROS types of a machine, those of their fields included, that other files define otherwise."""
+        found: dict[tuple[str, str], RepeatedType] = {}
+        for declaration in machine.declarations:
+            if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+                continue
+            written = declaration.type.value
+            definition = self.registry.resolve(INTERFACE_KINDS[declaration.kind], written)
+            for part in () if isinstance(definition, NotFound) else self._closure(definition):
+                other = self.registry.other_definition(part.kind, part.package, part.name)
+                if other is not None:
+                    repeated = RepeatedType(written, part.package, part.name, part.path, other.path)
+                    found.setdefault((written, part.full_name), repeated)
+        return tuple(found.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
         """The definition and all messages in it."""
@@ -263,12 +301,62 @@ class Analysis:
         return self.trees_from(first) if first else ()
 
     def trees_from(self, path: str) -> tuple[str, ...]:
-        """A tree file and what it includes, directly or not, each once."""
-        found = [path] if self.tree(path) is not None else []
+        """A tree file and what it includes, directly or not, then the projects beside it that list it and what of them
+        it needs, each once."""
+        if path not in self._trees:
+            own = self._with_included([path])
+            self._trees[path] = (own, self._from_projects(path, own))
+        own, more = self._trees[path]
+        return (*own, *more)
+
+    def outlines_from(self, path: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of `trees_from`. Of equal names in projects the first counts."""
+        paths = self.trees_from(path)
+        own = len(self._trees[path][0])
+        found = [self.tree_outline(each) for each in paths[:own]]
+        for each in paths[own:]:
+            known = {tree.id for outline in found for tree in outline.trees}
+            outline = self.tree_outline(each)
+            trees = tuple(tree for tree in outline.trees if tree.id not in known)
+            found.append(replace(outline, trees=trees, from_project=True))
+        return tuple(found)
+
+    def tree_outlines(self, system: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the tree files of a system."""
+        first = next(iter(self.tree_paths(system)), None)
+        return self.outlines_from(first) if first else ()
+
+    def _with_included(self, paths: list[str]) -> tuple[str, ...]:
+        found = [path for path in paths if self.tree(path) is not None]
         for each in found:
             included = dict.fromkeys(self.includes(each))
             found += [p for p in included if p not in found and self.tree(p) is not None]
         return tuple(found)
+
+    def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
+        """The projects of Groot2 that list a tree file, and those of their files that hold missing subtrees."""
+        if not own or path.endswith(PROJECT_EXTENSION):
+            return ()
+        projects = [p for p in self.files.beside(path, PROJECT_EXTENSION) if path in self.includes(p)]
+        listed = dict.fromkeys(p for project in projects for p in self.includes(project))
+        found: list[str] = list(projects)
+        while True:
+            known = {name for each in (*own, *found) for name in self._tree_names(each)}
+            wanted = {name for each in (*own, *found) for name in self._subtrees(each)} - known
+            new = next((p for p in listed if p not in (*own, *found) and wanted & self._tree_names(p)), None)
+            if new is None:
+                return tuple(found)
+            found += [p for p in self._with_included([new]) if p not in (*own, *found)]
+
+    def _tree_names(self, path: str) -> set[str]:
+        tree = self.tree(path)
+        return {each.id.value for each in tree.trees if each.id} if tree else set()
+
+    def _subtrees(self, path: str) -> set[str]:
+        """The names of the trees that a file uses as subtrees."""
+        tree = self.tree(path)
+        used = (node for each in tree.trees for node in nodes(each)) if tree else ()
+        return {node.plugin.value for node in used if node.is_subtree and node.plugin}
 
     def includes(self, path: str) -> tuple[str, ...]:
         """The paths that a tree file includes."""
@@ -328,7 +416,7 @@ class Analysis:
             return None
         listed = self.listed(path)
         structs = self.structs(path)
-        trees = tuple(self.tree_outline(p) for p in self.tree_paths(path))
+        trees = self.tree_outlines(path)
         machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
         gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
@@ -387,8 +475,34 @@ class Analysis:
             yield path, PlacedGap(Gap(NODE), root)
         for each in listed:
             if each.input.section == "node_models" and not each.usable:
-                yield path, PlacedGap(Gap(ANYTHING), each.span)
+                yield from ((path, PlacedGap(gap, each.span)) for gap in self._of_missing_node(path, each, listed))
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
+        outlines = self.tree_outlines(path)
+        for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
+            tree = self.tree(stray.source.path)
+            node = node_at(tree, stray.source) if tree else None
+            key = next((s.key.span for s in node.ports if s.key.value == stray.key), None) if node else None
+            outer = blackboard_variable(stray.outer)
+            for name in (*stray.meant[:1], *((outer,) if outer and stray.meant else ())):
+                if key is not None:
+                    yield stray.source.path, PlacedGap(Gap(REMAP, name), key)
+
+    def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
+        """What a node may say whose file cannot be used: what the file beside it says that is probably meant."""
+        folder, _, name = missing.path.replace("\\", "/").rpartition("/")
+        taken = {each.path for each in listed}
+        beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
+        by_name = {p.replace("\\", "/").rpartition("/")[2]: p for p in beside}
+        close = close_names(name, by_name, 1) if folder else ()
+        meant = by_name[close[0]] if close else ""
+        if not meant or self.machine(meant) is None:
+            yield Gap(ANYTHING)
+            return
+        found = self.outline(meant, system, self.structs(system), {})
+        yield from found.gaps
+        yield from (Gap(use.kind, use.name or None) for use in found.interfaces)
+        yield from (Gap(SENDS, sent.event) for sent in found.sent)
+        yield from (Gap(RECEIVES, received.event) for received in found.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
@@ -407,13 +521,13 @@ class Analysis:
             spans = [] if broken is None else [broken]
             spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
             spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
-            for include in tree.includes:
+            for include in () if tree_path.endswith(PROJECT_EXTENSION) else tree.includes:
                 if include.path and self.tree(self.include_path(tree_path, include.path.value)) is None:
                     spans.append(include.path.span)
             clear = clear and not spans
             yield from ((tree_path, span) for span in spans)
         if clear and paths:
-            outlines = tuple(self.tree_outline(each) for each in paths)
+            outlines = self.tree_outlines(path)
             if not self.memo.get("whole tree", path, outlines, lambda: is_whole(outlines)):
                 first = self.tree(paths[0])
                 assert first is not None
@@ -481,14 +595,46 @@ class Analysis:
         assert machine is not None
         known = {name: events[name] for name in _received(machine) if name in events}
         # The machine itself, not its text: what was typed refers to its parts.
-        key = (machine, structs.outlines, self.interfaces_of(machine), known)
-        environment = _MachineEnvironment(self, structs, known)
+        published = self._published_for(machine, system)
+        key = (machine, structs.outlines, self.interfaces_of(machine), published, known)
+        environment = _MachineEnvironment(self, structs, known, published)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))
         # What is known without the events is needed to link the system, and must outlive what is known with them.
         before = self.typed(path, system, structs, {})
         compute = functools.partial(type_machine, machine, environment, before)
         return self.memo.get("typed with events", (path, system), key, compute)
+
+    def _published(self, system: str) -> Mapping[str, tuple[str, ...]]:
+        """The types, as written, with which the machines of a system publish on each topic that they name."""
+        if system not in self._published_types:
+            found: dict[str, dict[str, None]] = {}
+            for listed in self.listed(system):
+                machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
+                for declaration in machine.declarations if machine else ():
+                    topic, type_ = declaration.interface, declaration.type
+                    if declaration.kind == "publisher" and isinstance(topic, Name) and type_ is not None:
+                        found.setdefault(sanitise(topic.value), {})[type_.value] = None
+            self._published_types[system] = {topic: tuple(types) for topic, types in found.items()}
+        return self._published_types[system]
+
+    def _published_for(self, machine: Machine, system: str | None) -> dict[str, tuple[InterfaceType, ...]]:
+        """The topics that a machine subscribes to, with the types that they are published with, if these are others."""
+        if system is None:
+            return {}
+        found: dict[str, tuple[InterfaceType, ...]] = {}
+        for declaration in machine.declarations:
+            if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and declaration.type:
+                topic = sanitise(declaration.interface.value)
+                types = self._published(system).get(topic, ())
+                if others := self._messages(t for t in types if t != declaration.type.value):
+                    found[topic] = others
+        return found
+
+    def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
+        """Those of the message types that there are."""
+        found = (self.interface("msg", name) for name in names)
+        return tuple(type_ for type_ in found if isinstance(type_, InterfaceType))
 
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
         """The ROS types that a machine declares, in order."""
@@ -506,14 +652,15 @@ class Analysis:
     def environment(self, system: str | None) -> Environment:
         """What the machines of a system can name; a machine alone can name ROS types."""
         linked = self.system(system) if system else None
-        return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {})
+        published = {topic: self._messages(types) for topic, types in self._published(system).items()} if system else {}
+        return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {}, published)
 
     def globals(self, system: str) -> Mapping[str, GlobalVariable]:
         """The global variables of the translated system, by name."""
         linked = self.system(system)
         if linked is None:
             return {}
-        environment = _MachineEnvironment(self, NO_STRUCTS, {})
+        environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
         return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
 
 

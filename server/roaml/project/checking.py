@@ -16,6 +16,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
+from roaml.disk import Problem
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
@@ -23,13 +24,13 @@ from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import PROJECT_EXTENSION, FileKind
 from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.edits import laid_out
-from roaml.project.files import MAX_CHARACTERS, Problem
+from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
@@ -229,7 +230,8 @@ class _Run:
                 assert machine is not None
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
-                return (*parts, typed, lookups, self.analysis.structs(self.system_path).complete)
+                repeated = self.analysis.repeated_types(machine)
+                return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
@@ -362,6 +364,7 @@ class _Run:
             self.analysis.interface,
             events.get,
             self._machine_gaps(machine),
+            self.analysis.repeated_types(machine),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
@@ -388,8 +391,9 @@ class _Run:
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
-        paths = self.analysis.tree_paths(self.system_path) if self.system_path else self.analysis.trees_from(self.path)
-        return tuple(self.analysis.tree_outline(path) for path in paths)
+        if self.system_path:
+            return self.analysis.tree_outlines(self.system_path)
+        return self.analysis.outlines_from(self.path)
 
     def _missing_includes(self) -> dict[str, str]:
         """What cannot be included, and why."""
@@ -404,7 +408,7 @@ class _Run:
                 found[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
                 found[include.path.value] = "it is no file of behavior trees"
-            elif self.path in self.analysis.trees_from(target):
+            elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
                 found[include.path.value] = (
                     "it includes this file in turn" if target != self.path else "it is this file"
                 )

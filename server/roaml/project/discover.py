@@ -9,9 +9,9 @@ from __future__ import annotations
 import fnmatch
 import glob
 import os
-import stat
 from collections.abc import Iterable, Iterator
 
+from roaml.disk import Problem, Roots, read, status_of
 from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
 from roaml.project.files import Files
 from roaml.text import decode
@@ -22,14 +22,18 @@ _HEAD = 65_536
 """Bytes: more than `root_name` looks at, in any encoding but UTF-32."""
 
 
-def candidates(roots: Iterable[str], exclude: tuple[str, ...] = ()) -> Iterator[str]:
-    """All files below the roots that by their extension may be ours, sorted within each folder, each once."""
+def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Roots | None = None) -> Iterator[str]:
+    """All files below the roots that by their extension may be ours, sorted within each folder, each once.
+
+    Args:
+        within: links out of these are not followed; out of any if not given.
+    """
     seen: set[str] = set()
     count = 0
     for root in roots:
         for folder, names, files in os.walk(root, followlinks=True):
             real = os.path.realpath(folder)
-            if real in seen:
+            if real in seen or (within is not None and not within.hold(folder)):
                 names.clear()
                 continue
             seen.add(real)
@@ -87,18 +91,16 @@ class SystemIndex:
             return False
         if path in files.open_files:
             return kind_of(path, files.open_files[path].text) is FileKind.SYSTEM
-        try:
-            status = os.stat(path)
-            if not stat.S_ISREG(status.st_mode):  # to open a pipe would wait for ever
-                return False
-            stamp = (status.st_mtime_ns, status.st_size)
-            known = self._known.get(path)
-            if known is not None and known[0] == stamp:
-                return known[1]
-            with open(path, "rb") as file:
-                head = decode(path, file.read(_HEAD)).text
-        except (OSError, ValueError):
+        status = status_of(path)
+        if isinstance(status, Problem):
             return False
-        found = kind_of(path, head) is FileKind.SYSTEM
+        stamp = (status.st_mtime_ns, status.st_size)
+        known = self._known.get(path)
+        if known is not None and known[0] == stamp:
+            return known[1]
+        head = read(path, head=_HEAD)
+        if isinstance(head, Problem) or not files.roots.hold(path):
+            return False
+        found = kind_of(path, decode(path, head).text) is FileKind.SYSTEM
         self._known[path] = (stamp, found)
         return found

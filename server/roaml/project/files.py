@@ -2,64 +2,53 @@
 """Reading the user's files: what is open in an editor before what is on the disk.
 
 - Never raises for what stands on the disk: a file that cannot be used is a `Problem`.
-- Opens regular files only; devices, sockets and pipes are never opened.
+- Opens regular files only (`roaml.disk`), and none outside of the roots that a link leads to.
 - A file is read again only when its size or time of change differs.
 """
 
 from __future__ import annotations
 
-import enum
 import os
-import stat
 from collections.abc import Mapping
 
+from roaml.disk import MAX_BYTES, Problem, Roots, read, status_of
 from roaml.text import SourceFile, decode
-
-MAX_BYTES = 32 * 1024 * 1024
-"""Larger files are not read at all."""
 
 MAX_CHARACTERS = 2_000_000
 """Longer texts are not analysed: nobody writes them by hand, and no editor waits for them."""
 
 
-class Problem(enum.Enum):
-    """Why a path gives no text."""
-
-    MISSING = "there is no such file"
-    FOLDER = "it is a folder"
-    SPECIAL = "it is no regular file"
-    UNREADABLE = "it cannot be read"
-    TOO_LARGE = "it is larger than 32 MB"
-
-
 class DiskFiles:
-    """The disk, remembered by size and time of change."""
+    """The disk, remembered by size and time of change. No file is read that a link out of `roots` leads to."""
 
-    def __init__(self) -> None:
-        self._known: dict[str, tuple[tuple[int, int, int], SourceFile]] = {}
+    def __init__(self, roots: Roots | None = None) -> None:
+        self.roots = roots or Roots()
+        self._known: dict[str, tuple[tuple[int, int, int], SourceFile | Problem]] = {}
 
     def read(self, path: str) -> SourceFile | Problem:
-        try:
-            status = os.stat(path)
-            if stat.S_ISDIR(status.st_mode):
-                return Problem.FOLDER
-            if not stat.S_ISREG(status.st_mode):
-                return Problem.SPECIAL
-            if status.st_size > MAX_BYTES:
-                return Problem.TOO_LARGE
-            stamp = (status.st_mtime_ns, status.st_size, status.st_ino)
-            known = self._known.get(path)
-            if known is not None and known[0] == stamp:
-                return known[1]
-            with open(path, "rb") as file:
-                source = decode(path, file.read(MAX_BYTES))
-        except (FileNotFoundError, NotADirectoryError):
+        status = status_of(path)
+        if isinstance(status, Problem):
             self._known.pop(path, None)
-            return Problem.MISSING
+            return status
+        stamp = (status.st_mtime_ns, status.st_size, status.st_ino)
+        known = self._known.get(path)
+        if known is None or known[0] != stamp:
+            known = self._known[path] = (stamp, self._read(path))
+        return known[1]
+
+    def _read(self, path: str) -> SourceFile | Problem:
+        if not self.roots.hold(path):
+            return Problem.OUTSIDE
+        content = read(path, MAX_BYTES)
+        return content if isinstance(content, Problem) else decode(path, content)
+
+    def listing(self, folder: str) -> tuple[str, ...]:
+        """The names of the files in a folder, sorted; none if it cannot be read."""
+        try:
+            with os.scandir(folder) as entries:
+                return tuple(sorted(entry.name for entry in entries if entry.is_file()))
         except (OSError, ValueError):
-            return Problem.UNREADABLE
-        self._known[path] = (stamp, source)
-        return source
+            return ()
 
 
 class Files:
@@ -69,6 +58,11 @@ class Files:
         self._disk = disk
         self.open_files = open_files
         self._seen: dict[str, SourceFile | Problem] = {}
+        self._folders: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def roots(self) -> Roots:
+        return self._disk.roots
 
     def read(self, path: str) -> SourceFile | Problem:
         if path in self.open_files:
@@ -76,6 +70,15 @@ class Files:
         if path not in self._seen:
             self._seen[path] = self._disk.read(path)
         return self._seen[path]
+
+    def beside(self, path: str, extension: str) -> tuple[str, ...]:
+        """The other files with this extension in the folder of a file, sorted."""
+        folder = os.path.dirname(path)
+        if folder not in self._folders:
+            self._folders[folder] = self._disk.listing(folder)
+        found = {os.path.join(folder, name) for name in self._folders[folder] if name.endswith(extension)}
+        found |= {p for p in self.open_files if os.path.dirname(p) == folder and p.endswith(extension)}
+        return tuple(sorted(found - {path}))
 
     def text(self, path: str) -> SourceFile | None:
         source = self.read(path)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.disk import MAX_CONFIGURATION, NotReadableError, Problem, required
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.rules import BY_CODE
@@ -25,6 +26,7 @@ else:
     import tomli as tomllib
 
 CONFIG_FILE = "as2fm.toml"
+SCHEDULERS = ("uniform",)
 SEVERITIES = {severity.label: severity for severity in Severity}
 
 
@@ -37,6 +39,8 @@ class Settings:
         relative to each root.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
+    scheduler: "uniform" if `verify` is meant to answer for uniform choices, also where a property asks for the minimum
+        or maximum over all schedulers; else empty.
     limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
     """
@@ -49,6 +53,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
+    scheduler: str = ""
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
 
@@ -63,13 +68,15 @@ def read_settings(folder: str, base: Settings) -> tuple[Settings, tuple[str, ...
     for name, keys in ((CONFIG_FILE, ()), ("pyproject.toml", ("tool", "as2fm"))):
         path = os.path.join(folder, name)
         try:
-            with open(path, "rb") as file:
-                table: Any = tomllib.load(file)
-        except FileNotFoundError:
-            continue
-        except (OSError, ValueError) as error:
+            table: Any = tomllib.loads(required(path, MAX_CONFIGURATION).decode("utf-8").replace("\r\n", "\n"))
+        except NotReadableError as error:
+            if error.problem is Problem.MISSING:
+                continue
+            return base, (str(error),)
+        except (ValueError, RecursionError) as error:
             if name == CONFIG_FILE:
-                return base, (f"{path}: {error}",)
+                words = "brackets are nested too deep" if isinstance(error, RecursionError) else str(error)
+                return base, (f"{path}: {words}",)
             continue
         for key in keys:
             table = table.get(key) if isinstance(table, dict) else None
@@ -97,6 +104,11 @@ def settings_from(
         if key not in _KEYS:
             problems.append(f"{origin}: unknown setting `{key}`; there are {', '.join(sorted(_KEYS))}")
             continue
+        if key == "verify":
+            problems += _verify_problems(value, origin)
+            if isinstance(value, dict) and value.get("scheduler") in SCHEDULERS:
+                changes["scheduler"] = value["scheduler"]
+            continue
         read = _KEYS[key](value)
         if read is None:
             problems.append(f"{origin}: `{key}` is not {_WANTED[key]}")
@@ -114,6 +126,18 @@ def settings_from(
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
     return replace(base, **changes), tuple(problems)
+
+
+def _verify_problems(value: Any, origin: str) -> Iterator[str]:
+    """What is wrong with the table `[verify]`."""
+    if not isinstance(value, dict):
+        yield f"{origin}: `verify` is not a table"
+        return
+    for key, said in value.items():
+        if key != "scheduler":
+            yield f"{origin}: unknown setting `verify.{key}`; there is scheduler"
+        elif said not in SCHEDULERS:
+            yield f"{origin}: `verify.scheduler` is not {' or '.join(SCHEDULERS)}"
 
 
 def _strings(value: Any) -> tuple[str, ...] | None:
@@ -152,6 +176,7 @@ _KEYS: dict[str, Any] = {
     "ignore": _strings,
     "severity": _severities,
     "warnings-as-errors": _boolean,
+    "verify": None,
     "max-cells": _count,
     "max-parts": _count,
 }

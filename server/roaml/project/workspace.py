@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 
+from roaml.disk import Roots
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
 from roaml.model.kinds import FileKind
@@ -85,7 +86,7 @@ class Workspace:
         self._named = tuple(os.path.abspath(path) for path in systems)
         self._packages = None if packages is None else tuple(os.path.abspath(folder) for folder in packages)
         self._open: dict[str, SourceFile] = {}
-        self._disk = DiskFiles()
+        self._disk = self._new_disk()
         self._memo = Memo(checkpoint)
         self._index = SystemIndex()
         self._listed: tuple[str, ...] | None = None
@@ -111,11 +112,13 @@ class Workspace:
             self.roots = tuple(os.path.abspath(root) for root in roots)
         self._listed = None
         self._memo.clear()
+        self._disk = self._new_disk()
         self._registry = self._new_registry()
 
     def look_for_packages_in(self, folders: Iterable[str]) -> None:
         """Other folders in which ROS packages are looked for."""
         self._packages = tuple(os.path.abspath(folder) for folder in folders)
+        self._disk = self._new_disk()
         self._registry = self._new_registry()
 
     def snapshot(self) -> Snapshot:
@@ -128,14 +131,29 @@ class Workspace:
 
         files = Files(self._disk, opened)
         if self._listed is None:
-            self._listed = tuple(candidates(self.roots, self.settings.exclude))
+            self._listed = tuple(candidates(self.roots, self.settings.exclude, self._disk.roots))
         new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
         analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
         return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
 
+    def _new_disk(self) -> DiskFiles:
+        """A system that is named belongs to the workspace with the folder in which it really lies."""
+        settings = self.settings
+        named = (folder for path in self._named for folder in (os.path.dirname(path), _real_folder(path)))
+        return DiskFiles(
+            Roots(
+                (*self.roots, *(self._packages or ()), *settings.roots, *named),
+                (*settings.ros_paths, *settings.ament_prefixes),
+            )
+        )
+
     def _new_registry(self) -> Registry:
         settings = self.settings
         search = SearchPath(self._packages or self.roots, settings.ros_paths, settings.ament_prefixes)
         return Registry(search, Files(self._disk, {}).text)
+
+
+def _real_folder(path: str) -> str:
+    return os.path.dirname(os.path.realpath(path))

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
+from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
+from roaml.model.translated import is_generated
 from roaml.rules.elements import removal
 from roaml.rules.rule import Rule, SystemContext
 
@@ -16,6 +19,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     """Automata, and plugins among each other, need names of their own."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
     first: dict[tuple[str, str], ListedFile] = {}
+    generated = _generated(context.system)
     for listed in context.files:
         outline = outlines.get(listed.path) if listed.wanted is FileKind.MACHINE else None
         if outline is None or listed.input.src is None or not outline.name:
@@ -23,6 +27,33 @@ def check(context: SystemContext) -> Iterator[Finding]:
         before = first.setdefault((listed.input.section, outline.name), listed)
         if before is not listed:
             yield _finding(context, listed, before, outline.name)
+        elif listed.input.section == "node_models" and (reason := _taken(outline.name, generated)):
+            named = Related(Symbol(listed.path, "machine", outline.name), "named here")
+            message = f"the node `{outline.name}` is called like {reason}; give it another name"
+            yield RULE.at(listed.input.src.span, message, related=[named])
+
+
+def _generated(system: System) -> dict[str, str]:
+    """The names of automata that the translation adds, and what they are: each event is one, and each thread."""
+    events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
+    found = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
+    for automaton in system.automata:
+        for thread in automaton.outline.threads:
+            servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
+            for name in filter(None, map(automaton.interface_name, servers)):
+                words = f"a thread of the action `{name}`"
+                found.update({f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MOST_THREADS))})
+    return found
+
+
+MOST_THREADS = 1000
+"""More are hardly there, and `model-too-large` tells."""
+
+
+def _taken(name: str, generated: Mapping[str, str]) -> str:
+    if is_generated(name):
+        return "what the translation makes for services, actions, the tree and the clock"
+    return generated.get(name, "")
 
 
 def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, name: str) -> Finding:

@@ -12,7 +12,7 @@ from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
 from roaml.xml import Attribute, Element
 
-CHANGES_MEANING = ("delay", "delayexpr", "after", "initial", "src")
+CHANGES_MEANING = ("delay", "delayexpr", "initial", "src")
 SPEAKS_FOR = {("param", "location"): "expr"}
 """Ignored attributes and those in which their value would have its effect."""
 
@@ -24,7 +24,7 @@ def check(context: FileContext) -> Iterator[Finding]:
     for element, type_, _ in known_elements(context.document, context.grammar):
         for attribute in element.attributes:
             known = type_.attributes.get(attribute.name)
-            if known is not None and known.ignored is False:
+            if known is not None and known.ignored is False and attribute.name != "after":  # delayed-transition tells
                 yield RULE.at(
                     attribute.span,
                     f"`{attribute.name}` has no effect: {_reason(known)}",

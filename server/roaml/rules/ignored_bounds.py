@@ -9,9 +9,10 @@ from roaml.diagnostics import Finding, Severity
 from roaml.jani.node import Node
 from roaml.jani.properties import BinaryPath, UnaryPath, walk
 from roaml.rules.rule import PropertiesContext, Rule
+from roaml.smc.forms import BOUNDS
 
-TIME = "the bound has no effect, as the model counts steps only; for times compare the clock's `sec` in the formula"
-REWARD = "the bound has no effect, as the model has no rewards"
+TIME = "`verify` cannot answer this: the model counts steps only; for times compare the clock's `sec` in the formula"
+REWARD = "`verify` cannot answer this: the model has no rewards"
 
 
 def check(context: PropertiesContext) -> Iterator[Finding]:
@@ -31,4 +32,9 @@ def _ignored(bound: Node, message: str) -> Iterator[Finding]:
         yield RULE.at(bound.origin.span, message)
 
 
-RULE = Rule("ignored-bounds", Severity.WARNING, "A property has bounds that are not looked at.", properties=check)
+RULE = Rule(
+    BOUNDS,
+    Severity.WARNING,
+    "A property has bounds that `verify` refuses and `translate` leaves out.",
+    properties=check,
+)

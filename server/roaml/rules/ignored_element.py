@@ -25,9 +25,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 element.name_span,
                 f"`<{element.name}>` has no effect on the model",
                 remove,
-                severity=Severity.HINT if context.older else Severity.ERROR,
+                severity=None if context.older or element.name == "log" else Severity.ERROR,
                 tags=(Tag.UNNECESSARY,),
             )
 
 
-RULE = Rule("ignored-element", Severity.ERROR, "An element has no effect on the model.", machine=check)
+RULE = Rule("ignored-element", Severity.HINT, "An element has no effect on the model.", machine=check)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Related
+from roaml.model.gaps import OTHER_SIDE
 from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import Name
@@ -15,15 +16,6 @@ from roaml.model.tree import TreeNode
 from roaml.rules.instances import instances
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.text import Span
-
-_OTHER = {
-    "publisher": "subscriber",
-    "subscriber": "publisher",
-    "service-client": "service-server",
-    "service-server": "service-client",
-    "action-client": "action-server",
-    "action-server": "action-client",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +56,7 @@ def named_here(context: MachineContext | TreeContext, kind: str) -> Iterator[Nam
 
 def other_kind(kind: str) -> str:
     """The other side of a declaration kind."""
-    return _OTHER[kind]
+    return OTHER_SIDE[kind]
 
 
 def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, Automaton, Channel]]:

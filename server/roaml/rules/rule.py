@@ -23,7 +23,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
-from roaml.model.ros import InterfaceType
+from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
 from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
@@ -52,8 +52,8 @@ class MachineContext:
     """A machine. `automata` is what it is in `system`; both are empty for a machine that belongs to no system.
 
     `all_structs` tells that the system has no other structs than those in `struct_names`; `interface` looks up ROS
-    types by kind and name as written; `gaps` are what the machine may say where it cannot be read; `older` tells that
-    the older dialect is checked.
+    types by kind and name as written; `gaps` are what the machine may say where it cannot be read; `repeated_types` are
+    ROS types that it uses and that are defined twice; `older` tells that the older dialect is checked.
     """
 
     source: SourceFile
@@ -70,6 +70,7 @@ class MachineContext:
     interface: Callable[[str, str], InterfaceType | NotFound]
     event_data: Callable[[str], Struct | None]
     gaps: tuple[PlacedGap, ...]
+    repeated_types: tuple[RepeatedType, ...] = ()
 
     @property
     def older(self) -> bool:

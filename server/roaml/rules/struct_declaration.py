@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.types import BASE_TYPES
-from roaml.model.structs import StructDeclaration, struct_cycle
+from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS, Extent
+from roaml.model.structs import StructDeclaration, struct_cycles, struct_extents
 from roaml.model.syntax import Name
 from roaml.rules.invalid_name import VARIABLE
 from roaml.rules.rule import Rule, StructsContext
@@ -16,6 +17,8 @@ from roaml.rules.rule import Rule, StructsContext
 def check(context: StructsContext) -> Iterator[Finding]:
     first: dict[str, Name] = {}
     outlines = {outline.name: outline for outline in context.outlines}
+    cycles = struct_cycles(outlines)
+    sizes = struct_extents(outlines)
     for declaration in context.declarations:
         name = declaration.name
         if name is None:
@@ -26,10 +29,11 @@ def check(context: StructsContext) -> Iterator[Finding]:
             yield RULE.at(name.span, f"`{name.value}` cannot name a struct: letters, digits and `_`")
         else:
             yield from _other(context, declaration, first.setdefault(name.value, name))
-        cycle = struct_cycle(name.value, outlines)
-        if cycle:
-            yield RULE.at(name.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
-        yield from _members(declaration, outlines)
+        if outlines.get(name.value) == declaration.outline:
+            yield from _cycles(declaration, name.value, cycles)
+        yield from _members(declaration)
+        if name.value in sizes and sizes[name.value].is_too_large:
+            yield from _too_large(declaration, sizes)
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
@@ -47,7 +51,32 @@ def _other(context: StructsContext, declaration: StructDeclaration, first: Name)
         yield RULE.at(name.span, message, severity=Severity.WARNING)
 
 
-def _members(declaration: StructDeclaration, structs: object) -> Iterator[Finding]:
+def _cycles(
+    declaration: StructDeclaration, name: str, cycles: Mapping[tuple[str, str], tuple[str, ...]]
+) -> Iterator[Finding]:
+    """Once for each cycle, at the member that closes it."""
+    for member in declaration.members:
+        cycle = cycles.get((name, member.name.value)) if member.name else None
+        if cycle is not None and member.type is not None:
+            yield RULE.at(member.type.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
+
+
+def _too_large(declaration: StructDeclaration, sizes: Mapping[str, Extent]) -> Iterator[Finding]:
+    """At the member that makes it so large, in the innermost struct that is."""
+    assert declaration.name is not None
+    types = (m.type for m in declaration.members if m.type and m.type.name)
+    inner = [(sizes[type_.name.base], type_) for type_ in types if type_.name and type_.name.base in sizes]
+    if any(extent.is_too_large for extent, _ in inner):
+        return
+    extent = sizes[declaration.name.value]
+    largest = max(inner, key=lambda each: (each[0].depth, each[0].fields), default=None)
+    what = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"structs in each other {extent.depth:,} deep"
+    most = f"{MAX_FIELDS:,}" if extent.fields > MAX_FIELDS else f"{MAX_DEPTH}"
+    message = f"with all that is in its members, `{declaration.name.value}` has {what}; at most {most} are read"
+    yield RULE.at(largest[1].span if largest else declaration.name.span, message)
+
+
+def _members(declaration: StructDeclaration) -> Iterator[Finding]:
     first: dict[str, Name] = {}
     for member in declaration.members:
         name, type_ = member.name, member.type

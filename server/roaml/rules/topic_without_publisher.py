@@ -25,7 +25,10 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         silent = " (declared, but nothing is ever published)" if topic.sources else ""
         message = f"nobody publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
         fixes = replacements(naming.span, close if naming.literal else ())
-        yield RULE.at(naming.span, message, *fixes, related=naming.related)
+        # A node that always has something else to do may well have inputs that nobody gives in this system.
+        needed = bool(close or topic.sources or naming.use.awaited)
+        severity = Severity.ERROR if needed else Severity.WARNING
+        yield RULE.at(naming.span, message, *fixes, severity=severity, related=naming.related)
 
 
 def has_publisher(system: System, topic: Channel) -> bool:

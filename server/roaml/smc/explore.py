@@ -56,6 +56,20 @@ class Explorer:
 
     def choices(self, state: State) -> Iterator[list[Branch]]:
         """The choices of a state, as often as each counts, with their successors."""
+        for times, branches in self._choices(state):
+            for _ in range(times):
+                yield branches
+
+    def ways(self, state: State) -> Iterator[list[Branch]]:
+        """The choices of a state, with their successors.
+
+        Raises:
+            StateFaultError: one of them goes wrong.
+        """
+        for _, branches in self._choices(state):
+            yield branches
+
+    def _choices(self, state: State) -> Iterator[tuple[int, list[Branch]]]:
         self._kernel.restore(*state)
         for vector, times, slots in self._kernel.choices():
             for picks in itertools.product(*(range(len(edges)) for edges in slots)):
@@ -70,8 +84,7 @@ class Explorer:
                         if self._kernel.go(vector, list(picks), list(taken)) == FAULTY:
                             raise StateFaultError(Problem(0, *self._kernel.problem()))
                         branches.append(Branch(probability, self._state()))
-                for _ in range(times):
-                    yield branches
+                yield times, branches
 
     def reachable(self, limit: int) -> dict[State, int]:
         """All states with what is known of the goal there; beyond a decided one nothing is looked at.

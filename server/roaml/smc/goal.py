@@ -38,6 +38,7 @@ from roaml.jani.properties import (
 from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.smc.compile import Compilation
 from roaml.smc.fault import FaultError
+from roaml.smc.forms import check_form
 from roaml.smc.program import Goal
 from roaml.smc.registers import Operand
 
@@ -51,8 +52,6 @@ _MIRRORED = {
     BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
 }
 """Each comparison -> the same with its sides exchanged."""
-
-_ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +104,9 @@ def ask(compilation: Compilation, property_: Property) -> Asked:
     """Compile a property.
 
     Raises:
-        FaultError: it is of a kind that sampling cannot answer, or not supported.
+        FaultError: it is of a form that sampling cannot answer, or compares with what is not a number.
     """
+    check_form(property_)
     return _Writer(compilation, property_).asked()
 
 
@@ -160,9 +160,7 @@ class _Writer:
                 step_reward, exit_reward = self.expectation(formula)
                 name = operator.value
             case _:
-                raise FaultError(
-                    "this is neither a probability (`Pmin`, `Pmax`) nor an expected reward", formula.origin
-                )
+                raise AssertionError("`check_form` lets nothing else pass")
         variables = self.variables()
         question = Question(self.property.name, name, isinstance(formula, Expectation), threshold, variables)
         seen = [int(storage.name in variables) for storage in self.compilation.watched]
@@ -188,15 +186,8 @@ class _Writer:
         threshold: Threshold | None = None
         while True:
             match formula:
-                case Filter(function, values, states):
-                    if not isinstance(states, Predicate) or states.predicate is not StatePredicate.INITIAL:
-                        raise FaultError("only the initial states can be asked about", states.origin or formula.origin)
-                    if function in (FilterFunction.FORALL, FilterFunction.EXISTS):
-                        if not isinstance(values, BinaryFormula):
-                            raise FaultError("this is no comparison of a probability with a number", values.origin)
-                    elif function not in _ONE_STATE:
-                        raise FaultError(f"the filter `{function.value}` is not supported", formula.origin)
-                    formula = values
+                case Filter():
+                    formula = formula.values
                 case BinaryFormula(operator, left, right) if operator in _MIRRORED and threshold is None:
                     if isinstance(left, ProperFormula):
                         formula, other = left, right
@@ -208,8 +199,7 @@ class _Writer:
 
     def number(self, formula: Formula) -> float:
         """The value of an expression without variables."""
-        if isinstance(formula, ProperFormula):
-            raise FaultError("a number is needed here", formula.origin)
+        assert not isinstance(formula, ProperFormula)
         try:
             value = evaluate(formula, self.names.constants(), self.names.functions)
         except EvaluationError as error:
@@ -277,10 +267,8 @@ class _Writer:
             case Predicate(StatePredicate.DEADLOCK):
                 self.is_bounded = 2
                 return NO_DEADLOCK if negated else DEADLOCK
-            case _ if isinstance(formula, ProperFormula):
-                what = "this" if isinstance(formula, Predicate) else "a formula about paths inside another one"
-                raise FaultError(f"{what} is not supported here", formula.origin)
             case _:
+                assert not isinstance(formula, ProperFormula)
                 self.conditions.append(formula)
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
                 return self.compilation.assembler.condition(
@@ -289,8 +277,6 @@ class _Writer:
 
     def bounds(self, path: PathBounds) -> tuple[int, int | None]:
         """The step bounds, both inclusive."""
-        if path.time_bounds is not None or path.reward_bounds:
-            raise FaultError("only step bounds are supported, not those of time and rewards", path.origin)
         interval = path.step_bounds
         if interval is None:
             return 0, None
@@ -311,13 +297,8 @@ class _Writer:
     # ------------------------------------------------------------ rewards
 
     def expectation(self, formula: Expectation) -> tuple[int, int]:
-        others = (formula.step_instant, formula.time_instant, formula.reward_instants or None)
-        if formula.reach is None or formula.accumulate is None or any(other is not None for other in others):
-            raise FaultError(
-                "only rewards that are accumulated until something is reached are supported", formula.origin
-            )
-        if Accumulation.TIME in formula.accumulate:
-            raise FaultError("no time passes in this kind of model; accumulate on steps or exit", formula.origin)
+        assert formula.reach is not None
+        assert formula.accumulate is not None
         self.until(TRUE, self.condition(formula.reach), 0, None)
         code = self.compilation.assembler.real_register(formula.reward, self.names, formula.origin)
         return (

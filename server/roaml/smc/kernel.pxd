@@ -41,7 +41,9 @@ cdef class Kernel:
     cdef int note_count, moved, must_look, fault, fault_at
     cdef i64 fault_value, fault_size
     cdef double fault_real
-    cdef u64 key, drawn, scheduler, choice, tossed
+    cdef u64 key, drawn, scheduler, choice, tossed, loop_state, loop_drawn
+    cdef i64 loop_span, loop_left
+    cdef int looped
     cdef int rank, end
     cdef double mass
     cdef public i64 steps
@@ -71,6 +73,11 @@ cdef class Kernel:
     @cython.locals(top=int, i=int, total=double, aim=double, found=int, share=double)
     cdef int _heavy(self) noexcept
     cdef u64 _toss(self) noexcept
+    @cython.locals(bias=int, found=int, found_rank=int, greatest=u64, i=int, vector=int, rank=int, value=u64)
+    cdef int _scheduled(self) noexcept
+    @cython.locals(i=int)
+    cdef int _takes_part(self, int vector, int instance) noexcept
+    cdef void _notice(self, u64 state) noexcept
     @cython.locals(state=u64, i=int)
     cdef u64 _state_hash(self) noexcept
     @cython.locals(i=int, slot=int, count=int, pick=int, edge=int, way=int)
@@ -108,6 +115,8 @@ cdef class Kernel:
     cdef int _is_deadlock(self) noexcept
     @cython.locals(i=int)
     cdef int _ends(self, int repeats) noexcept
+    @cython.locals(i=int)
+    cdef int _goes_round(self) noexcept
     @cython.locals(found=int, i=int, mark=int)
     cdef int _reason(self, int repeats) noexcept
     @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)

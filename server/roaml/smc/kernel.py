@@ -144,6 +144,11 @@ class Kernel:
         self.scheduler = 0
         self.choice = 0
         self.tossed = 0
+        self.looped = 0
+        self.loop_state = 0
+        self.loop_drawn = MASK
+        self.loop_span = 1
+        self.loop_left = 1
         self.mass = 1.0
         self.rank = 0
         self.end = DECIDED
@@ -158,7 +163,7 @@ class Kernel:
         """Go to the start of a trace, which `advance` continues.
 
         Args:
-            scheduler: 0 draws uniformly among the choices; any other number stands for a memoryless scheduler.
+            scheduler: 0 draws uniformly among the choices; any other number stands for a scheduler, see `lss`.
 
         Returns:
             what is known of the goal there.
@@ -322,6 +327,9 @@ class Kernel:
         self.note_count = 0
         self.fault = self.fault_0
         self.end = DECIDED
+        self.vector = -1
+        self.looped = 0
+        self.loop_drawn = MASK
         self.steps = 0
         self.still = 0
         self.reward = 0.0
@@ -430,9 +438,10 @@ class Kernel:
         """Choose, take, and find out what is enabled then."""
         rest = 0
         apart = 0
-        if self.scheduler != 0:
-            self.tossed = 0
-        if self.plural == 0:
+        if self.scheduler != 0 and (self.enabled_count > 1 or self.plural != 0):
+            apart = 1
+            vector = self._scheduled()
+        elif self.plural == 0:
             if self.enabled_count == 1:
                 vector = self.enabled[0]
             else:
@@ -476,17 +485,65 @@ class Kernel:
         return found
 
     def _toss(self) -> int:
-        """The next number that decides between choices: a random one, or that of the memoryless scheduler, a hash of
-        scheduler and state."""
+        """The next number that decides between choices: a random one, or of a scheduler a hash of it and the state."""
         if self.scheduler == 0:
             return self._draw()
-        if self.tossed == 0:
-            self.choice = self._state_hash()
         self.tossed += 1
         return self._mixed((self.choice + self.tossed * GOLDEN) & MASK)
 
+    def _scheduled(self) -> int:
+        """What the scheduler chooses in this state: of the vectors that it prefers the one with the greatest hash of
+        scheduler, state and vector."""
+        self.choice = self._state_hash()
+        self.tossed = 0
+        self._notice(self.choice)
+        bias = (self.scheduler >> 57) & 3
+        found = -1
+        found_rank = 0
+        greatest = 0
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            rank = 0
+            if bias != 0:
+                rank = self._takes_part(vector, (self.scheduler >> 32) & 0xFFFFFF)
+                if bias == 1:
+                    rank = 1 - rank
+            value = self._mixed((self.choice ^ self._mixed(vector + 1)) & MASK)
+            if found < 0 or rank > found_rank or (rank == found_rank and value > greatest):
+                found = vector
+                found_rank = rank
+                greatest = value
+        return found
+
+    def _takes_part(self, vector: int, instance: int) -> int:
+        """Whether an instance does something in a vector."""
+        for i in range(self.active_start[vector], self.active_start[vector + 1]):
+            if self.slot_instance[self.active_slot[i]] == instance:
+                return 1
+        return 0
+
+    def _notice(self, state: int) -> None:
+        """Find out whether a scheduler, which chooses by this hash alone, has come back to a state without any chance
+        in between: it will do so for ever. A state is kept for twice as many choices as the one before (Brent 1980)."""
+        if self.drawn != self.loop_drawn:
+            self.loop_drawn = self.drawn
+            self.loop_state = state
+            self.loop_span = 1
+            self.loop_left = 1
+        elif state == self.loop_state:
+            self.looped = 1
+        else:
+            self.loop_left -= 1
+            if self.loop_left == 0:
+                self.loop_state = state
+                self.loop_span *= 2
+                self.loop_left = self.loop_span
+
     def _state_hash(self) -> int:
+        """A hash of the scheduler and all that its choice depends on."""
         state = self.scheduler
+        if (self.scheduler >> 56) & 1 != 0:
+            state = self._mixed((state + self.vector + 2) & MASK)
         for i in range(self.instances):
             state = self._mixed((state + self.place[i] * GOLDEN) & MASK)
         for i in range(self.int_count):
@@ -752,6 +809,8 @@ class Kernel:
             if self.fault != 0:
                 return FAULTY
             self.steps += 1
+            if self.looped != 0 and self.is_bounded == 0:
+                return self._finish(self._goes_round())
             if self.is_bounded == 2:
                 self.must_look = 1
             if self.must_look != 0 or self.is_bounded != 0:
@@ -817,6 +876,14 @@ class Kernel:
                     self.verdict[i] = TRUE if self.end == STUCK else FALSE
                 else:
                     self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
+        return self._combined()
+
+    def _goes_round(self) -> int:
+        """The trace repeats for ever what it has done: what did not hold in it never will."""
+        self.end = IDLE
+        for i in range(self.leaves):
+            if self.verdict[i] == UNKNOWN:
+                self.verdict[i] = FALSE
         return self._combined()
 
     def _reason(self, repeats: int) -> int:

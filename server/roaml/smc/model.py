@@ -10,15 +10,17 @@ from types import MappingProxyType
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.smc.batch import Payload, Problem, pack
+from roaml.smc.choices import Choices, look_at_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked, ask, ask_stuck
-from roaml.smc.lss import Extremes, extremes
+from roaml.smc.lss import Extremes, candidates, extremes
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program
 from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
+from roaml.smc.size import check_size
 
 DEPTH = 15_000
 """Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
@@ -32,11 +34,12 @@ class Checker:
         asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
-        asked: a question for each property.
+        asked: a question for each property that can be answered.
+        refused: the names of the others -> why not.
         stuck: the question whether traces get stuck.
 
     Raises:
-        FaultError: the model or a property cannot be run.
+        FaultError: the model cannot be run.
     """
 
     def __init__(
@@ -49,14 +52,23 @@ class Checker:
     ) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
+        self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
+            check_size(model, chosen)
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
-            self.asked: tuple[Asked, ...] = tuple(ask(self._compilation, property_) for property_ in chosen)
+            self.asked: tuple[Asked, ...] = ()
+            self.refused: dict[str, FaultError] = {}
+            for property_ in chosen:
+                try:
+                    self.asked += (ask(self._compilation, property_),)
+                except FaultError as fault:
+                    self.refused[property_.name] = fault
             self.stuck: Asked = ask_stuck(self._compilation)
             if asks_stuck:
                 self.asked += (self.stuck,)
+                self._names += (self.stuck.question.name,)
             self.program: Program = self._compilation.program(marks)
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
@@ -96,7 +108,7 @@ class Checker:
     def extremes(
         self, asked: Asked, options: Options, pool: Pool, watch: Watch | None = None, pulse: Pulse | None = None
     ) -> Extremes:
-        """The least and the greatest probability that memoryless schedulers were found to achieve.
+        """The least and the greatest probability that schedulers were found to achieve.
 
         Raises:
             FaultError: a trace went wrong, or the question is about rewards.
@@ -104,9 +116,32 @@ class Checker:
         if asked.question.is_reward:
             raise FaultError("schedulers are sampled for probabilities only", asked.property.origin)
         try:
-            return extremes(self.payload(asked), asked.question, options, pool, watch=watch, pulse=pulse)
+            schedulers = candidates(len(self.automata))
+            return extremes(self.payload(asked), asked.question, options, pool, schedulers, watch, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
+
+    def choices(self, asked: Asked, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
+        """What is known of other schedulers than the uniform one, of which an answer tells.
+
+        Raises:
+            FaultError: a trace under some scheduler went wrong.
+        """
+        compiled, payload = self.compiled(asked), self.payload(asked)
+        try:
+            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse)
+        except TraceFaultError as error:
+            raise self.fault(error.problem) from None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all properties that were chosen, answered or not."""
+        return self._names
+
+    @property
+    def automata(self) -> tuple[str, ...]:
+        """The names of the elements of the system."""
+        return tuple(element.automaton for element in self.model.system.elements)
 
     def fault(self, problem: Problem) -> FaultError:
         """What went wrong in a trace, in words."""

@@ -18,7 +18,7 @@ from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pulse, Runner
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, okamoto
+from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
 
 ADAPTIVE, OKAMOTO, SPRT, FIXED = "adaptive", "okamoto", "sprt", "fixed"
 METHODS = (ADAPTIVE, OKAMOTO, SPRT, FIXED)
@@ -29,6 +29,8 @@ GROWTH = 0.1
 PEEKING = 0.75
 """Stopping as soon as the interval is narrow enough makes it miss a bit more often; so it is computed for this part of
 the error that is allowed. The test computes that the whole then keeps what it promises."""
+LEAST_EPSILON = 1e-9
+"""An interval narrower than that needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
 KEPT = 1000
 """So many trace numbers of each verdict are remembered."""
@@ -43,6 +45,9 @@ class Options:
         epsilon: half the width of the interval; for rewards in parts of the value.
         max_traces: no more than that; with the method "fixed", exactly that.
         max_steps: traces that are not decided by then stay undecided.
+
+    Raises:
+        ValueError: a number makes no sense; the message says which.
     """
 
     confidence: float = 0.95
@@ -51,6 +56,16 @@ class Options:
     max_steps: int = 1_000_000
     seed: int = 0
     method: str = ADAPTIVE
+
+    def __post_init__(self) -> None:
+        if not 0 < self.confidence < 1:
+            raise ValueError("the confidence must be a number between 0 and 1")
+        if not LEAST_EPSILON <= self.epsilon < 1:
+            raise ValueError(f"epsilon must be a number from {LEAST_EPSILON:g} to 1, and less than 1")
+        if self.method not in METHODS:
+            raise ValueError(f"there is no method `{self.method}`; there are {', '.join(METHODS)}")
+        if self.method == FIXED and self.max_traces is None:
+            raise ValueError("the method `fixed` needs a number of traces (--max-traces)")
 
 
 class Seen(NamedTuple):
@@ -74,6 +89,8 @@ class Tally:
 
     Attributes:
         accepted: what a sequential test has decided.
+        is_revised: whether the options were changed when something was known: then the number of traces was chosen by
+            somebody who had seen results.
         examples: for each verdict the first traces; shortest: for each the shortest one.
         ends: why traces have ended; for each reason that there was.
     """
@@ -85,6 +102,7 @@ class Tally:
     mean: Mean = field(default_factory=Mean)
     accepted: bool | None = None
     is_finished: bool = False
+    is_revised: bool = False
     examples: dict[int, list[Seen]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
     shortest: dict[int, Seen] = field(default_factory=dict)
     ends: dict[End, Ended] = field(default_factory=dict)
@@ -103,6 +121,7 @@ class Tally:
             "mean": [self.mean.number, self.mean.mean.hex(), self.mean.squares.hex()],
             "accepted": self.accepted,
             "finished": self.is_finished,
+            "revised": self.is_revised,
             "examples": {str(verdict): seen for verdict, seen in self.examples.items()},
             "shortest": {str(verdict): seen for verdict, seen in self.shortest.items()},
             "ends": {end.name.lower(): [ended.count, *ended.shortest] for end, ended in self.ends.items()},
@@ -123,6 +142,7 @@ class Tally:
             mean=Mean(int(count), float.fromhex(mean), float.fromhex(squares)),
             accepted=value["accepted"],
             is_finished=bool(value["finished"]),
+            is_revised=bool(value["revised"]),
             examples={int(v): [Seen(*each) for each in seen] for v, seen in value["examples"].items()},
             shortest={int(v): Seen(*each) for v, each in value["shortest"].items()},
             ends={
@@ -141,6 +161,7 @@ class Answer:
             some trace never reaches what it is counted to.
         bounds: the interval for the true value.
         is_complete: whether the interval is as narrow as was asked for, or the test has decided.
+        is_anytime: whether the interval holds whenever one stops; else it holds for the rule by which the method stops.
     """
 
     question: Question
@@ -149,6 +170,14 @@ class Answer:
     value: float
     bounds: Bounds
     is_complete: bool
+    is_anytime: bool = False
+
+    @property
+    def interval(self) -> str:
+        """What kind of interval it is; those for rewards hold for many traces only."""
+        if self.question.is_reward:
+            return "asymptotic confidence sequence" if self.is_anytime else "Student's t"
+        return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
 
     @property
     def failures(self) -> int:
@@ -205,7 +234,8 @@ def answer(
 
 def summary(question: Question, options: Options, tally: Tally) -> Answer:
     """What a tally says, finished or not."""
-    bounds = bounds_of(tally, question, options)
+    is_anytime = not tally.is_finished or _stops_freely(tally, options)
+    bounds = bounds_of(tally, question, options, is_anytime)
     if question.is_reward:
         failures = tally.traces - tally.successes - tally.undecided
         value = math.inf if failures else tally.mean.mean
@@ -213,20 +243,31 @@ def summary(question: Question, options: Options, tally: Tally) -> Answer:
     else:
         value = (tally.successes + tally.undecided / 2) / tally.traces if tally.traces else math.nan
         complete = tally.accepted is not None or _is_narrow(tally, question, options, bounds)
-    return Answer(question, options, tally, value, bounds, complete)
+    return Answer(question, options, tally, value, bounds, complete, is_anytime)
 
 
-def bounds_of(tally: Tally, question: Question, options: Options) -> Bounds:
-    """The interval that a tally gives."""
+def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bool = True) -> Bounds:
+    """The interval that a tally gives.
+
+    Args:
+        is_anytime: whether it must hold whenever one stops; else only where the method stops by its own rule.
+    """
     error = 1 - options.confidence
-    confidence = 1 - error * PEEKING if options.method == ADAPTIVE else options.confidence
+    confidence = 1 - error * PEEKING if options.method == ADAPTIVE and not is_anytime else options.confidence
     if question.is_reward:
-        lower, upper = tally.mean.bounds(confidence)
+        lower, upper = tally.mean.anytime_bounds(confidence) if is_anytime else tally.mean.bounds(confidence)
         if tally.traces - tally.successes:
             upper = math.inf
             lower = math.inf if tally.traces - tally.successes - tally.undecided else lower
         return Bounds(lower, upper)
-    return clopper_pearson(tally.successes, tally.traces, confidence, tally.undecided)
+    interval = confidence_sequence if is_anytime else clopper_pearson
+    return interval(tally.successes, tally.traces, confidence, tally.undecided)
+
+
+def _stops_freely(tally: Tally, options: Options) -> bool:
+    """Whether the number of traces depends on what was seen in a way for which only an interval that holds at any time
+    keeps its promise: by a sequential test, or by somebody who has seen results and goes on with other options."""
+    return options.method == SPRT or tally.is_revised
 
 
 def wanted_traces(options: Options) -> int | None:
@@ -304,7 +345,8 @@ def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
 
 
 def _is_narrow(tally: Tally, question: Question, options: Options, bounds: Bounds | None = None) -> bool:
-    bounds = bounds_of(tally, question, options) if bounds is None else bounds
+    if bounds is None:
+        bounds = bounds_of(tally, question, options, _stops_freely(tally, options))
     if question.is_reward:
         if math.isinf(tally.mean.mean) or tally.traces == 0:
             return False

@@ -13,6 +13,7 @@ from typing import NamedTuple
 _TINY = 1e-300
 _CLOSE = 1e-15
 _MOST_TERMS = 100_000
+_NARROWEST = 1000
 
 
 class Bounds(NamedTuple):
@@ -91,6 +92,50 @@ def clopper_pearson(successes: int, traces: int, confidence: float, undecided: i
     return Bounds(lower, upper)
 
 
+def confidence_sequence(successes: int, traces: int, confidence: float, undecided: int = 0) -> Bounds:
+    """The interval for a probability that may be looked at after each trace: with the probability `confidence` all
+    intervals of one run hold the true value, so it holds whenever one stops, and for whatever reason.
+
+    The beta-binomial mixture (Robbins 1970; Howard, Ramdas, McAuliffe and Sekhon 2021, "Time-uniform, nonparametric,
+    nonasymptotic confidence sequences"): under the true probability, the likelihood of what was seen, averaged over
+    Jeffreys' prior Beta(1/2, 1/2), over its likelihood under that probability is a martingale that begins with 1. By
+    Ville's inequality it ever reaches 1 / error with a probability of at most `error`. The interval is what it leaves.
+
+    Args:
+        successes, traces: of `traces` independent traces so many had a success.
+        confidence: between 0 and 1.
+        undecided: further traces that may have been successes or not; they widen the interval.
+    """
+    if traces == 0:
+        return Bounds(0.0, 1.0)
+    limit = -math.log1p(-confidence)
+    most = successes + undecided
+    lower = _crossing(successes, traces, limit)
+    upper = 1.0 - _crossing(traces - most, traces, limit)
+    return Bounds(lower, upper)
+
+
+def _crossing(successes: int, traces: int, limit: float) -> float:
+    """The greatest probability below the estimate at which the logarithm of the martingale reaches `limit`; 0 if it
+    does nowhere. The function falls up to the estimate."""
+    if successes == 0:
+        return 0.0
+    failures = traces - successes
+    a, b, c = successes + 0.5, failures + 0.5, traces + 1.0
+    mixture = math.lgamma(a) + math.lgamma(b) - math.lgamma(c) - math.log(math.pi)
+    low, high = 0.0, successes / traces
+    while high - low > 1e-13 * high:
+        middle = (low + high) / 2
+        if middle in (low, high):
+            break
+        value = mixture - successes * math.log(middle) - (failures * math.log1p(-middle) if failures else 0.0)
+        if value >= limit:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
 def okamoto(confidence: float, epsilon: float) -> int:
     """How many traces make the estimate of a probability miss by more than `epsilon` with a probability of at most
     1 - `confidence` (Okamoto 1958, by Hoeffding's bound)."""
@@ -121,10 +166,33 @@ class Mean(NamedTuple):
         half = student_quantile((1 + confidence) / 2, self.number - 1) * deviation
         return Bounds(self.mean - half, self.mean + half)
 
+    def anytime_bounds(self, confidence: float) -> Bounds:
+        """The interval for the expected value that may be looked at after each trace; it holds for many traces, as the
+        one by Student's t does.
+
+        The asymptotic confidence sequence by a mixture of normal distributions (Waudby-Smith, Arbour, Sinha, Kennedy
+        and Ramdas 2024, "Time-uniform central limit theory and asymptotic confidence sequences"), narrowest after
+        about `_NARROWEST` traces.
+        """
+        if self.number < 2:
+            return Bounds(-math.inf, math.inf)
+        deviation = math.sqrt(self.squares / self.number)
+        if deviation == 0:
+            return Bounds(self.mean, self.mean)
+        error = -2 * math.log1p(-confidence)
+        rho = (error + math.log1p(error)) / _NARROWEST
+        spread = self.number * rho + 1
+        half = deviation * math.sqrt(spread / (self.number**2 * rho) * (math.log(spread) + error))
+        return Bounds(self.mean - half, self.mean + half)
+
 
 class Ratio(NamedTuple):
     """Wald's sequential test of "the probability is at least `threshold` + `epsilon`" against "at most `threshold` -
-    `epsilon`", both errors at most `error`."""
+    `epsilon`".
+
+    Each error has a probability of at most `error`: the ratio of likelihoods is a martingale under either hypothesis,
+    and reaches 1 / `error` with at most that probability (Ville's inequality). In between nothing is promised.
+    """
 
     threshold: float
     epsilon: float
@@ -136,7 +204,7 @@ class Ratio(NamedTuple):
         low = max(self.threshold - self.epsilon, 1e-12)
         failures = traces - successes
         ratio = successes * math.log(low / high) + failures * math.log((1 - low) / (1 - high))
-        limit = math.log((1 - self.error) / self.error)
+        limit = -math.log(self.error)
         if ratio <= -limit:
             return True
         return False if ratio >= limit else None

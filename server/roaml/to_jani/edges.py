@@ -24,7 +24,7 @@ from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import Event
 from roaml.to_jani.moves import Behavior, Move
 from roaml.to_jani.shapes import Shape, shape_of
-from roaml.to_jani.values import Scope, both, negated
+from roaml.to_jani.values import Scope, all_of, negated
 
 FIRST = "-first-exec"
 
@@ -242,10 +242,8 @@ class _FlowBuilder:
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
     """`cond`, and none of the earlier conditions."""
-    for each in earlier:
-        if each is not None:
-            cond = both(cond, negated(each))
-    return cond
+    terms = [] if cond is None else [cond]
+    return all_of([*terms, *(negated(each) for each in earlier if each is not None)])
 
 
 # --------------------------------------------------------------- random numbers

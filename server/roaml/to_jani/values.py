@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -68,6 +68,23 @@ TRUE = jani.Boolean(True)
 
 def both(left: Expression | None, right: Expression) -> Expression:
     return right if left is None else jani.Binary(BinaryOperator.AND, left, right)
+
+
+_MOST_IN_A_ROW = 100
+
+
+def all_of(terms: Sequence[Expression]) -> Expression | None:
+    """The conjunction of the terms, None of none. Many are put together in halves: readers of JANI, ours included, take
+    only so many brackets in each other."""
+    if len(terms) > _MOST_IN_A_ROW:
+        middle = len(terms) // 2
+        first, second = all_of(terms[:middle]), all_of(terms[middle:])
+        assert second is not None
+        return both(first, second)
+    found: Expression | None = None
+    for term in terms:
+        found = both(found, term)
+    return found
 
 
 def negated(expression: Expression) -> Expression:
@@ -348,34 +365,41 @@ def _equals_literal(stored: ArrayForm, literal: Listed) -> Expression:
     assert isinstance(stored, Stored)
     if len(literal.elements) > stored.shape.capacities[len(stored.indexes)]:
         return jani.Boolean(False)
-    same = equal(stored.lengths(1), Integer(len(literal.elements)))
+    same = [equal(stored.lengths(1), Integer(len(literal.elements)))]
     for i, element in enumerate(literal.elements):
         part = stored.element(Integer(i))
         if isinstance(element, Listed):
-            same = both(same, _equals_literal(part, element))
+            same.append(_equals_literal(part, element))
         else:
-            same = both(same, equal(element, part.value))
-    return same
+            same.append(equal(element, part.value))
+    return _certain(same)
+
+
+def _certain(terms: Sequence[Expression]) -> Expression:
+    """The conjunction of at least one term."""
+    found = all_of(terms)
+    assert found is not None
+    return found
 
 
 def _equal_literals(left: Listed, right: Listed) -> Expression:
-    same: Expression = jani.Boolean(len(left.elements) == len(right.elements))
+    same: list[Expression] = [jani.Boolean(len(left.elements) == len(right.elements))]
     for mine, other in zip(left.elements, right.elements, strict=False):
         if isinstance(mine, Listed) and isinstance(other, Listed):
-            same = both(same, _equal_literals(mine, other))
+            same.append(_equal_literals(mine, other))
         elif not isinstance(mine, Listed) and not isinstance(other, Listed):
-            same = both(same, equal(mine, other))
-    return same
+            same.append(equal(mine, other))
+    return _certain(same)
 
 
 def _equal_stored(left: Stored, right: Stored) -> Expression:
     """Elements beyond the length do not count."""
-    same = equal(left.lengths(1), right.lengths(1))
+    same = [equal(left.lengths(1), right.lengths(1))]
     depth = len(left.indexes)
     capacity = min(left.shape.capacities[depth], right.shape.capacities[len(right.indexes)])
     for i in range(capacity):
         mine, other = left.element(Integer(i)), right.element(Integer(i))
         unused = jani.Binary(BinaryOperator.LESS_EQUAL, left.lengths(1), Integer(i))
         each = _equal_stored(mine, other) if mine.dimensions > 0 else equal(mine.value, other.value)
-        same = both(same, jani.Binary(BinaryOperator.OR, unused, each))
-    return same
+        same.append(jani.Binary(BinaryOperator.OR, unused, each))
+    return _certain(same)

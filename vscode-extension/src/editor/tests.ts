@@ -203,7 +203,13 @@ export class PropertyTests implements vscode.Disposable {
         const more = stuck === undefined ? "" : `${stuck.replaceAll(/\r?\n/g, "\r\n")}\r\n`;
         if (stuck !== undefined) this.tellStuck(run, asked.system);
         if (outcome.kind === "passed") {
-            run.appendOutput(`${line}\r\n${more}`, undefined, item);
+            const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
+            // The Test Explorer knows no more than passed and failed: how it has passed stands beside its name.
+            if (outcome.uniform.length > 0) {
+                const expected = outcome.uniform.join(", ");
+                item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
+            }
+            run.appendOutput(`${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
             run.passed(item, milliseconds);
             return;
         }

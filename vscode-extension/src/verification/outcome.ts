@@ -8,6 +8,10 @@ export type Outcome =
           readonly kind: "passed";
           readonly short: string;
           readonly milliseconds: number;
+          /** What is met under uniform choices, and not known to be met under all schedulers. */
+          readonly uniform: readonly string[];
+          /** What the number is not, if the property asks for a minimum or maximum. */
+          readonly warning?: string;
           /** Who waits for whom, if the system gets stuck. */
           readonly stuck?: string;
       }
@@ -33,7 +37,12 @@ export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome
     const missed = (verified.expectations ?? []).filter(({ met }) => !met).map(({ expected }) => expected);
     const stuck = known?.example ? { stuck: known.text } : {};
     const isWrong = known?.example && known.level === "error";
-    if (missed.length === 0 && !isWrong) return { kind: "passed", short, milliseconds, ...stuck };
+    if (missed.length === 0 && !isWrong) {
+        const onlyUniform = (verified.expectations ?? []).filter((each) => each.under_uniform_choices_only);
+        const uniform = onlyUniform.map(({ expected }) => expected);
+        const warning = verified.warning === undefined ? {} : { warning: verified.warning };
+        return { kind: "passed", short, milliseconds, uniform, ...warning, ...stuck };
+    }
     const hasCounterexample = verified.counterexample ?? false;
     return { kind: "failed", short, milliseconds, missed, hasCounterexample, ...stuck };
 }

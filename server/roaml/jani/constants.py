@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values for the constants of a model that has none for them: whoever analyses the model chooses these."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+
+from roaml.jani.expressions import Boolean, Expression, Integer, Real
+from roaml.jani.model import Constant, Model
+from roaml.jani.semantics import EvaluationError, Value, evaluate
+from roaml.jani.suggest import nearest
+from roaml.jani.types import BOOL, INT, REAL, BasicType, BoundedType
+
+_INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
+_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
+_WANTED: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number", REAL: "a number"}
+
+
+def with_constants(model: Model, texts: Iterable[str]) -> Model:
+    """A model with values for some of its constants.
+
+    Args:
+        texts: of the form `NAME=VALUE`.
+
+    Raises:
+        ValueError: a text is not of this form; there is no constant of that name, or it has a value; or the value is
+            not one of its type. The message says which.
+    """
+    given: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not name or not equals or not value:
+            raise ValueError(f"a constant is given like N=20, not '{text}'")
+        if name in given:
+            raise ValueError(f"the constant {name} is given twice")
+        given[name] = value
+    if not given:
+        return model
+    known = {constant.name: constant for constant in model.constants}
+    for name in given:
+        if name not in known:
+            close = nearest(name, known)
+            hint = f"did you mean {close}?" if close else f"the model has: {', '.join(known) or 'none'}"
+            raise ValueError(f"there is no constant {name}; {hint}")
+        if known[name].value is not None:
+            raise ValueError(f"the constant {name} has a value in the model, which --constant does not change")
+    values: dict[str, Value] = {}
+    constants = []
+    for constant in model.constants:
+        if constant.name in given:
+            constant = replace(constant, value=_value(constant, given[constant.name], values))  # noqa: PLW2901
+        constants.append(constant)
+        if constant.value is not None:
+            try:
+                values[constant.name] = evaluate(constant.value, values, {})
+            except EvaluationError:
+                continue  # it depends on one without a value, or calls a function; bounds that need it are not checked
+    return replace(model, constants=tuple(constants))
+
+
+def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression:
+    type_ = constant.type
+    base = type_.base if isinstance(type_, BoundedType) else type_
+    value: Boolean | Integer | Real | None = None
+    if base is BOOL and text in ("true", "false"):
+        value = Boolean(text == "true")
+    elif base is INT and _INTEGER.fullmatch(text) and abs(int(text)) < 1 << 63:
+        value = Integer(int(text))
+    elif base is REAL and _REAL.fullmatch(text) and math.isfinite(float(text)):
+        value = Real(float(text))
+    if value is None:
+        wanted = _WANTED.get(base) if isinstance(base, BasicType) else None
+        raise ValueError(f"the constant {constant.name} is {wanted or 'of a type that cannot be given'}, not '{text}'")
+    if isinstance(type_, BoundedType):
+        for end, is_lower in ((type_.lower, True), (type_.upper, False)):
+            bound = None if end is None else _number(end, known)
+            if bound is not None and (value.value < bound if is_lower else value.value > bound):
+                side = "at least" if is_lower else "at most"
+                raise ValueError(f"the constant {constant.name} is {side} {bound:g}, not {text}")
+    return value
+
+
+def _number(expression: Expression, known: dict[str, Value]) -> int | float | None:
+    try:
+        value = evaluate(expression, known, {})
+    except EvaluationError:
+        return None
+    return value if isinstance(value, (int, float)) else None

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""repeated-interface: see repeated_interface.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.ros import RepeatedType
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Once for each package, where a machine first uses it."""
+    told: set[str] = set()
+    for declaration in context.machine.declarations:
+        for repeated in context.repeated_types:
+            type_ = declaration.type
+            if type_ is not None and type_.value == repeated.used_by and repeated.package not in told:
+                told.add(repeated.package)
+                message = f"the package `{repeated.package}` is there twice and `{repeated.name}` differs: "
+                message += f"{_folder(repeated, repeated.path)} counts, {_folder(repeated, repeated.other)} does not; "
+                message += "remove one of them, or exclude it from the folders where packages are looked for"
+                yield RULE.at(type_.span, message)
+
+
+def _folder(repeated: RepeatedType, path: str) -> str:
+    """The folder of the package that a definition file belongs to: `PACKAGE/msg/Name.msg`."""
+    folder = path.replace("\\", "/").rsplit("/", 2)[0]
+    return f"`{folder}`"
+
+
+RULE = Rule(
+    "repeated-interface",
+    Severity.WARNING,
+    "A package of ROS interfaces is there twice, with different content.",
+    machine=check,
+)

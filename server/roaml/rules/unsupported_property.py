@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unsupported-property: see unsupported_property.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.jani.expressions import Missing
+from roaml.jani.properties import walk
+from roaml.rules.rule import PropertiesContext, Rule
+from roaml.smc.forms import UNSUPPORTED, faults_in
+
+
+def check(context: PropertiesContext) -> Iterator[Finding]:
+    for property_ in context.properties:
+        if any(isinstance(part, Missing) for part in walk(property_.expression)):
+            continue  # what is missing or unreadable is reported already
+        for fault in faults_in(property_):
+            # Bounds on time and rewards have a rule of their own.
+            if fault.code == UNSUPPORTED and fault.origin is not None:
+                yield RULE.at(fault.origin.span, f"`verify` cannot answer this: {fault.message}")
+
+
+RULE = Rule(
+    UNSUPPORTED,
+    Severity.WARNING,
+    "A property has a form that `verify` cannot answer.",
+    properties=check,
+)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the answer under uniform choices says about `Pmin` and `Pmax`: whether all schedulers agree, and if that is not
+known, how far apart schedulers were found to be.
+
+1. A model without nondeterminism: nobody chooses anything.
+2. All states are looked at, where they are few (`solve`): the minimum and the maximum are known.
+3. Else schedulers are sampled (`lss.probe`), with a part of the effort that the answer has cost.
+
+What is done depends on the model, the question, the options and the traces of the answer only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from roaml.jani.model import Model, ModelType
+from roaml.smc.batch import Payload
+from roaml.smc.lss import candidates, described, probe
+from roaml.smc.pool import Pool, Pulse
+from roaml.smc.program import Compiled
+from roaml.smc.run import Answer
+from roaml.smc.solve import solve
+from roaml.smc.statistics import Bounds
+
+EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform choices"
+"""How an extreme was found."""
+
+_SHARE = 5
+"""The effort for schedulers is this part of that for the answer."""
+_LEAST_STEPS, _MOST_STEPS = 50_000, 400_000
+_USUAL_SIZE = 200
+"""Registers and automata of a model with which a step costs about as much as usual; with more it costs more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """The least or the greatest probability, as far as it is known.
+
+    Attributes:
+        value: the estimate, or the exact value.
+        bounds: hold the probability that some scheduler achieves: with the method's confidence, or certainly if it was
+            found by looking at all states.
+        found: how: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
+        scheduler: the one that achieves it, in words; empty for the best of all schedulers.
+        traces: so many were made for it.
+    """
+
+    value: float
+    bounds: Bounds
+    found: str
+    scheduler: str = ""
+    traces: int = 0
+
+    @property
+    def is_exact(self) -> bool:
+        return self.found == EXPLORATION
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What is known of other schedulers than the uniform one.
+
+    Attributes:
+        agreement: why all give the same; empty if that is not known.
+        minimum, maximum: what schedulers achieve; None if nothing is known of it.
+        tried: the number of schedulers that were sampled.
+    """
+
+    agreement: str = ""
+    minimum: Extreme | None = None
+    maximum: Extreme | None = None
+    tried: int = 0
+
+    @property
+    def differ(self) -> bool:
+        """Whether the minimum and the maximum are known to differ."""
+        if self.agreement or self.minimum is None or self.maximum is None:
+            return False
+        return self.minimum.bounds.upper < self.maximum.bounds.lower
+
+
+def look_at_choices(
+    model: Model,
+    compiled: Compiled,
+    payload: Payload,
+    answer: Answer,
+    automata: Sequence[str],
+    pool: Pool,
+    pulse: Pulse | None = None,
+) -> Choices:
+    """
+    Args:
+        answer: the one under uniform choices.
+        automata: the names of the elements of the system.
+
+    Raises:
+        TraceFaultError: a trace under some scheduler went wrong.
+    """
+    if model.type is ModelType.DTMC:
+        return Choices("the model has no nondeterminism", *_of_answer(answer))
+    solution = solve(compiled)
+    if solution is not None:
+        states = "1 state" if solution.states == 1 else f"{solution.states:,} states"
+        if not solution.has_choices:
+            return Choices(f"nothing is left to choose in any of {states}", *_of_answer(answer))
+        if solution.minimum is not None and solution.maximum is not None:
+            least, greatest = (_exact(each) for each in (solution.minimum, solution.maximum))
+            if least is not None and greatest is not None:
+                return Choices(f"all {states} were looked at" if solution.agrees else "", least, greatest)
+    question, tally = answer.question, answer.tally
+    if question.is_reward or not tally.traces:
+        return Choices()
+    size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
+    most = _MOST_STEPS * _USUAL_SIZE // (_USUAL_SIZE + size)
+    budget = max(_LEAST_STEPS, min(most, tally.steps // _SHARE))
+    length = tally.steps / tally.traces
+    some = candidates(len(automata), each=1, memoryless=16, memory=16)
+    found = probe(payload, question, answer.options, pool, some, budget, length, pulse)
+    own_least, own_greatest = _of_answer(answer)
+    if found is None:
+        return Choices("", own_least, own_greatest)
+    sampled = [
+        Extreme(each.value, each.bounds, SAMPLING, described(by, automata), each.tally.traces)
+        for each, by in ((found.least, found.least_by), (found.greatest, found.greatest_by))
+    ]
+    least = sampled[0] if sampled[0].bounds.upper < own_least.bounds.lower else own_least
+    greatest = sampled[1] if sampled[1].bounds.lower > own_greatest.bounds.upper else own_greatest
+    return Choices("", least, greatest, found.tried)
+
+
+def _exact(bounds: Bounds) -> Extreme | None:
+    """An extreme that is enclosed narrowly enough to be called exact."""
+    if bounds.half_width > 5e-7:
+        return None
+    middle = (bounds.lower + bounds.upper) / 2
+    nearest = next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle)
+    return Extreme(nearest, bounds, EXPLORATION)
+
+
+def _of_answer(answer: Answer) -> tuple[Extreme, Extreme]:
+    own = Extreme(answer.value, answer.bounds, UNIFORM, traces=answer.tally.traces)
+    return own, own

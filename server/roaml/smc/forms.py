@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which forms of properties sampling can answer, seen from the property alone.
+
+`goal.ask` compiles what is of these forms; the rule `unsupported-property` reports the others before anything is run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.jani.node import Node
+from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.jani.properties import (
+    Accumulation,
+    BinaryFormula,
+    BinaryPath,
+    Expectation,
+    Filter,
+    FilterFunction,
+    Formula,
+    PathBounds,
+    Predicate,
+    Probability,
+    ProperFormula,
+    Property,
+    StatePredicate,
+    UnaryFormula,
+    UnaryPath,
+)
+from roaml.smc.fault import FaultError
+
+UNSUPPORTED = "unsupported-property"
+"""The code under which `--check` and `verify` report such a property."""
+BOUNDS = "ignored-bounds"
+"""The same for bounds on time and rewards."""
+
+ANSWERED = (
+    "answered are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds and joined by ¬, ∧, ∨ "
+    "and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+)
+COMPARISONS = frozenset(
+    (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
+)
+JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES))
+"""The operators between paths."""
+TIME_BOUNDS = "bounds on the time are not supported, as the model counts steps only (compare the clock's `sec` instead)"
+REWARD_BOUNDS = "bounds on rewards are not supported"
+_ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
+
+
+def faults_in(property_: Property) -> Iterator[FaultError]:
+    """Why sampling cannot answer a property of this form, with the places of the parts that are to blame."""
+    for what, node in _faults(property_.expression):
+        code = BOUNDS if what in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
+        yield FaultError(f"{what}; {ANSWERED}", node.origin or property_.origin, code=code)
+
+
+def check_form(property_: Property) -> None:
+    """
+    Raises:
+        FaultError: sampling cannot answer a property of this form.
+    """
+    for fault in faults_in(property_):
+        raise fault
+
+
+def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
+    is_compared = False
+    while True:
+        match formula:
+            case Filter(function, values, states):
+                if not isinstance(states, Predicate) or states.predicate is not StatePredicate.INITIAL:
+                    yield "only the initial states can be asked about", states
+                if function in (FilterFunction.FORALL, FilterFunction.EXISTS):
+                    if not isinstance(values, BinaryFormula):
+                        yield f"the filter `{function.value}` needs a comparison of a probability with a number", values
+                elif function not in _ONE_STATE:
+                    yield f"the filter `{function.value}` is not supported", formula
+                formula = values
+            case BinaryFormula(operator, left, right) if operator in COMPARISONS and not is_compared:
+                is_compared = True
+                if isinstance(left, ProperFormula) and isinstance(right, ProperFormula):
+                    yield "a probability is compared with something that is not a number", right
+                formula = left if isinstance(left, ProperFormula) else right
+            case Probability(_, path):
+                yield from _in_path(path)
+                return
+            case Expectation():
+                yield from _in_reward(formula)
+                return
+            case _:
+                yield "this is neither a probability (`Pmin`, `Pmax`) nor an expected reward (`Emin`, `Emax`)", formula
+                return
+
+
+def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
+    """What is wrong with a formula over paths."""
+    waiting = [path]
+    while waiting:
+        formula = waiting.pop()
+        match formula:
+            case UnaryPath():
+                yield from _in_bounds(formula)
+                yield from _in_state(formula.operand)
+            case BinaryPath():
+                yield from _in_bounds(formula)
+                yield from _in_state(formula.left)
+                yield from _in_state(formula.right)
+            case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
+                waiting.append(operand)
+            case BinaryFormula(operator, left, right) if operator in JOINED:
+                waiting += (right, left)
+            case _:
+                yield from _in_state(formula)
+
+
+def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
+    """What is wrong with a formula about states."""
+    while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
+        formula = formula.operand
+    if isinstance(formula, Predicate):
+        if formula.predicate is not StatePredicate.DEADLOCK:
+            yield f"the predicate `{formula.predicate.value}` is not supported here", formula
+    elif isinstance(formula, ProperFormula):
+        yield "a formula about paths inside another one is not supported", formula
+
+
+def _in_bounds(formula: PathBounds) -> Iterator[tuple[str, Node]]:
+    assert isinstance(formula, (UnaryPath, BinaryPath))
+    if formula.time_bounds is not None:
+        yield TIME_BOUNDS, formula.time_bounds
+    for bound in formula.reward_bounds or ():
+        yield REWARD_BOUNDS, bound
+
+
+def _in_reward(formula: Expectation) -> Iterator[tuple[str, Node]]:
+    others = (formula.step_instant, formula.time_instant, formula.reward_instants or None)
+    if formula.reach is None or formula.accumulate is None or any(other is not None for other in others):
+        yield "only rewards that are accumulated until something is reached are supported", formula
+        return
+    if Accumulation.TIME in formula.accumulate:
+        yield "no time passes in this kind of model, so rewards are accumulated on `steps` or `exit`", formula
+    yield from _in_state(formula.reach)

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The least and the greatest probability of a goal over all schedulers, from all states of a model, where they are few.
+
+- Every value is enclosed from below and above. From below by value iteration; from above by Park induction, as in
+  optimistic value iteration (Hartmanns and Kaminski 2020): values that no step makes greater are at least those sought.
+  Strongly connected components are solved one after the other, the last ones first, so that most need one look.
+- Goals of one path operator without step bounds are solved. For all others it is found out whether the model has any
+  choices at all.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.smc.explore import Explorer, State, StateFaultError
+from roaml.smc.goal import NOT, STUCK
+from roaml.smc.program import FALSE, TRUE, Compiled
+from roaml.smc.statistics import Bounds
+
+LIMIT = 4000
+"""No more states are looked at."""
+WORK = 400_000
+"""Neither are more numbers than that, counted over all states and choices."""
+_CLOSE = 1e-6
+_FLOAT = 1e-13
+_SWEEPS = 1_000_000
+"""So many numbers are added for a component; then its values are as wide as they are."""
+
+_Choice: TypeAlias = tuple[tuple[float, int], ...]
+"""Where a choice leads: probabilities and numbers of states."""
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Attributes:
+    minimum, maximum: enclose the least and the greatest probability; None where the goal cannot be solved.
+    states: how many there are.
+    has_choices: whether in some state one can choose between steps that do not do the same.
+    """
+
+    minimum: Bounds | None
+    maximum: Bounds | None
+    states: int
+    has_choices: bool
+
+    @property
+    def agrees(self) -> bool:
+        """Whether it is the same for all schedulers."""
+        if not self.has_choices:
+            return True
+        return (
+            self.minimum is not None and self.maximum is not None and self.maximum.upper - self.minimum.lower <= _CLOSE
+        )
+
+
+def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution | None:
+    """Look at all states.
+
+    Args:
+        limit: no more states than that.
+        work: no more registers and automata, of all states that are reached by all choices.
+
+    Returns:
+        None if there are more, or something goes wrong in one of them.
+    """
+    goal = compiled.goal
+    is_reward = goal.step_reward >= 0 or goal.exit_reward >= 0
+    is_solvable = not goal.is_bounded and len(goal.left) == 1 and not is_reward and goal.right[0] != STUCK
+    try:
+        graph = _explored(compiled, limit, work, is_solvable)
+    except StateFaultError:
+        return None
+    if graph is None:
+        return None
+    verdicts, choices = graph
+    has_choices = any(len(set(each)) > 1 for each in choices)
+    if not is_solvable:
+        return Solution(None, None, len(verdicts), has_choices)
+    is_negated = goal.formula.count(NOT) % 2 == 1
+    target = FALSE if is_negated else TRUE
+    low, high = (_solved(verdicts, choices, target, is_max) for is_max in (False, True))
+    if is_negated:
+        low, high = Bounds(1 - high.upper, 1 - high.lower), Bounds(1 - low.upper, 1 - low.lower)
+    return Solution(low, high, len(verdicts), has_choices)
+
+
+def _explored(
+    compiled: Compiled, limit: int, work: int, stops: bool
+) -> tuple[list[int], list[tuple[_Choice, ...]]] | None:
+    """What is known of the goal in each state, and the choices of each.
+
+    Args:
+        stops: whether nothing beyond a state in which the goal is decided matters.
+    """
+    explorer = Explorer(compiled)
+    size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
+    number: dict[State, int] = {explorer.initial: 0}
+    verdicts = [explorer.verdict(explorer.initial)]
+    choices: list[tuple[_Choice, ...]] = []
+    waiting = deque(number)
+    while waiting:
+        state = waiting.popleft()
+        if stops and verdicts[len(choices)] in (TRUE, FALSE):
+            choices.append(())
+            continue
+        found: dict[_Choice, None] = {}
+        for branches in explorer.ways(state):
+            work -= size * (1 + len(branches))
+            if work < 0:
+                return None
+            reached: dict[int, float] = {}
+            for probability, successor in branches:
+                if successor not in number:
+                    if len(number) >= limit:
+                        return None
+                    number[successor] = len(verdicts)
+                    verdicts.append(explorer.verdict(successor))
+                    waiting.append(successor)
+                to = number[successor]
+                reached[to] = reached.get(to, 0.0) + probability
+            found[tuple((probability, to) for to, probability in sorted(reached.items()))] = None
+        choices.append(tuple(found))
+    return verdicts, choices
+
+
+def _solved(verdicts: list[int], choices: list[tuple[_Choice, ...]], target: int, is_max: bool) -> Bounds:
+    """The least or greatest probability to reach a state with the verdict `target`, from state 0."""
+    low = [1.0 if verdict == target else 0.0 for verdict in verdicts]
+    high = list(low)
+    best = max if is_max else min
+    for component in _components(choices):
+        if len(component) == 1 and not any(to == component[0] for c in choices[component[0]] for _, to in c):
+            (state,) = component
+            if choices[state]:
+                low[state] = best(_mean(choice, low) for choice in choices[state])
+                high[state] = best(_mean(choice, high) for choice in choices[state])
+            continue
+        inner = [state for state in component if choices[state]]
+        for _ in range(_SWEEPS // (1 + sum(len(choice) for state in inner for choice in choices[state]))):
+            change = 0.0
+            for state in inner:
+                value = best(_mean(choice, low) for choice in choices[state])
+                change = max(change, value - low[state])
+                low[state] = max(low[state], value)
+            if change <= _FLOAT:
+                break
+        _enclose(inner, choices, low, high, is_max)
+    return Bounds(low[0], high[0])
+
+
+def _enclose(
+    states: list[int], choices: list[tuple[_Choice, ...]], low: list[float], high: list[float], is_max: bool
+) -> None:
+    """Upper values for the states of a component; those beyond it are there."""
+    best = max if is_max else min
+    slack = 1e-10
+    while slack < _CLOSE:
+        for state in states:
+            high[state] = min(1.0, low[state] + slack)
+        for _ in range(100):
+            rises = False
+            after = [best(_mean(choice, high) for choice in choices[state]) for state in states]
+            for state, value in zip(states, after, strict=True):
+                rises = rises or value > high[state] + _FLOAT
+            for state, value in zip(states, after, strict=True):
+                high[state] = min(1.0, value)
+            if not rises:
+                return
+        slack *= 10
+    for state in states:
+        high[state] = 1.0
+
+
+def _mean(choice: _Choice, values: list[float]) -> float:
+    return sum(probability * values[to] for probability, to in choice)
+
+
+def _components(choices: list[tuple[_Choice, ...]]) -> list[list[int]]:
+    """The strongly connected components, each after those that it leads to (Tarjan 1972, without recursion)."""
+    index = [-1] * len(choices)
+    lowest = [0] * len(choices)
+    open_ = [False] * len(choices)
+    path: list[int] = []
+    found: list[list[int]] = []
+    count = 0
+    for root in range(len(choices)):
+        if index[root] >= 0:
+            continue
+        work = [(root, iter([to for choice in choices[root] for _, to in choice]))]
+        index[root] = lowest[root] = count
+        count += 1
+        path.append(root)
+        open_[root] = True
+        while work:
+            state, rest = work[-1]
+            for to in rest:
+                if index[to] < 0:
+                    index[to] = lowest[to] = count
+                    count += 1
+                    path.append(to)
+                    open_[to] = True
+                    work.append((to, iter([each for choice in choices[to] for _, each in choice])))
+                    break
+                if open_[to]:
+                    lowest[state] = min(lowest[state], index[to])
+            else:
+                work.pop()
+                if work:
+                    before = work[-1][0]
+                    lowest[before] = min(lowest[before], lowest[state])
+                if lowest[state] == index[state]:
+                    component = []
+                    while True:
+                        last = path.pop()
+                        open_[last] = False
+                        component.append(last)
+                        if last == state:
+                            break
+                    found.append(component)
+    return found

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A tally that was stored in a file may have been changed there: whether it is one that traces can have given."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from roaml.smc.goal import Question
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.run import KEPT, SPRT, Options, Seen, Tally
+
+_MOST = 1 << 62
+"""No counter reaches this."""
+
+
+def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
+    """A tally as `Tally.to_json` wrote it.
+
+    Args:
+        value: from JSON.
+        question, options: what the traces were made for.
+
+    Raises:
+        ValueError: it is not of that form, or its numbers contradict one another; the message says where.
+    """
+    shape = _row(value, "tally")
+    for key in ("traces", "successes", "undecided", "steps"):
+        _whole(shape.get(key), key)
+    for key in ("finished", "revised"):
+        _expect(isinstance(shape.get(key), bool), key)
+    _expect(shape.get("accepted") in (None, True, False), "accepted")
+    mean = shape.get("mean")
+    if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(each, str) for each in mean[1:]):
+        raise ValueError("`mean` cannot be so")
+    _whole(mean[0], "mean")
+    for row in _row(shape.get("ends"), "ends").values():
+        _expect(isinstance(row, list) and len(row) == 3, "ends")
+        for each in row:
+            _whole(each, "ends")
+    examples, shortest = _row(shape.get("examples"), "examples"), _row(shape.get("shortest"), "shortest")
+    _expect(set(examples) == {str(verdict) for verdict in _VERDICTS}, "examples")
+    _expect(set(shortest) <= set(examples), "shortest")
+    for seen in examples.values():
+        _expect(isinstance(seen, list) and len(seen) <= KEPT, "examples")
+        for each in seen:
+            _pair(each, "examples")
+    for each in shortest.values():
+        _pair(each, "shortest")
+    try:
+        tally = Tally.from_json(shape)
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
+        raise ValueError("it has not the form of a tally") from None
+    _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
+    _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
+    _check_sums(tally, question, options)
+    return tally
+
+
+def _check_sums(tally: Tally, question: Question, options: Options) -> None:
+    failures = tally.traces - tally.successes - tally.undecided
+    _expect(failures >= 0, "traces")
+    _expect(tally.steps <= tally.traces * options.max_steps, "steps")
+    mean = tally.mean
+    _expect(mean.number == (tally.successes if question.is_reward else 0), "mean")
+    _expect(math.isfinite(mean.mean) and math.isfinite(mean.squares) and mean.squares >= 0, "mean")
+    _expect(mean.number > 0 or (mean.mean, mean.squares) == (0, 0), "mean")
+    _expect(tally.accepted is None or options.method == SPRT or tally.is_finished, "accepted")
+    counts = {TRUE: tally.successes, FALSE: failures, UNKNOWN: tally.undecided}
+    numbers: set[int] = set()
+    total = 0
+    for verdict, count in counts.items():
+        seen = tally.examples[verdict]
+        _expect(len(seen) == min(count, KEPT), "examples")
+        _expect([each.trace for each in seen] == sorted({each.trace for each in seen}), "examples")
+        numbers.update(each.trace for each in seen)
+        total += sum(each.steps for each in seen)
+        _expect((verdict in tally.shortest) == (count > 0), "shortest")
+        if count:
+            least: Seen = tally.shortest[verdict]
+            first = min(seen, key=lambda each: (each.steps, each.trace))
+            _expect(least == first if count <= KEPT else least.steps <= first.steps, "shortest")
+            _expect(least.trace < tally.traces, "shortest")
+        _expect(all(each.trace < tally.traces and each.steps <= options.max_steps for each in seen), "examples")
+    _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
+    _expect(total == tally.steps if tally.traces == len(numbers) else total <= tally.steps, "steps")
+
+
+_VERDICTS = (TRUE, FALSE, UNKNOWN)
+
+
+def _expect(holds: bool, key: str) -> None:
+    if not holds:
+        raise ValueError(f"`{key}` cannot be so")
+
+
+def _row(value: Any, key: str) -> dict[str, Any]:
+    _expect(isinstance(value, dict), key)
+    row: dict[str, Any] = value
+    return row
+
+
+def _whole(value: Any, key: str) -> None:
+    _expect(isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MOST, key)
+
+
+def _pair(value: Any, key: str) -> None:
+    _expect(isinstance(value, list) and len(value) == 2, key)
+    for each in value:
+        _whole(each, key)

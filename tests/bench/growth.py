@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How the check grows with what it looks at, one dimension after the other: each ten times as large as before."""
+
+from __future__ import annotations
+
+import os
+import time
+
+from bench.report import Benchmark, Row, seconds
+from fuzz.corpus import NOWHERE
+from fuzz.growth import DIMENSIONS, Dimension
+from roaml import api
+from roaml.project.settings import Settings
+
+LARGEST = 2000
+"""The larger of the two sizes. What is enormous is refused, which takes no time at any size."""
+
+
+def growth() -> list[Row]:
+    rows = []
+    for dimension in DIMENSIONS:
+        size = min(LARGEST, dimension.most)
+        small, large = (_time(dimension, each) for each in (max(1, size // 10), size))
+        method = f"{dimension.name}: {size // 10:,} and {size:,}; `api.check` of one system"
+        rows.append(Row("check, growth", f"{seconds(small)}, {seconds(large)}", "at most ten times", method))
+    return rows
+
+
+def _time(dimension: Dimension, size: int) -> float:
+    """Seconds of processor time, the best of three."""
+    texts = dimension.texts(size)
+    times = []
+    for _ in range(3):
+        before = time.process_time()
+        api.check([os.path.join(NOWHERE, "main.xml")], [], Settings(), texts)
+        times.append(time.process_time() - before)
+    return min(times)
+
+
+BENCHMARKS: dict[str, Benchmark] = {"dimensions": growth}

@@ -1,0 +1,444 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp verify`: what was asked is what is answered, and what cannot be answered is told."""
+
+from __future__ import annotations
+
+import copy
+import json
+import os
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from command import Command
+from smc_models import Json, automaton, document, edge, op, probability, variable, way
+
+from roaml.rules import document as rule_document
+
+
+def write(folder: Path, written: Json, name: str = "model.jani") -> str:
+    (folder / name).write_text(json.dumps(written, indent=1), encoding="utf-8")
+    return name
+
+
+def rows(text: str) -> dict[str, dict[str, Any]]:
+    return {row["property"]: row for row in json.loads(text)["results"]}
+
+
+def starving(operator: str = "Pmin", length: int = 50) -> Json:
+    """Something is done after one step, unless another machine goes on for ever."""
+    return document(
+        automaton("busy", "s", [edge("s", way("s", c=op("%", op("+", "c", 1), length)))]),
+        automaton("worker", "a b", [edge("a", way("b", done=True))]),
+        variables=[variable("c"), variable("done", "bool", False)],
+        properties={"p": probability(op("F", "done"), operator)},
+    )
+
+
+def coin(**more: Any) -> Json:
+    steps = [edge("s", way("e", 0.3, x=1), way("e", 0.7))]
+    goal = {"heads": probability(op("F", op("=", "x", 1)))}
+    return document(automaton("a", "s e", steps), variables=[variable("x")], properties=goal, **more)
+
+
+# ------------------------------------------------------------------ minimum and maximum
+
+
+@pytest.mark.parametrize("length", [50, 6000])
+def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command, tmp_path: Path, length: int) -> None:
+    """Uniform choices give 1, and 1 is at least 0.9: but the minimum is asked for, and it is 0."""
+    done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
+    assert done.status == 1
+    assert "warning: this is the value under uniform choices, and `Pmin` asks for the minimum" in done.out
+    assert "schedulers reach from 0 " in done.out
+    assert "expected ≥ 0.9: NOT MET" in done.out
+    row = rows(command("verify", "model.jani", "--format", "json").out)["p"]
+    assert row["probability"] == 1
+    assert (row["minimum"]["value"], row["maximum"]["value"]) == (0, 1)
+    assert row["minimum"]["found"] == ("all states" if length == 50 else "sampled schedulers")
+    assert row["schedulers"]["agree"] is False
+    assert "asks for the minimum" in row["warning"]
+
+
+def test_the_side_that_is_asked_for_decides(command: Command, tmp_path: Path) -> None:
+    """That a minimum is small and a maximum large is shown by one scheduler."""
+    for operator, expected, status in (
+        ("Pmin", "p <= 0.1", 0),
+        ("Pmin", "p >= 0.1", 1),
+        ("Pmax", "p >= 0.9", 0),
+        ("Pmax", "p <= 0.9", 1),
+        ("Pmin", "p = 0", 0),
+        ("Pmin", "p = 1", 1),
+        ("Pmax", "p = 1", 0),
+    ):
+        name = write(tmp_path, starving(operator))
+        assert command("verify", name, "--expect", expected).status == status, (operator, expected)
+
+
+def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
+    done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.4")
+    assert done.status == 0
+    assert "all schedulers agree: nothing is left to choose in any of 3 states" in done.out
+    assert "expected ≤ 0.4: met\n" in done.out
+    assert "warning" not in done.out
+    row = rows(command("verify", "model.jani", "--format", "json").out)["heads"]
+    assert row["schedulers"]["agree"] is True
+    assert row["minimum"] == row["maximum"]
+    assert "warning" not in row
+
+
+def hidden() -> Json:
+    """Too many states to look at, and choices of which no sampled scheduler finds that they matter."""
+    steps = [
+        edge("s", way("s", 0.5, n=op("+", "n", 1), k=op("%", op("+", "k", 7), 1001)), way("s", 0.5, n=op("+", "n", 1)))
+    ]
+    steps = [{**steps[0], "guard": {"exp": op("<", "n", 200)}}]
+    steps.append(edge("s", way("e", 0.95, done=True), way("e", 0.05), guard=op("=", "n", 200)))
+    return document(
+        automaton("a", "s e", steps),
+        automaton("b", "s", [edge("s", way("s", m=op("+", "m", 1)), guard=op("<", "m", 40))]),
+        variables=[variable("n"), variable("k"), variable("m"), variable("done", "bool", False)],
+        properties={"p": probability(op("F", "done"))},
+    )
+
+
+def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
+    """Exit status 0, with a warning, and each format says that it is only so."""
+    name = write(tmp_path, hidden())
+    options = ("--expect", "p >= 0.9", "--epsilon", "0.03")
+    done = command("verify", name, *options)
+    assert done.status == 0
+    assert "expected ≥ 0.9: met under uniform choices" in done.out
+    assert "which may differ; " in done.out
+    assert "sampled schedulers show no difference" in done.out
+    (judged,) = rows(command("verify", name, *options, "--format", "json").out)["p"]["expectations"]
+    assert (judged["met"], judged["under_uniform_choices_only"]) == (True, True)
+    suites = ET.fromstring(command("verify", name, *options, "--format", "junit").out)
+    (case,) = suites.iter("testcase")
+    assert case.find("failure") is None
+    assert [(each.get("name"), each.get("value")) for each in case.iter("property")] == [
+        ("expected ≥ 0.9", "met under uniform choices")
+    ]
+
+
+@pytest.mark.parametrize("way_of_saying", ["configuration", "option"])
+def test_uniform_choices_that_are_wanted(command: Command, tmp_path: Path, way_of_saying: str) -> None:
+    name = write(tmp_path, starving())
+    options: tuple[str, ...] = ("--scheduler", "uniform")
+    if way_of_saying == "configuration":
+        (tmp_path / "as2fm.toml").write_text('[verify]\nscheduler = "uniform"\n')
+        options = ()
+    done = command("verify", name, "--expect", "p >= 0.9", *options)
+    assert done.status == 0
+    assert "expected ≥ 0.9: met" in done.out
+    assert "under uniform choices" not in done.out
+    assert "warning" not in done.out
+    row = rows(command("verify", name, "--format", "json", *options).out)["p"]
+    assert row["schedulers"] == {"wanted": "uniform"}
+    assert "minimum" not in row
+
+
+@pytest.mark.parametrize("text", ["[verify]\nscheduler = 1", "[verify]\nsched = 'uniform'", "verify = 3"])
+def test_mistakes_in_the_configuration(command: Command, tmp_path: Path, text: str) -> None:
+    (tmp_path / "as2fm.toml").write_text(text)
+    done = command("verify", write(tmp_path, coin()))
+    assert done.status == 2
+    assert "verify" in done.err
+
+
+def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, starving(length=3))
+    options = ("--scheduler", "lss", "--epsilon", "0.05")
+    assert command("verify", name, *options, "--expect", "p >= 0.9").status == 1
+    assert command("verify", name, *options, "--expect", "p <= 0.1").status == 0
+
+
+# ------------------------------------------------------------------ JANI that says more
+
+
+def test_a_model_with_plugins_is_refused(command: Command, tmp_path: Path) -> None:
+    done = command("verify", write(tmp_path, coin(plugins=[{"name": "x"}])))
+    assert done.status == 1
+    assert "there is no member of a model called `plugins`" in done.err
+    assert done.out == ""
+
+
+def counting() -> Json:
+    bounded = {"kind": "bounded", "base": "int", "lower-bound": 1, "upper-bound": "N"}
+    constants = [
+        {"name": "N", "type": "int"},
+        {"name": "p", "type": "real"},
+        {"name": "on", "type": "bool"},
+        {"name": "k", "type": bounded},
+        {"name": "fixed", "type": "int", "value": 3},
+    ]
+    steps = [edge("s", way("e", "p", x="N"), way("e", op("-", 1, "p")), guard="on")]
+    goal = {"heads": probability(op("F", op("=", "x", 20)))}
+    return document(automaton("a", "s e", steps), variables=[variable("x")], properties=goal, constants=constants)
+
+
+def test_constants(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, counting())
+    given = ["--constant", "N=20", "--constant", "p=0.25", "--constant", "on=true", "--constant", "k=20"]
+    done = command("verify", name, *given, "--expect", "heads = 0.25")
+    assert (done.status, done.err) == (0, "")
+    without = command("verify", name, *given[2:])
+    assert without.status == 1
+    assert "the constant `N` has no value; give one with --constant N=VALUE" in without.err
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("N", "a constant is given like N=20, not 'N'"),
+        ("N=", "a constant is given like N=20"),
+        ("N=2.5", "the constant N is a whole number, not '2.5'"),
+        ("N=99999999999999999999", "the constant N is a whole number"),
+        ("p=nan", "the constant p is a number, not 'nan'"),
+        ("p=1e999", "the constant p is a number, not '1e999'"),
+        ("on=1", "the constant on is true or false, not '1'"),
+        ("k=0", "the constant k is at least 1, not 0"),
+        ("k=21", "the constant k is at most 20, not 21"),
+        ("fixd=1", "there is no constant fixd; did you mean fixed?"),
+        ("fixed=1", "the constant fixed has a value in the model"),
+        ("N=3", "the constant N is given twice"),
+    ],
+)
+def test_constants_that_do_not_fit(command: Command, tmp_path: Path, given: str, message: str) -> None:
+    # A second value for a constant is a mistake of its own.
+    first = ("--constant", "N=20") if given[0] != "N" or given == "N=3" else ()
+    done = command("verify", write(tmp_path, counting()), *first, "--constant", given)
+    assert (done.status, done.out) == (2, "")
+    assert message in done.err
+
+
+# ------------------------------------------------------------------ one does not stop the others
+
+
+def test_a_property_that_cannot_be_answered_does_not_stop_the_others(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    nested = probability(op("F", op("G", op("=", "x", 1))))
+    written["properties"].insert(0, {"name": "nested", "expression": nested})
+    name = write(tmp_path, written)
+    done = command("verify", name, "--format", "json")
+    found = rows(done.out)
+    assert done.status == 1
+    assert list(found) == ["nested", "heads"]
+    assert found["nested"]["error"]["code"] == "unsupported-property"
+    assert found["nested"]["error"]["file"] == name
+    assert "probability" not in found["nested"]
+    assert found["heads"]["probability"] == pytest.approx(0.3, abs=0.02)
+    text = command("verify", name)
+    assert "nested: not answered: model.jani:" in text.out
+    assert "answered are `Pmin` and `Pmax` of F, G, X, U, W and R" in text.out
+    assert "heads: 0.3" in text.out
+    suites = ET.fromstring(command("verify", name, "--format", "junit").out)
+    cases = {case.get("name"): case for case in suites.iter("testcase")}
+    (error,) = cases["nested"].iter("error")
+    assert error.get("type") == "unsupported-property"
+    assert cases["heads"].find("error") is None
+    assert (suites.get("tests"), suites.get("failures"), suites.get("errors")) == ("2", "0", "1")
+    assert command("verify", name, "--property", "heads").status == 0
+
+
+def test_a_trace_that_goes_wrong_does_not_stop_the_others(command: Command, tmp_path: Path) -> None:
+    steps = [edge("s", "t"), edge("t", way("u", x=op("%", 1, "x")))]
+    goals = {"late": probability(op("F", op("=", "x", 3))), "early": probability(op("X", op("=", "x", 0)))}
+    done = command("verify", write(tmp_path, document(automaton("a", "s t u", steps), variables=[variable("x")],
+                   properties=goals)), "--format", "json")  # fmt: skip
+    found = rows(done.out)
+    assert done.status == 1
+    assert "division by zero (in trace 0 of seed 0)" in found["late"]["error"]["message"]
+    assert found["early"]["probability"] == 1
+
+
+SYSTEM = {
+    "main.xml": """<roaml><parameters><max_time value="5" unit="s" /></parameters><node_models>
+<input type="node-ascxml" src="a.ascxml" /></node_models>
+<properties><input type="jani" src="p.jani" /></properties></roaml>""",
+    "a.ascxml": """<ascxml name="a" version="1.0" initial="s">
+<datamodel><data id="n" type="int32" expr="0" /></datamodel>
+<ros_time_rate name="second" rate_hz="1" /><ros_topic_publisher name="level" topic="/level" type="std_msgs/Int32" />
+<state id="s"><ros_rate_callback name="second" target="s"><assign location="n" expr="n + 1" />
+<ros_topic_publish name="level"><field name="data" expr="n" /></ros_topic_publish></ros_rate_callback></state>
+</ascxml>""",
+}
+
+
+def test_check_reports_what_verify_refuses(command: Command, tmp_path: Path) -> None:
+    """With the same code, and each code has a document."""
+    for name, text in SYSTEM.items():
+        (tmp_path / name).write_text(text)
+    reached = op("≥", "topic_level_msg__ros_fields__data", 2)
+    bounded = {**op("F", reached), "time-bounds": {"upper": 3}}
+    long_run = {"op": "Smin", "exp": reached}
+    formulas = {"good": probability(op("F", reached)), "nested": probability(op("F", op("G", reached)))}
+    formulas |= {"bounded": probability(bounded), "long_run": long_run}
+    written = {"properties": [{"name": name, "expression": each} for name, each in formulas.items()]}
+    write(tmp_path, written, "p.jani")
+    checked = {
+        row["code"] for row in command("--check", "main.xml", "--format", "json").rows if row["file"] == "p.jani"
+    }
+    done = command("verify", "main.xml", "--format", "json")
+    found = rows(done.out)
+    refused = {name: row["error"]["code"] for name, row in found.items() if "error" in row}
+    assert set(refused) == {"nested", "bounded", "long_run"}
+    assert checked == set(refused.values()) == {"unsupported-property", "ignored-bounds"}
+    assert all(rule_document(code) for code in checked)
+    assert found["good"]["probability"] == 1
+
+
+def test_the_code_of_faults_has_a_document(command: Command) -> None:
+    assert "division" in rule_document("model-fault") or "divides by zero" in rule_document("model-fault")
+    assert command("explain", "model-fault").status in (0, 2)
+
+
+def test_max_time(command: Command, tmp_path: Path) -> None:
+    for name, text in SYSTEM.items():
+        (tmp_path / name).write_text(text)
+    goal = probability(op("F", op("≥", "topic_level_msg__ros_fields__data", 8)))
+    write(tmp_path, {"properties": [{"name": "late", "expression": goal}]}, "p.jani")
+    assert rows(command("verify", "main.xml", "--format", "json").out)["late"]["probability"] == 0
+    longer = command("verify", "main.xml", "--format", "json", "--max-time", "10 s")
+    assert rows(longer.out)["late"]["probability"] == 1
+    assert command("verify", "main.xml", "--max-time", "soon").status == 2
+    done = command("verify", write(tmp_path, coin()), "--max-time", "10 s")
+    assert (done.status, "a JANI model has no such parameter" in done.err) == (2, True)
+
+
+# ------------------------------------------------------------------ intervals
+
+
+def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Command, tmp_path: Path) -> None:
+    done = command("verify", write(tmp_path, coin()), "--method", "sprt", "--expect", "heads >= 0.28")
+    assert "decided by Wald's sequential test: wrong with a probability of at most 0.05" in done.out
+    assert "unless the value is between 0.27 and 0.29" in done.out
+    assert "it is one of a confidence sequence" in done.out
+    row = rows(command("verify", "model.jani", "--method", "sprt", "--expect", "heads >= 0.5", "--format", "json").out)
+    assert row["heads"]["interval"] == "confidence sequence"
+    assert rows(command("verify", "model.jani", "--format", "json").out)["heads"]["interval"] == "Clopper-Pearson"
+
+
+# ------------------------------------------------------------------ numbers that make no sense
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--method", "fixed"), "the method `fixed` needs a number of traces (--max-traces)"),
+        (("--epsilon", "1e-300"), "a number from 1e-09 on is expected"),
+        (("--epsilon", "1e-300", "--method", "okamoto"), "a number from 1e-09 on is expected"),
+        (("--epsilon", "nan"), "a number between 0 and 1 is expected"),
+        (("--epsilon", "small"), "a number between 0 and 1 is expected"),
+        (("--max-traces", "9" * 5000), "a whole number from 1 on is expected"),
+        (("--expect", "heads > 2"), "heads is a probability and can only be compared with a number from 0 to 1, not 2"),
+        (("--expect", "heads >= -0.5"), "not -0.5"),
+        (("--expect", "heads <= inf"), "not inf"),
+    ],
+)
+def test_wrong_use(command: Command, tmp_path: Path, options: tuple[str, ...], message: str) -> None:
+    done = command("verify", write(tmp_path, coin()), *options)
+    assert (done.status, done.out) == (2, "")
+    assert message in done.err
+    assert "Traceback" not in done.err
+
+
+def test_a_reward_may_be_more_than_one(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    cost = {"op": "Emin", "exp": 5, "accumulate": ["steps"], "reach": op("≤", "x", 1)}
+    written["automata"][0]["edges"] = [edge("s", way("e", x=1))]
+    written["variables"] = [variable("x", initial=2)]
+    written["properties"] = [{"name": "cost", "expression": cost}]
+    assert command("verify", write(tmp_path, written), "--expect", "cost > 2").status == 0
+
+
+# ------------------------------------------------------------------ states that were changed
+
+
+def tampered(change: Callable[[Any], None]) -> Callable[[Path], None]:
+    def apply(path: Path) -> None:
+        value = json.loads(path.read_text())
+        change(value)
+        path.write_text(json.dumps(value))
+
+    return apply
+
+
+def tally(value: Any) -> Any:
+    return value["properties"]["heads"]["tally"]
+
+
+TAMPERED: list[Callable[[Any], None]] = [
+    lambda v: tally(v).update(traces=10**30),
+    lambda v: tally(v).update(traces=10**30, successes=10**30),
+    lambda v: tally(v).update(traces=-1),
+    lambda v: tally(v).update(traces="1000"),
+    lambda v: tally(v).update(traces=1000.5),
+    lambda v: tally(v).update(traces=True),
+    lambda v: tally(v).update(successes=2000),
+    lambda v: tally(v).update(successes=tally(v)["successes"] + 1),
+    lambda v: tally(v).update(undecided=3),
+    lambda v: tally(v).update(steps=10**12),
+    lambda v: tally(v).update(steps=1),
+    lambda v: tally(v).update(mean=[1, "0x1p0", "0x0p0"]),
+    lambda v: tally(v).update(mean=[0, "nan", "0x0p0"]),
+    lambda v: tally(v).update(mean=[0, "1", "x"]),
+    lambda v: tally(v).update(mean=None),
+    lambda v: tally(v).update(examples=[]),
+    lambda v: tally(v).update(examples={}),
+    lambda v: tally(v)["examples"].update({"7": []}),
+    lambda v: tally(v)["examples"]["1"].pop(),
+    lambda v: tally(v)["examples"]["1"].reverse(),
+    lambda v: tally(v)["examples"]["1"].append([10**6, 1]),
+    lambda v: tally(v)["examples"]["1"].append("nonsense"),
+    lambda v: tally(v)["examples"]["1"].append([1, 2, 3]),
+    lambda v: tally(v)["shortest"].clear(),
+    lambda v: tally(v)["shortest"].update({"1": [0, -5]}),
+    lambda v: tally(v)["shortest"].update({"2": [0, 5]}),
+    lambda v: tally(v).update(finished="yes"),
+    lambda v: tally(v).update(accepted="yes"),
+    lambda v: tally(v).update(ends={}),
+    lambda v: tally(v).update(ends={"nonsense": [1000, 0, 1]}),
+    lambda v: tally(v).clear(),
+    lambda v: v["properties"]["heads"].update(tally=None),
+    lambda v: v["properties"].update(heads=None),
+    lambda v: v.update(properties=[]),
+    lambda v: v.update(version=99),
+    lambda v: v.clear(),
+]
+
+
+@pytest.mark.parametrize("number", range(len(TAMPERED)))
+def test_states_that_traces_cannot_have_given(command: Command, tmp_path: Path, number: int) -> None:
+    name = write(tmp_path, coin())
+    options = ("--method", "fixed", "--max-traces", "1000", "--resume", "state.json")
+    assert command("verify", name, *options).status == 0
+    state = tmp_path / "state.json"
+    whole = json.loads(state.read_text())
+    changed = copy.deepcopy(whole)
+    TAMPERED[number](changed)
+    assert changed != whole
+    state.write_text(json.dumps(changed))
+    done = command("verify", name, *options)
+    assert (done.status, done.out) == (2, "")
+    assert "state.json" in done.err
+    assert "Traceback" not in done.err
+    assert json.loads(state.read_text()) == changed
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "1" * 5000, '{"version": 1e999}', "\x00", "null"])
+def test_states_that_are_none(command: Command, tmp_path: Path, text: str) -> None:
+    (tmp_path / "state.json").write_text(text)
+    done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
+    assert (done.status, done.out) == (2, "")
+    assert "Traceback" not in done.err
+
+
+def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
+    """A pipe would wait for somebody who writes."""
+    os.mkfifo(tmp_path / "state.json")
+    done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
+    assert done.status == 2
+    assert "is no state of a verification" in done.err

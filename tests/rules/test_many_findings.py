@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A file with very many mistakes: the first of each kind are told, and that there are more."""
+
+from __future__ import annotations
+
+import os
+
+from fuzz.corpus import NOWHERE
+from fuzz.growth import DIMENSIONS
+from roaml import api
+from roaml.project.checking import MAX_FINDINGS
+from roaml.project.settings import Settings
+
+MAIN = os.path.join(NOWHERE, "main.xml")
+
+
+def messages(name: str, size: int) -> list[tuple[str, str]]:
+    dimension = next(dimension for dimension in DIMENSIONS if dimension.name == name)
+    return [(d.code, d.message) for d in api.check([MAIN], [], Settings(), dimension.texts(size)).diagnostics]
+
+
+def test_as_many_as_are_shown() -> None:
+    found = messages("unknown-attributes", MAX_FINDINGS)
+    assert len(found) == MAX_FINDINGS
+    assert not any("there are more" in message for _, message in found)
+
+
+def test_more_than_are_shown() -> None:
+    found = messages("unknown-attributes", MAX_FINDINGS + 500)
+    assert len(found) == MAX_FINDINGS + 1
+    assert found[-1] == ("unknown-attribute", "the first 1,000 findings of this kind are shown; there are more")
+
+
+def test_comments_that_keep_nothing_quiet() -> None:
+    found = messages("comments", MAX_FINDINGS + 500)
+    assert [code for code, _ in found] == ["unused-suppression"] * MAX_FINDINGS

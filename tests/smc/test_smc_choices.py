@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of other schedulers than the uniform one: whether all agree, how far apart some are."""
+
+from __future__ import annotations
+
+import pytest
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+
+from roaml.smc import kernel
+from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
+from roaml.smc.explore import Explorer
+from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.run import Options
+from roaml.smc.solve import solve
+from twin import plain_kernel
+
+GOAL = op("F", "done")
+
+
+def looked_at(written: Json, options: Options | None = None) -> Choices:
+    checker = Checker(model(written))
+    options = options or Options(epsilon=0.03)
+    with Pool() as pool:
+        answer = checker.answer(checker.asked[0], options, pool)
+        return checker.choices(checker.asked[0], answer, pool)
+
+
+def starving(length: int, chance: bool = False, operator: str = "Pmin") -> Json:
+    """A worker that is done after one step, beside a machine that can go on for ever."""
+    goes_on = way("s", c=op("%", op("+", "c", 1), length))
+    ways = [way("s", 0.5, c=op("%", op("+", "c", 1), length)), way("s", 0.5, c=0)] if chance else [goes_on]
+    return document(
+        automaton("busy", "s", [edge("s", *ways)]),
+        automaton("worker", "a b", [edge("a", way("b", done=True))]),
+        variables=[variable("c"), variable("done", "bool", False)],
+        properties={"p": probability(GOAL, operator)},
+    )
+
+
+def chain(length: int, type_: str = "mdp") -> Json:
+    """One automaton that has never anything to choose."""
+    steps = [edge("s", way("s", 0.5, c=op("+", "c", 1)), way("e", 0.5, done=True), guard=op("<", "c", length))]
+    return document(
+        automaton("a", "s e", steps),
+        variables=[variable("c"), variable("done", "bool", False)],
+        properties={"p": probability(GOAL)},
+        type_=type_,
+    )
+
+
+def test_nothing_to_choose() -> None:
+    found = looked_at(chain(5))
+    assert found.agreement == "nothing is left to choose in any of 11 states"
+    assert (found.minimum, found.differ) == (found.maximum, False)
+    assert looked_at(chain(10**6, "dtmc")).agreement == "the model has no nondeterminism"
+
+
+def test_choices_that_do_not_matter() -> None:
+    """Two coins, thrown in any order."""
+    coins = [automaton(f"coin{i}", "s e", [edge("s", way("e", 0.5, **{f"x{i}": 1}), way("e", 0.5))]) for i in range(2)]
+    both = op("F", op("∧", op("=", "x0", 1), op("=", "x1", 1)))
+    found = looked_at(document(*coins, variables=[variable("x0"), variable("x1")], properties={"p": probability(both)}))
+    assert found.agreement.startswith("all ")
+    assert found.minimum is not None
+    assert (found.minimum.value, found.minimum.found) == (pytest.approx(0.25), EXPLORATION)
+    assert found.maximum is not None
+    assert found.maximum.value == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("chance", [False, True])
+def test_a_machine_that_can_be_made_to_wait_for_ever(chance: bool) -> None:
+    """The uniform value is 1, the minimum 0: found from all states, where they are few."""
+    found = looked_at(starving(20, chance))
+    assert found.differ
+    assert found.minimum is not None
+    assert found.maximum is not None
+    assert (found.minimum.value, found.maximum.value) == (0, 1)
+    assert found.minimum.is_exact
+
+
+def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
+    found = looked_at(starving(6000))
+    assert found.differ
+    assert found.minimum is not None
+    assert (found.minimum.value, found.minimum.found) == (0, SAMPLING)
+    assert found.minimum.scheduler == "scheduler 1 that makes worker wait" or "busy" in found.minimum.scheduler
+    assert found.minimum.bounds.upper < 0.2
+    assert found.maximum is not None
+    assert (found.maximum.value, found.maximum.found) == (1, UNIFORM)
+
+
+def test_what_is_known_does_not_depend_on_workers() -> None:
+    checker = Checker(model(starving(6000)))
+    found = []
+    for pool in (Pool(), Pool(2, patience=0)):
+        with pool as used:
+            answer = checker.answer(checker.asked[0], Options(epsilon=0.03), used)
+            found.append(checker.choices(checker.asked[0], answer, used))
+    assert found[0] == found[1]
+
+
+def test_rewards_are_not_sampled() -> None:
+    written = starving(6000)
+    reward = {"op": "Emin", "exp": 1, "accumulate": ["steps"], "reach": "done"}
+    written["properties"] = [{"name": "p", "expression": reward}]
+    assert looked_at(written, Options(epsilon=0.3)) == Choices()
+
+
+def test_described() -> None:
+    names = ["one", "two"]
+    assert described(7, names) == "scheduler 7"
+    assert described(MEMORY | 3, names) == "scheduler 3 with memory"
+    assert described(STARVE | (1 << 32) | 2, names) == "scheduler 2 that makes two wait"
+    assert described(FAVOUR | 1, names) == "scheduler 1 that prefers one"
+    some = candidates(2, each=1, memoryless=2, memory=2)
+    assert len(set(some)) == len(some) == 2 + 4 + 2
+
+
+def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, int]:
+    """Verdict and steps of a trace under a scheduler; both kernels must agree."""
+    checker = Checker(model(written))
+    compiled = checker.compiled(checker.asked[0])
+    found = []
+    for module in (kernel, plain_kernel()):
+        each = module.Kernel(compiled.program, compiled.goal)
+        verdict = each.begin(1, 0, scheduler)
+        if verdict == UNKNOWN:
+            verdict = each.advance(steps)
+        found.append((verdict, each.outcome()[0]))
+    assert found[0] == found[1]
+    return found[0]
+
+
+def test_a_scheduler_that_goes_round_never_reaches_anything() -> None:
+    """A state comes again without any chance in between, so it does for ever: no need to wait for `max_steps`."""
+    starve_worker, favour_worker = STARVE | (1 << 32) | 1, FAVOUR | (1 << 32) | 1
+    verdict, steps = outcomes(starving(100), starve_worker)
+    assert verdict == FALSE
+    assert steps < 500
+    assert outcomes(starving(100), favour_worker) == (TRUE, 1)
+    # With chance in it, nothing is concluded.
+    assert outcomes(starving(100, chance=True), starve_worker, 2000) == (UNKNOWN, 2000)
+
+
+def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
+    """In the only state of these machines, one choice after the other."""
+    loops = [automaton(name, "s", [edge("s", "s", action=name)]) for name in ("one", "two")]
+    watcher = automaton(
+        "watcher",
+        "s a b c bad",
+        [
+            edge("s", "a", action="one"),
+            edge("s", "bad", action="two"),
+            edge("a", way("b", done=True), action="two"),
+            edge("a", "s", action="one"),
+            edge("bad", "bad", action="one"),
+        ],
+    )
+    written = document(
+        *loops,
+        watcher,
+        variables=[variable("done", "bool", False)],
+        syncs=[["one", None, "one"], [None, "two", "two"]],
+        properties={"p": probability(GOAL, "Pmax")},
+    )
+    compiled = Checker(model(written)).compiled(Checker(model(written)).asked[0])
+    assert len(Explorer(compiled).reachable(100)) == 4
+    assert {outcomes(written, MEMORY | number)[0] for number in range(1, 40)} == {TRUE, FALSE}
+
+
+def test_limits_of_looking_at_all_states() -> None:
+    checker = Checker(model(chain(100)))
+    compiled = checker.compiled(checker.asked[0])
+    assert solve(compiled, limit=50) is None
+    assert solve(compiled, work=50) is None
+    solution = solve(compiled)
+    assert solution is not None
+    assert solution.states == 201
+    assert solution.minimum is not None
+    assert solution.minimum.lower == pytest.approx(1 - 0.5**100)
+
+
+def test_goals_of_several_parts_are_not_solved() -> None:
+    """Whether a state is good depends on what was before; that there is no choice is seen all the same."""
+    written = chain(5)
+    both = op("∧", op("F", "done"), op("F", op("=", "c", 2)))
+    written["properties"] = [{"name": "p", "expression": probability(both)}]
+    checker = Checker(model(written))
+    solution = solve(checker.compiled(checker.asked[0]))
+    assert solution is not None
+    assert (solution.minimum, solution.has_choices, solution.agrees) == (None, False, True)
