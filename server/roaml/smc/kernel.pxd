@@ -63,7 +63,7 @@ cdef class Kernel:
     cdef int _count(self, int group) noexcept
     @cython.locals(total=u64, i=int)
     cdef u64 _total(self) noexcept
-    @cython.locals(weight=u64, i=int)
+    @cython.locals(weight=u64, i=int, count=int)
     cdef u64 _weight(self, int vector) noexcept
     @cython.locals(i=int)
     cdef void _weigh(self, int vector) noexcept

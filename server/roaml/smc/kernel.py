@@ -407,9 +407,11 @@ class Kernel:
         """The number of combinations of edges with which a vector can be taken; more than FEW count as FEW + 1."""
         weight = 1
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
-            weight *= self.ready[self.all_slot[i]]
-            if weight > FEW:
-                return FEW + 1
+            count = self.ready[self.all_slot[i]]
+            if count > 1:
+                weight *= count
+                if weight > FEW:
+                    return FEW + 1
         return weight
 
     def _weigh(self, vector: int) -> None:
