@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import PurePath
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.ros import RepeatedType
@@ -27,7 +26,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _folder(repeated: RepeatedType, path: str) -> str:
     """The folder of the package that a definition file belongs to: `PACKAGE/msg/Name.msg`."""
-    return f"`{PurePath(path).parent.parent}`"
+    folder = path.replace("\\", "/").rsplit("/", 2)[0]
+    return f"`{folder}`"
 
 
 RULE = Rule(
