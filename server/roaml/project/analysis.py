@@ -493,11 +493,10 @@ class Analysis:
 
     def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
         """What a node may say whose file cannot be used: what the file beside it says that is probably meant."""
-        folder, _, name = missing.path.replace("\\", "/").rpartition("/")
         taken = {each.path for each in listed}
         beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
-        by_name = {p.replace("\\", "/").rpartition("/")[2]: p for p in beside}
-        close = close_names(name, by_name, 1) if folder else ()
+        by_name = {_stem(p): p for p in beside}
+        close = close_names(_stem(missing.path), by_name, 1) if missing.path else ()
         meant = by_name[close[0]] if close else ""
         if not meant or self.machine(meant) is None:
             yield Gap(ANYTHING)
@@ -670,6 +669,11 @@ class Analysis:
 
 _ROUNDS = 4
 """How often event data are passed on from event to event before their types are taken as they are."""
+
+
+def _stem(path: str) -> str:
+    """The name of a file without its extension."""
+    return path.replace("\\", "/").rpartition("/")[2].rpartition(".")[0]
 
 
 def _received(machine: Machine) -> set[str]:
