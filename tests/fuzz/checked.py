@@ -15,7 +15,7 @@ from roaml.model.size import Limits
 from roaml.project.settings import Settings
 from roaml.text import Span, apply_edits
 
-LIMITS = Limits(cells=50_000, parts=100_000)
+LIMITS = Limits(cells=50_000, parts=50_000)
 """A fraction of the real ones: what is just below them takes about as long as a case may take."""
 
 
