@@ -21,7 +21,8 @@ ROOT_NUMBER = 1000
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without places. `position` counts the nodes of its tree in pre-order from 0."""
+    """A node without places. `position` counts the nodes of its tree in pre-order from 0; `condition` tells that it is
+    written as `<Condition>`."""
 
     position: int
     plugin: str
@@ -29,6 +30,7 @@ class NodeOutline:
     is_subtree: bool
     attributes: tuple[tuple[str, str], ...]
     children: tuple[NodeOutline, ...]
+    condition: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,7 @@ class TreeFileOutline:
     Attributes:
         defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
         from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+        conditions: the plugins that are conditions in `<TreeNodesModel>`.
     """
 
     path: str
@@ -53,6 +56,7 @@ class TreeFileOutline:
     defaults: tuple[tuple[str, str, str], ...]
     declared: tuple[tuple[str, str], ...] = ()
     from_project: bool = False
+    conditions: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +94,7 @@ class Instance:
         automaton: `BT_plugin_<number>_<name>`.
         ports: what the tree sets, defaults of `<TreeNodesModel>` included.
         children: the numbers of its children.
+        condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
     """
 
     number: int
@@ -99,6 +104,7 @@ class Instance:
     parent: int | None
     children: tuple[int, ...]
     source: Source
+    condition: bool = False
 
     @property
     def automaton(self) -> str:
@@ -125,6 +131,7 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
         tuple(
             (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
         ),
+        conditions=frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
     )
 
 
@@ -142,6 +149,7 @@ def _outlines(root: TreeNode) -> NodeOutline:
             node.is_subtree,
             tuple((port_key(plugin, attribute.name), attribute.value) for attribute in node.element.attributes),
             tuple(convert(child) for child in node.children),
+            node.element.name == "Condition",
         )
 
     return convert(root)
@@ -347,6 +355,7 @@ class _Placed:
     ports: tuple[tuple[str, PortValue], ...]
     parent: int | None
     source: Source
+    condition: bool
     children: list[int]
 
 
@@ -359,6 +368,7 @@ class _Expansion:
         for file in files:
             for plugin, port, value in file.defaults:
                 self.defaults.setdefault(plugin, {}).setdefault(port, value)
+        self.conditions = frozenset(name for file in files for name in file.conditions)
         self.placed: list[_Placed] = []
         self.prefixes: set[str] = set()
         self.counts: dict[str, int] = {}
@@ -379,12 +389,23 @@ class _Expansion:
             settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
             ports = tuple((key, frame.value(text)) for key, text in settings.items())
             source = Source(frame.tree.path, frame.tree.id, node.position)
-            self.placed.append(_Placed(node.plugin, node.name or node.plugin, ports, parent, source, []))
+            condition = node.condition or node.plugin in self.conditions
+            name = node.name or node.plugin
+            self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, []))
             if parent is not None:
                 self.placed[parent - ROOT_NUMBER].children.append(number)
             pending += ((child, frame, number) for child in reversed(node.children))
         return tuple(
-            Instance(number, each.plugin, each.name, each.ports, each.parent, tuple(each.children), each.source)
+            Instance(
+                number,
+                each.plugin,
+                each.name,
+                each.ports,
+                each.parent,
+                tuple(each.children),
+                each.source,
+                each.condition,
+            )
             for number, each in enumerate(self.placed, ROOT_NUMBER)
         )
 

@@ -15,6 +15,7 @@ from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.behavior.summary import ChartOutline, summarised
 from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
     CallChild,
@@ -135,6 +136,7 @@ class MachineOutline:
     Attributes:
         gaps: what it may say besides, where it cannot be read.
         all_ports: `ports` are all that it means to declare.
+        charts: how it behaves; of a chart that cannot be looked through nothing is said.
     """
 
     name: str
@@ -149,6 +151,7 @@ class MachineOutline:
     threads: tuple[ThreadOutline, ...]
     plugin: PluginOutline
     all_ports: bool = True
+    charts: tuple[ChartOutline, ...] = ()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -197,6 +200,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         ),
         _plugin(machine),
         _declares_all_ports(machine),
+        tuple(summarised(machine, chart) for chart in machine.charts),
     )
 
 

@@ -28,6 +28,9 @@ def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
             return machine.name
         case "port":
             return next((p.key for p in machine.ports if p.key and p.key.value == symbol.name), None)
+        case "state":
+            states = (s for c in machine.charts if c.scope == symbol.scope for s in c.states)
+            return next((s.id for s in states if s.id and s.id.value == symbol.name), None)
         case "data":
             data = [d for c in machine.charts if c.scope == symbol.scope for d in c.data]
             return next((d.id for d in data if d.id and d.id.value == symbol.name), None)

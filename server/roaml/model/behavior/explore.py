@@ -1,0 +1,778 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The graph of a chart: every configuration that it may be in between two events, and every step between them.
+
+A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step takes an
+event, or none, runs all that belongs to the transition (spec/01 §4.2) and ends in a configuration. What has happened
+before decides which events may come: a response only after its request, a tick only when the last one is answered.
+
+- The graph contains every path that the chart can take, and it may contain paths that it cannot take.
+- Its size is bounded. Where what is known differs too much, it is forgotten; a chart that is still too large has no
+  graph (`None`).
+- Made from one machine alone; remembered as long as its chart is.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from roaml.expr.tree import Expr, Name, access_path
+from roaml.model.behavior.knowledge import NOTHING, Domain, Facts, Knowledge, is_literal, variables_in
+from roaml.model.machine import (
+    Assign,
+    CallChild,
+    Chart,
+    Communicate,
+    Declaration,
+    Handler,
+    If,
+    Machine,
+    NoEffect,
+    ReturnHalted,
+    ReturnStatus,
+    Send,
+    State,
+    Statement,
+    statements,
+)
+from roaml.model.syntax import Expression
+from roaml.model.typing import STATUSES, find_handle
+from roaml.text import Span
+
+MOST_CONFIGURATIONS = 4000
+MOST_KNOWN = 12
+"""Of configurations that differ in what is known only."""
+
+NOWHERE = "?"
+"""Stands for a state that is not known: anything may happen there."""
+
+
+class Event(NamedTuple):
+    """Something that a machine receives or sends: the part of an interface or of the tree protocol, as the schema calls
+    it, and the handle or the name of the event ("" for the tree)."""
+
+    part: str
+    name: str
+
+
+class Duty(NamedTuple):
+    """Something that has to be answered exactly once: "tick", "halt", "request", "goal" (accepted or rejected) or
+    "result" (of an accepted goal). `handle` is that of the server, "" for the tree."""
+
+    kind: str
+    handle: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that must not be sent at this point of a path.
+
+    Attributes:
+        kind: "unasked" (nothing waits for the answer: it has been given, or was not asked for), "wrong-kind" (a tick
+            that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored), "other"
+            (the id of a goal of another action), "rejected" or "undecided" (a result for such a goal), or "thread" (a
+            thread that does not exist).
+        duty: what is answered.
+        statement: what sends it.
+        certain: no condition on the way decides on it.
+    """
+
+    kind: str
+    duty: Duty
+    statement: Statement
+    certain: bool
+
+
+Phases = tuple[tuple[tuple[str, str], str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    state: str
+    phases: Phases = ()
+    knowledge: Knowledge = NOTHING
+
+    def phase(self, kind: str, handle: str = "") -> str:
+        return next((value for key, value in self.phases if key == (kind, handle)), "")
+
+    @property
+    def tree(self) -> str:
+        """Where a plugin stands: "" (never ticked), "ticked", "halting", "running" or "ended"."""
+        return self.phase("tree")
+
+    def owes(self, duty: Duty) -> bool:
+        match duty.kind:
+            case "tick":
+                return self.tree == "ticked"
+            case "halt":
+                return self.tree == "halting"
+        return bool(self.phase(duty.kind, duty.handle))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """
+    Attributes:
+        source, target: configurations, as indexes.
+        event: what is received; None for a transition without event.
+        handler: that receives it; where no condition holds the last one that was tried.
+        choice: which of the handler's targets is taken.
+        ignored: no condition holds, so that the event is consumed without effect (spec/05 §6).
+        sent: what is sent, in order.
+        faults: what is wrong in it.
+        certain: no condition inside its bodies decides on where it leads.
+    """
+
+    source: int
+    target: int
+    event: Event | None
+    handler: Handler
+    choice: int
+    ignored: bool
+    sent: tuple[Event, ...]
+    faults: tuple[Fault, ...]
+    certain: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Behavior:
+    """The graph of a chart.
+
+    Attributes:
+        configurations: the first ones are those in which it starts.
+        starts: how many these are.
+        steps: all of them; `outgoing` and `incoming` are their indexes by configuration.
+        at_start: what the `<onentry>` of the initial state sends, and what is wrong in it.
+        statuses: the answers that each `<bt_return_status>` may certainly give.
+        approximate: some of what is known was forgotten, so that paths that depend on conditions may not exist.
+    """
+
+    chart: Chart
+    configurations: tuple[Configuration, ...]
+    starts: int
+    steps: tuple[Step, ...]
+    at_start: tuple[Event, ...]
+    statuses: Mapping[ReturnStatus, frozenset[str]]
+    approximate: bool
+
+    @property
+    def size(self) -> int:
+        return len(self.configurations)
+
+    def outgoing(self) -> list[list[Step]]:
+        found: list[list[Step]] = [[] for _ in self.configurations]
+        for step in self.steps:
+            found[step.source].append(step)
+        return found
+
+
+def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior | None:
+    """The graph of a chart of `machine`; None if it has no initial state or is too large to be looked through.
+
+    It is kept with the chart, as the chart's own cached properties are, and goes with it.
+
+    Args:
+        fine: values are followed from step to step. That takes longer and leaves out more of the paths that cannot be
+            taken, so it is for charts in which something seems to be wrong.
+    """
+    known: dict[bool, Behavior | None] = chart.__dict__.setdefault("behavior", {})
+    if fine not in known:
+        known[fine] = _Explorer(machine, chart, fine).run()
+    return known[fine]
+
+
+class _Path(NamedTuple):
+    """One way through the bodies of a step."""
+
+    phases: Phases
+    knowledge: Knowledge
+    sent: tuple[Event, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    certain: bool = True
+
+    def phase(self, kind: str, handle: str = "") -> str:
+        return next((value for key, value in self.phases if key == (kind, handle)), "")
+
+    def at(self, kind: str, handle: str, phase: str) -> _Path:
+        others = [entry for entry in self.phases if entry[0] != (kind, handle)]
+        return self._replace(phases=tuple(sorted((*others, ((kind, handle), phase)) if phase else others)))
+
+    def wrong(self, kind: str, duty: Duty, statement: Statement, certain: bool = True) -> _Path:
+        return self._replace(faults=(*self.faults, Fault(kind, duty, statement, certain and self.certain)))
+
+
+def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
+    """The types of the scalar variables of a chart; those that are integers and those that are truth values."""
+    types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
+    scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
+    whole = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
+    return scalar, frozenset(whole), frozenset(name for name, base in scalar.items() if base == "bool")
+
+
+def condition_facts(chart: Chart) -> Facts:
+    """With which conditions of a chart are compared with each other."""
+    _, whole, logical = _kinds(chart)
+    return Facts(whole, logical, constants=STATUSES)
+
+
+class _TooLargeError(Exception):
+    pass
+
+
+EVENT_VARIABLES = frozenset(
+    ("_event", "_msg", "_req", "_res", "_goal", "_action", "_feedback", "_wrapped_result", "_bt")
+)
+"""They hold the data of the event that is being handled, and nothing behind its step."""
+
+
+class _Group(NamedTuple):
+    """The handlers of a state for one event, with the phases that matter to them."""
+
+    state: State
+    event: Event | None
+    handlers: tuple[Handler, ...]
+    touched: frozenset[tuple[str, str]]
+
+
+_Found = tuple[str, _Path, Handler, int, bool]
+"""Where a step leads, what has happened on the way, its handler, the choice, and whether the event is ignored."""
+
+_ANSWERABLE = ("bt-tick", "bt-halt", "request", "goal", "response", "result", "child-status", "child-halted")
+"""Events that are lost if no condition holds, and that somebody waits for."""
+_CODES = (4, 5, 6)
+_ANSWERED = {"response": "response", "result": "outcome", "goal-response": "decision"}
+"""What a client waits for, by what it receives."""
+
+
+@dataclass(eq=False)
+class _Explorer:
+    machine: Machine
+    chart: Chart
+    fine: bool
+    numbers: dict[Configuration, int] = field(default_factory=dict)
+    steps: dict[tuple[object, ...], Step] = field(default_factory=dict)
+    statuses: defaultdict[ReturnStatus, set[str]] = field(default_factory=lambda: defaultdict(set))
+    approximate: bool = False
+
+    def __post_init__(self) -> None:
+        chart = self.chart
+        self.states: dict[str, State] = {}
+        for state in chart.states:
+            if state.id is not None:
+                self.states.setdefault(state.id.value, state)
+        self.thread = chart.scope != ""
+        self.threaded = {t.server.value for t in self.machine.threads if t.server}
+        self.count = next((t.count for t in self.machine.threads if t.chart is chart), None)
+        self.counts = {t.server.value: t.count for t in self.machine.threads if t.server and t.count}
+        scalar, whole, logical = _kinds(chart)
+        counted = self._counted()
+        self.relevant = self._relevant(scalar, logical) if self.fine else counted | self._statuses()
+        followed = None if not self.fine else self.relevant | EVENT_VARIABLES
+        self.facts = Facts(whole, logical, followed, counted)
+        self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
+        self.goal_ids = self._goal_ids()
+        self.declarations: dict[Handler | Communicate, Declaration | None] = {}
+        self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
+        self.groups: dict[str, list[_Group]] = {}
+        self.reactions: dict[tuple[State, Event | None, Phases, Knowledge], list[_Found]] = {}
+        self.found: list[_Found] = []
+        self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
+        self.goal_here = "any"  # what `_action.goal_id` means in the step that is being executed
+
+    def declaration(self, user: Handler | Communicate) -> Declaration | None:
+        if user not in self.declarations:
+            self.declarations[user] = find_handle(self.machine, user)
+        return self.declarations[user]
+
+    # ------------------------------------------------------ what is followed
+
+    def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
+        """The variables of which it is worth to know something, because that may decide where a path leads: those that
+        conditions read, if they are compared more than once or given nothing but constants and truth values."""
+        read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
+        wanted = {*self._counted(), *self._statuses()}
+        assigned: dict[str, list[Expr | None]] = {}
+        for statement in self.chart.statements:
+            match statement:
+                case If():
+                    read += [branch.cond.tree for branch in statement.branches if branch.cond]
+                case Assign() if statement.location:
+                    value = statement.value.tree if isinstance(statement.value, Expression) else None
+                    root = (access_path(statement.location.tree) or ("",))[0]
+                    assigned.setdefault(root, []).append(value)
+        often = Counter(name for tree in read for name in variables_in((tree,)))
+        wanted |= {name for name, count in often.items() if count > 1}
+        wanted |= {
+            name
+            for name in often
+            if all(name in logical or (v is not None and is_literal(v)) for v in assigned.get(name, ()))
+        }
+        sources = wanted
+        while sources:
+            values = [v for name in sources for v in assigned.get(name, ()) if isinstance(v, Name)]
+            sources = {v.name for v in values if v.name in scalar} - wanted
+            wanted |= sources
+        return frozenset(wanted) - EVENT_VARIABLES
+
+    def _statuses(self) -> frozenset[str]:
+        """The variables that hold answers."""
+        given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
+        return frozenset(given) - set(STATUSES)
+
+    def _counted(self) -> frozenset[str]:
+        """The variables that number threads."""
+        started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, Communicate) and s.thread_id)
+        return variables_in(started)
+
+    def _goal_ids(self) -> frozenset[str]:
+        """The variables that hold the ids of goals."""
+        found = {
+            s.goal_id.tree.name
+            for s in self.chart.statements
+            if isinstance(s, Communicate) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
+        }
+        while True:
+            copied = {
+                s.value.tree.name
+                for s in self.chart.statements
+                if isinstance(s, Assign) and s.location and isinstance(s.value, Expression)
+                if isinstance(s.value.tree, Name) and access_path(s.location.tree) in {(name,) for name in found}
+            }
+            if copied <= found:
+                return frozenset(found)
+            found |= copied
+
+    # ----------------------------------------------------------------- search
+
+    def run(self) -> Behavior | None:
+        initial = self.chart.initial.value if self.chart.initial else ""
+        if initial not in self.states:
+            return None
+        at_start: list[Event] = []
+        try:
+            entry = self.states[initial].entry
+            path = _Path((), self._initial())
+            paths = self._bodies([entry.statements if entry else ()], [path])
+            for each in paths:
+                at_start += each.sent
+                self._number(Configuration(initial, each.phases, self._kept(each.knowledge)))
+            starts = len(self.numbers)
+            done = 0
+            while done < len(self.numbers):
+                for configuration in list(self.numbers)[done:]:
+                    self._from(configuration, self.numbers[configuration])
+                    done += 1
+        except _TooLargeError:
+            return None
+        return Behavior(
+            self.chart,
+            tuple(self.numbers),
+            starts,
+            tuple(self.steps.values()),
+            tuple(dict.fromkeys(at_start)),
+            {statement: frozenset(answers) for statement, answers in self.statuses.items()},
+            self.approximate,
+        )
+
+    def _initial(self) -> Knowledge:
+        knowledge = NOTHING
+        for data in self.chart.data:
+            if data.id and data.id.value in self.relevant and isinstance(data.value, Expression):
+                value = self.facts.value(NOTHING, data.value.tree)
+                if value is not None:
+                    knowledge = self.facts.know(knowledge, data.id.value, Domain(frozenset((value,))))
+        return knowledge
+
+    def _number(self, configuration: Configuration) -> int:
+        known = self.numbers.get(configuration)
+        if known is not None:
+            return known
+        place = (configuration.state, configuration.phases)
+        here = self.known_here.setdefault(place, set())
+        if len(here) >= MOST_KNOWN and configuration.knowledge != NOTHING:
+            self.approximate = True
+            return self._number(replace(configuration, knowledge=NOTHING))
+        here.add(configuration.knowledge)
+        if len(self.numbers) >= MOST_CONFIGURATIONS:
+            raise _TooLargeError
+        self.numbers[configuration] = len(self.numbers)
+        return self.numbers[configuration]
+
+    def _kept(self, knowledge: Knowledge) -> Knowledge:
+        return knowledge.within(self.relevant)
+
+    def _from(self, configuration: Configuration, number: int) -> None:
+        for group in self._groups(configuration.state):
+            if group.event is None or self._may_come(configuration, group.event):
+                self._react(configuration, number, group)
+
+    def _groups(self, name: str) -> list[_Group]:
+        """The handlers of a state that wait for the same event."""
+        if name not in self.groups:
+            state = self.states.get(name)
+            found: dict[Event | None, list[Handler]] = {}
+            for handler in state.handlers if state else ():
+                if handler.effective:
+                    found.setdefault(self.event(handler), []).append(handler)
+            groups = found.items()
+            self.groups[name] = [_Group(state, e, tuple(hs), self._touched(state, e, hs)) for e, hs in groups if state]
+        return self.groups[name]
+
+    def _touched(self, state: State, event: Event | None, handlers: Iterable[Handler]) -> frozenset[tuple[str, str]]:
+        """The phases that the steps of a group may look at or change."""
+        found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
+        if event is not None:
+            handle = event.name
+            found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "outcome", "decision")}
+        bodies = [state.exit.statements if state.exit else ()]
+        for handler in handlers:
+            for target in handler.targets:
+                entered = self.states.get(target.state.value) if target.state else None
+                bodies += [target.body, entered.entry.statements if entered and entered.entry else ()]
+        for statement in (inner for body in bodies for inner in statements(body)):
+            if isinstance(statement, Communicate):
+                declaration = self.declaration(statement)
+                handle = declaration.handle.value if declaration and declaration.handle else ""
+                found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
+        return frozenset(found)
+
+    def event(self, handler: Handler) -> Event | None:
+        """What a handler waits for; None for nothing."""
+        match handler.trigger:
+            case "":
+                return None
+            case "event":
+                return Event("event", handler.event.value if handler.event else "")
+            case "bt-tick" | "bt-halt":
+                return Event(handler.trigger, "")
+            case "child-status" | "child-halted":
+                return Event(handler.trigger, handler.child.value if handler.child else "")
+        declaration = self.declaration(handler)
+        handle = declaration.handle if declaration and declaration.handle else handler.handle
+        return Event(handler.trigger, handle.value if handle else "")
+
+    def _may_come(self, configuration: Configuration, event: Event) -> bool:
+        match event.part:
+            case "bt-tick" | "bt-halt":
+                return configuration.tree not in ("ticked", "halting")
+            case "child-status":
+                return configuration.phase("child") in ("ticked", "several")
+            case "child-halted":
+                return configuration.phase("child") in ("halted", "several")
+            case "request" | "goal":
+                return not configuration.phase(event.part, event.name)
+            case "response" | "result" | "goal-response":
+                return bool(configuration.phase(_ANSWERED[event.part], event.name))
+        return True
+
+    def _react(self, configuration: Configuration, number: int, group: _Group) -> None:
+        """What happens depends on few phases only, so the same happens in many configurations."""
+        taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
+        inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
+        key = (group.state, group.event, inside, taken.knowledge)
+        if key not in self.reactions:
+            self.found = self.reactions[key] = []
+            self._decide(group, taken._replace(phases=inside))
+        outside = tuple(e for e in taken.phases if not (e[0] in group.touched or e[0][0] == "id"))
+        for state, path, handler, choice, ignored in self.reactions[key]:
+            phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
+            target = self._number(Configuration(state, phases, path.knowledge))
+            step = (number, target, group.event, handler, choice, ignored, path.sent, path.faults, path.certain)
+            if step not in self.steps:
+                self.steps[step] = Step(*step)
+
+    def _decide(self, group: _Group, taken: _Path) -> None:
+        event, handlers = group.event, group.handlers
+        if event is not None and event.part == "result":
+            for code in _CODES:
+                with_code = tuple(h for h in handlers if h.type.code in (code, 0))
+                if with_code:
+                    self._choose(group, with_code, taken)
+        elif event is not None and event.part == "goal-response":
+            self._answered(group, handlers[0], taken)
+        else:
+            self._choose(group, handlers, taken)
+
+    def _choose(self, group: _Group, handlers: tuple[Handler, ...], taken: _Path) -> None:
+        """The first handler whose condition holds is executed (spec/01 §5.3)."""
+        facts, event = self.facts, group.event
+        ways = [taken.knowledge]
+        matters = event is not None and event.part in _ANSWERABLE
+        if event is not None and event.part in ("child-status", "child-halted"):
+            facts = self.status_facts
+            if event.part == "child-status":
+                ways = [facts.know(taken.knowledge, "_bt.status", Domain(frozenset(STATUSES.values())))]
+        for handler in handlers:
+            if handler.cond is None:
+                self._execute(group, handler, [taken._replace(knowledge=way) for way in ways])
+                return
+            if not (self.fine or matters):
+                self._execute(group, handler, [taken])
+                continue
+            tree = handler.cond.tree
+            holding = [known for way in ways for known in facts.assume(way, tree, True)]
+            self._execute(group, handler, [taken._replace(knowledge=way) for way in holding])
+            ways = [known for way in ways for known in facts.assume(way, tree, False)]
+        if matters:
+            assert group.state.id is not None
+            for way in ways:
+                if not way.enumerates(taken.knowledge):  # if so, they are all values that are ever sent
+                    path = taken._replace(knowledge=self._kept(way))
+                    self.found.append((group.state.id.value, path, handlers[-1], 0, True))
+
+    def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
+        """A goal is accepted, so that its result is awaited, or rejected."""
+        assert group.event is not None
+        for choice, phase in ((0, "awaited"), (1, "")):
+            self._execute(group, handler, [taken.at("outcome", group.event.name, phase)], choice)
+
+    def _execute(self, group: _Group, handler: Handler, paths: list[_Path], only: int | None = None) -> None:
+        state, event = group.state, group.event
+        leave = state.exit.statements if state.exit else ()
+        arrived = {"goal": "asked", "thread-start": "accepted"}.get(event.part if event else "")
+        self.goal_here = f"{arrived} {event.name}" if event and arrived else "any"
+        for choice, target in enumerate(handler.targets):
+            if only is not None and choice != only:
+                continue
+            name = target.state.value if target.state else NOWHERE
+            entered = self.states.get(name)
+            enter = entered.entry.statements if entered and entered.entry else ()
+            for path in self._bodies([leave, target.body, enter], paths):
+                known = self._kept(path.knowledge) if entered else NOTHING
+                after = name if entered else NOWHERE
+                self.found.append((after, path._replace(knowledge=known), handler, choice, False))
+
+    def _received(self, path: _Path, event: Event | None) -> _Path:
+        """What an event changes before anything is executed."""
+        if event is None:
+            return path
+        match event.part:
+            case "bt-tick":
+                return path.at("tree", "", "ticked")
+            case "bt-halt":
+                return path.at("tree", "", "halting")
+            case "child-status" | "child-halted":
+                return path if path.phase("child") == "several" else path.at("child", "", "")
+            case "request":
+                return path.at("request", event.name, "due")
+            case "goal":
+                return path.at("goal", event.name, "due")
+            case "thread-start":
+                return path.at("result", event.name, "due")
+            case "response" | "result" | "goal-response":
+                kind = _ANSWERED[event.part]
+                return path if path.phase(kind, event.name) == "several" else path.at(kind, event.name, "")
+        return path
+
+    # ------------------------------------------------------------- statements
+
+    def _bodies(self, bodies: Iterable[tuple[Statement, ...]], paths: list[_Path]) -> list[_Path]:
+        for body in bodies:
+            for statement in self._effective(body):
+                paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
+                if len(paths) > MOST_CONFIGURATIONS:
+                    raise _TooLargeError
+        return paths
+
+    def _effective(self, body: tuple[Statement, ...]) -> tuple[Statement, ...]:
+        """The statements of a body that matter here; most assignments do not."""
+        if body not in self.effective:
+            self.effective[body] = tuple(statement for statement in body if self._matters(statement))
+        return self.effective[body]
+
+    def _matters(self, statement: Statement) -> bool:
+        match statement:
+            case Assign():
+                root = (access_path(statement.location.tree) or ("",))[0] if statement.location else ""
+                return root in self.relevant or root in self.goal_ids
+            case If():
+                parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+                return any(self._effective(part.body) for part in parts)
+        return not isinstance(statement, NoEffect)
+
+    def _run(self, statement: Statement, path: _Path) -> Iterable[_Path]:
+        match statement:
+            case Assign():
+                return self._assign(statement, path)
+            case If():
+                return self._if(statement, path)
+            case ReturnStatus():
+                return self._status(statement, path)
+            case ReturnHalted():
+                return (self._halted(statement, path),)
+            case Send():
+                return (self._sent(path, Event("event", statement.event.value if statement.event else "")),)
+            case CallChild():
+                busy, called = path.phase("child"), "halted" if statement.halts else "ticked"
+                sent = self._sent(path, Event("child-halt" if statement.halts else "child-tick", ""))
+                return (sent.at("child", "", "several" if busy else called),)
+            case Communicate():
+                return (self._communicate(statement, path),)
+        return (path,)
+
+    def _sent(self, path: _Path, event: Event) -> _Path:
+        return path._replace(sent=(*path.sent, event))
+
+    def _assign(self, statement: Assign, path: _Path) -> Iterable[_Path]:
+        if statement.location is None:
+            return (path,)
+        location = statement.location.tree
+        value = statement.value.tree if isinstance(statement.value, Expression) else None
+        root = (access_path(location) or ("",))[0]
+        if root in self.goal_ids:
+            path = path.at("id", root, self._stored(location, value, path))
+        if root not in self.relevant:
+            return (path,)
+        return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
+
+    def _stored(self, location: Expr, value: Expr | None, path: _Path) -> str:
+        """Which goal a variable holds the id of after an assignment."""
+        if not isinstance(location, Name) or value is None:
+            return "any"
+        if access_path(value) == ("_action", "goal_id"):
+            server = self.goal_here.removeprefix("asked ")
+            decided = server != self.goal_here and not path.phase("goal", server)
+            return "any" if decided else self.goal_here
+        if isinstance(value, Name):
+            return path.phase("id", value.name) if value.name in self.goal_ids else "any"
+        return "" if self.facts.value(NOTHING, value) is not None else "any"
+
+    def _if(self, statement: If, path: _Path) -> Iterable[_Path]:
+        if not self.fine:
+            return self._any_part(statement, path)
+        ways = [path.knowledge]
+        parts: list[tuple[list[Knowledge], tuple[Statement, ...]]] = []
+        for branch in statement.branches:
+            if branch.cond is None:
+                parts.append((ways, branch.body))
+                continue
+            parts.append(([k for way in ways for k in self.facts.assume(way, branch.cond.tree, True)], branch.body))
+            ways = [k for way in ways for k in self.facts.assume(way, branch.cond.tree, False)]
+        parts.append((ways, statement.otherwise.body if statement.otherwise else ()))
+        possible = [(known, body) for known, body in parts if known]
+        certain = path.certain and len(possible) == 1
+        found: list[_Path] = []
+        for known, body in possible:
+            found += self._bodies([body], [path._replace(knowledge=k, certain=certain) for k in dict.fromkeys(known)])
+        return found
+
+    def _any_part(self, statement: If, path: _Path) -> Iterable[_Path]:
+        found = [after for branch in statement.branches for after in self._bodies([branch.body], [path])]
+        found += self._bodies([statement.otherwise.body], [path]) if statement.otherwise else [path]
+        return [after._replace(certain=False) for after in found]
+
+    def _status(self, statement: ReturnStatus, path: _Path) -> Iterable[_Path]:
+        duty = Duty("tick", "")
+        word = statement.status.value if statement.status else ""
+        if word in STATUSES:
+            answers: tuple[str, ...] = (word,)
+        else:
+            value = self.facts.value(path.knowledge, Name(Span(0, 0), word))
+            answers = tuple(name for name, number in STATUSES.items() if number == value)
+        self.statuses[statement].update(answers)
+        path = self._sent(path, Event("bt-status", ""))
+        if path.phase("tree") == "ticked":
+            phases = {"running" if answer == "RUNNING" else "ended" for answer in answers} or {"running", "ended"}
+            return [path.at("tree", "", phase) for phase in sorted(phases)]
+        if path.phase("tree") == "halting":
+            return (path.wrong("wrong-kind", Duty("halt", ""), statement),)
+        return (path.wrong("unasked", duty, statement),)
+
+    def _halted(self, statement: ReturnHalted, path: _Path) -> _Path:
+        path = self._sent(path, Event("bt-halted", ""))
+        if path.phase("tree") == "halting":
+            return path.at("tree", "", "ended")
+        kind = "wrong-kind" if path.phase("tree") == "ticked" else "unasked"
+        return path.wrong(kind, Duty("tick" if kind == "wrong-kind" else "halt", ""), statement)
+
+    def _communicate(self, statement: Communicate, path: _Path) -> _Path:
+        declaration = self.declaration(statement)
+        if declaration is None or declaration.handle is None:
+            return path
+        part, handle = statement.type.sends, declaration.handle.value
+        path = self._sent(path, Event(part, handle))
+        match part:
+            case "request":
+                return path.at("response", handle, "several" if path.phase("response", handle) else "awaited")
+            case "goal":
+                return path.at("decision", handle, "several" if path.phase("decision", handle) else "awaited")
+            case "response":
+                if path.phase("request", handle):
+                    return path.at("request", handle, "")
+                return path.wrong("unasked", Duty("request", handle), statement)
+            case "goal-accepted" | "goal-rejected":
+                return self._decided(statement, path, handle, part == "goal-accepted")
+            case "result":
+                return self._finished(statement, path, handle)
+            case "feedback" | "thread-start":
+                path = self._checked_id(statement, path, handle, Duty("result", handle), ("asked", "accepted"))
+                return self._started(statement, path, handle) if part == "thread-start" else path
+        return path
+
+    def _decided(self, statement: Communicate, path: _Path, handle: str, accepts: bool) -> _Path:
+        duty = Duty("goal", handle)
+        path = self._checked_id(statement, path, handle, duty, ("asked", "accepted", "rejected", "finished"))
+        if any(fault.statement is statement and fault.kind == "other" for fault in path.faults):
+            return path
+        if not path.phase("goal", handle):
+            return path.wrong("unasked", duty, statement)
+        path = path.at("goal", handle, "")
+        for (kind, variable), held in path.phases:
+            if kind == "id" and held == f"asked {handle}":
+                path = path.at("id", variable, f"{'accepted' if accepts else 'rejected'} {handle}")
+        if accepts and handle not in self.threaded:
+            path = path.at("result", handle, "several" if path.phase("result", handle) else "due")
+        return path
+
+    def _finished(self, statement: Communicate, path: _Path, handle: str) -> _Path:
+        duty = Duty("result", handle)
+        before = len(path.faults)
+        path = self._checked_id(statement, path, handle, duty, ("accepted",))
+        variable = statement.goal_id.tree if statement.goal_id else None
+        if isinstance(variable, Name) and path.phase("id", variable.name) == f"accepted {handle}":
+            path = path.at("id", variable.name, f"finished {handle}")
+        if len(path.faults) > before:
+            return path
+        if handle in self.threaded and not self.thread:
+            return path
+        match path.phase("result", handle):
+            case "due":
+                return path.at("result", handle, "")
+            case "":
+                return path.wrong("unasked", duty, statement)
+        return path
+
+    def _checked_id(
+        self, statement: Communicate, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]
+    ) -> _Path:
+        """A goal must be named by the id that it came with."""
+        tree = statement.goal_id.tree if statement.goal_id else None
+        if not isinstance(tree, Name) or tree.name not in self.goal_ids:
+            return path
+        held = path.phase("id", tree.name)
+        if held == "any":
+            return path
+        if not held:
+            return path.wrong("unstored", duty, statement)
+        status, _, server = held.partition(" ")
+        if server != handle:
+            return path.wrong("other", duty, statement)
+        if status not in wanted:
+            kind = {"asked": "undecided", "finished": "unasked"}.get(status, status)
+            return path.wrong(kind, duty, statement)
+        return path
+
+    def _started(self, statement: Communicate, path: _Path, handle: str) -> _Path:
+        count = self.counts.get(handle)
+        if count is None or statement.thread_id is None:
+            return path
+        values = self.facts.values(path.knowledge, statement.thread_id.tree)
+        if values.only is not None:
+            beyond = [v for v in values.only if not isinstance(v, str) and not 0 <= v < count]
+            wrong = bool(beyond)
+        else:
+            wrong = values.high != float("inf") and values.high >= count
+            wrong = wrong or values.low >= count
+        return path.wrong("thread", Duty("thread", handle), statement) if wrong else path

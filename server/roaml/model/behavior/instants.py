@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can happen in a system while its clock stands still, and what comes only when time passes (spec/05 §7).
+
+During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
+So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from roaml.model.behavior.explore import Event, Step
+from roaml.model.behavior.summary import START, Needs, Promise
+from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
+
+_PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
+"""What a client receives, and the duty of the server that it comes from."""
+_KINDS = {
+    "message": ("subscriber",),
+    "request": ("service-server",),
+    "response": ("service-client",),
+    "goal": ("action-server",),
+    "goal-response": ("action-client",),
+    "feedback": ("action-client",),
+    "result": ("action-client",),
+}
+_SENDERS = {"message": "publisher", "request": "service-client", "goal": "action-client", "feedback": "action-server"}
+
+_Fact = tuple[int, Event]
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """Why an event takes time.
+
+    Attributes:
+        automaton: who waits for it.
+        event: what is waited for.
+        promise: for an answer, the one that does not come at once, and `server`, who gives it.
+        next: what that waits for in turn; None for a timer.
+    """
+
+    automaton: Automaton
+    event: Event
+    server: Endpoint | None = None
+    promise: Promise | None = None
+    next: Delay | None = None
+
+
+@dataclass(eq=False)
+class _Solver:
+    """The least solution of a system of facts "this event comes to this automaton", found by iteration."""
+
+    system: System
+    holds: Callable[[_Solver, int, Event], bool]
+    facts: dict[_Fact, bool] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.index = {id(automaton): n for n, automaton in enumerate(self.system.automata)}
+
+    def read(self, number: int, event: Event) -> bool:
+        return self.facts.setdefault((number, event), False)
+
+    def solve(self, number: int, event: Event) -> bool:
+        self.read(number, event)
+        changed = True
+        while changed:
+            before = len(self.facts)
+            changed = False
+            for fact, known in list(self.facts.items()):
+                if not known and self.holds(self, *fact):
+                    self.facts[fact] = changed = True
+            changed = changed or len(self.facts) > before
+        return self.facts[number, event]
+
+    def number(self, automaton: Automaton) -> int:
+        return self.index[id(automaton)]
+
+    # -------------------------------------------------------------- who sends
+
+    def senders(self, automaton: Automaton, event: Event) -> Iterator[tuple[Automaton, Event]]:
+        """Who may send what comes to `automaton` as `event`, and as what."""
+        if event.part == "event":
+            known = self.system.events.get(event.name)
+            for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
+                yield sender, event
+            return
+        if event.part in ("thread-start", "thread-free"):
+            yield automaton, event
+            return
+        channel = channel_of(self.system, automaton, event)
+        wanted = _SENDERS.get(event.part)
+        for endpoint in channel.endpoints if channel else ():
+            if endpoint.use.kind == wanted:
+                yield endpoint.automaton, Event(event.part, endpoint.use.handle)
+
+    def causes(self, automaton: Automaton, sent: Event) -> Iterator[Event]:
+        """The events on which an automaton sends something."""
+        for chart in automaton.outline.charts:
+            for cause, event in chart.reactions:
+                if event == sent:
+                    yield cause
+
+
+def channel_of(system: System, automaton: Automaton, event: Event) -> Channel | None:
+    """The topic, service or action that an event of an automaton belongs to."""
+    for use in automaton.outline.interfaces:
+        if use.handle == event.name and use.kind in _KINDS.get(event.part, ()):
+            return system.channel(automaton, use)
+    return None
+
+
+# ------------------------------------------------------- without time passing
+
+
+@dataclass(eq=False)
+class Instants:
+    """What can happen after `plugin` has been ticked or halted, without any time passing."""
+
+    system: System
+    plugin: Automaton
+
+    def __post_init__(self) -> None:
+        self.solver = _Solver(self.system, self._holds)
+        self.own = self.solver.number(self.plugin)
+        self.below = {id(automaton) for automaton in _below(self.system, self.plugin)}
+
+    def comes(self, event: Event) -> bool:
+        """Whether an event that the plugin waits for can come."""
+        return self.solver.solve(self.own, event)
+
+    def possible(self, step: Step) -> bool:
+        """Whether the plugin can take a step. Some servers never reject a goal."""
+        if step.event is None or step.event.part in ("bt-tick", "bt-halt"):
+            return True
+        if step.event.part == "goal-response":
+            server = server_of(self.system, self.plugin, step.event)
+            answer = ("goal-accepted", "goal-rejected")[step.choice]
+            if server is not None and answer not in server.use.sends:
+                return False
+        return self.comes(step.event)
+
+    def _holds(self, solver: _Solver, number: int, event: Event) -> bool:
+        automaton = self.system.automata[number]
+        match event.part:
+            case "child-status" | "child-halted":
+                return True
+            case "bt-tick" | "bt-halt":
+                return id(automaton) in self.below
+            case "response" | "goal-response" | "result":
+                server = server_of(self.system, automaton, event)
+                return server is None or not any(self._takes_time(server, p) for p in self._kept(server, event))
+        if event == START or event.part == "tick" or is_clock(self.system, automaton, event):
+            return False
+        for sender, sent in solver.senders(automaton, event):
+            for cause in solver.causes(sender, sent):
+                if sender is self.plugin or solver.read(solver.number(sender), cause):
+                    return True
+        return False
+
+    def _kept(self, server: Endpoint, event: Event) -> Iterator[Promise]:
+        """The promises that the plugin may meet: an only client does not find a server busy with its own goal."""
+        channel = self.system.channel(server.automaton, server.use)
+        alone = channel is not None and len(channel.users) == 1
+        return (promise for promise in promises(server, event) if not (alone and promise.busy))
+
+    def _takes_time(self, server: Endpoint, promise: Promise) -> bool:
+        number = self.solver.number(server.automaton)
+        return not any(all(self.solver.read(number, event) for event in needs) for needs in promise.needs)
+
+    def delay(self, event: Event) -> Delay:
+        """Why an event does not come."""
+        self.comes(event)
+        return self._delay(self.plugin, event, frozenset())
+
+    def _delay(self, automaton: Automaton, event: Event, seen: frozenset[_Fact]) -> Delay:
+        fact = (self.solver.number(automaton), event)
+        if fact in seen:
+            return Delay(automaton, event)
+        seen |= {fact}
+        if event.part in _PROMISED:
+            server = server_of(self.system, automaton, event)
+            for promise in self._kept(server, event) if server else ():
+                if server and self._takes_time(server, promise):
+                    awaited = self._first(server.automaton, promise.needs)
+                    return Delay(automaton, event, server, promise, self._delay(server.automaton, awaited, seen))
+        if event.part != "tick" and not is_clock(self.system, automaton, event):
+            for sender, sent in self.solver.senders(automaton, event):
+                for cause in sorted(self.solver.causes(sender, sent)):
+                    return Delay(automaton, event, next=self._delay(sender, cause, seen))
+        return Delay(automaton, event)
+
+    def _first(self, automaton: Automaton, needs: Needs) -> Event:
+        """The first event that does not come, of the alternative that needs least."""
+        number = self.solver.number(automaton)
+        least = min(needs, key=lambda events: (len(events), sorted(events)))
+        return next(event for event in sorted(least) if not self.solver.read(number, event))
+
+
+def promises(server: Endpoint, event: Event) -> Iterator[Promise]:
+    """The answers of a server that a client receives as `event` and that do not come at once."""
+    for chart in server.automaton.outline.charts:
+        for promise in chart.promises:
+            if promise.duty == (_PROMISED[event.part], server.use.handle):
+                yield promise
+
+
+def server_of(system: System, automaton: Automaton, event: Event) -> Endpoint | None:
+    channel = channel_of(system, automaton, event)
+    return channel.sources[0] if channel and channel.sources else None
+
+
+def is_clock(system: System, automaton: Automaton, event: Event) -> bool:
+    if event.part != "message":
+        return False
+    uses = (use for use in automaton.outline.interfaces if use.kind == "subscriber" and use.handle == event.name)
+    return any(sanitise(automaton.interface_name(use) or "") == CLOCK_TOPIC for use in uses)
+
+
+def _below(system: System, plugin: Automaton) -> Iterator[Automaton]:
+    """The automata of the nodes below a node."""
+    waiting = list(plugin.instance.children) if plugin.instance else []
+    while waiting:
+        automaton = system.by_instance.get(waiting.pop())
+        if automaton is not None and automaton.instance is not None:
+            yield automaton
+            waiting += automaton.instance.children
+
+
+# -------------------------------------------------- while a machine stands still
+
+
+def comes_again(system: System, receiver: Automaton, chart: int, event: Event, sent: frozenset[Event]) -> bool:
+    """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
+    `sent` since. Time may pass meanwhile (spec/05 §7).
+
+    Args:
+        chart: its index in the outline; one of several copies of a thread does not hinder the others.
+    """
+    copies = [1, *(thread.count for thread in receiver.outline.threads)]
+    frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
+
+    def sends(solver: _Solver, automaton: Automaton, what: Event) -> Iterator[Event]:
+        for each in automaton.outline.charts:
+            if automaton is not receiver or each is not frozen:
+                yield from (cause for cause, event in each.reactions if event == what)
+
+    def holds(solver: _Solver, number: int, awaited: Event) -> bool:
+        automaton = system.automata[number]
+        if awaited == START or awaited.part in ("tick", "bt-tick", "bt-halt", "child-status", "child-halted"):
+            return True
+        if is_clock(system, automaton, awaited):
+            return True
+        if awaited.part in _PROMISED:
+            server = server_of(system, automaton, awaited)
+            if server is None:
+                return False
+            answers = [(server.automaton, Event(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
+        else:
+            answers = list(solver.senders(automaton, awaited))
+        for sender, what in answers:
+            if sender is receiver and what in sent:
+                return True
+            if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, what)):
+                return True
+        return False
+
+    solver = _Solver(system, holds)
+    if is_clock(system, receiver, event) or (event.part == "event" and event in sent):
+        return True
+    senders = list(solver.senders(receiver, event))
+    if any(sender is receiver and what in sent for sender, what in senders):
+        return True
+    # Each copy of a thread is a sender of its own.
+    several = len(senders) > 1 or (event.part == "thread-free" and max(copies[1:], default=1) > 1)
+    for sender, what in senders:
+        number = solver.number(sender)
+        if several and any(solver.solve(number, cause) for cause in sends(solver, sender, what)):
+            return True
+        for each in sender.outline.charts:
+            needs = dict(each.repeats).get(what, frozenset()) if sender is not receiver or each is not frozen else ()
+            if any(all(solver.solve(number, need) for need in alternative) for alternative in needs):
+                return True
+    return False
+
+
+_ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}

@@ -1,0 +1,404 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known about values on a path: which conditions have held, and which constants have been assigned.
+
+- A `Knowledge` is a conjunction, one `Domain` for each term (`level`, `_res.success`, `a + b`, `v.length`); what no
+  domain speaks of may have any value. It is immutable.
+- It never excludes a value that is possible: where something is not understood, nothing is learned.
+- Two terms that are compared with each other have a domain as well: a subset of `<`, `=`, `>`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeAlias
+
+from roaml.expr.format import format_expr
+from roaml.expr.infer import constant
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import (
+    Binary,
+    Boolean,
+    Call,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Member,
+    Name,
+    String,
+    Unary,
+    is_draw,
+    walk,
+)
+
+Constant: TypeAlias = bool | int | float | str
+
+MOST_WAYS = 16
+"""Into how many conjunctions a condition is taken apart; behind that nothing is learned from it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Domain:
+    """The values that a term may have.
+
+    Attributes:
+        only: all of them, if they are finitely many.
+        excluded: values that it does not have.
+        low, high: bounds of numbers; `low_open` and `high_open` tell that the bound itself is excluded.
+    """
+
+    only: frozenset[Constant] | None = None
+    excluded: frozenset[Constant] = frozenset()
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+
+    @property
+    def value(self) -> Constant | None:
+        """The only value, if there is just one."""
+        return next(iter(self.only)) if self.only is not None and len(self.only) == 1 else None
+
+    def admits(self, value: Constant) -> bool:
+        if value in self.excluded or (self.only is not None and value not in self.only):
+            return False
+        if isinstance(value, str):
+            return True
+        above = value > self.low or (value == self.low and not self.low_open)
+        below = value < self.high or (value == self.high and not self.high_open)
+        return above and below
+
+    def narrowed(self, whole: bool) -> Domain | None:
+        """In its simplest form; None if nothing is left. `whole` tells that the values are integers."""
+        if self.only is not None:
+            only = frozenset(value for value in self.only if self.admits(value))
+            return Domain(only) if only else None
+        low, high, low_open, high_open = self.low, self.high, self.low_open, self.high_open
+        if whole:
+            if math.isfinite(low):
+                low, low_open = math.floor(low) + 1 if low_open else math.ceil(low), False
+                while low in self.excluded:
+                    low += 1
+            if math.isfinite(high):
+                high, high_open = math.ceil(high) - 1 if high_open else math.floor(high), False
+                while high in self.excluded:
+                    high -= 1
+        if low > high or (low == high and (low_open or high_open or low in self.excluded)):
+            return None
+        if low == high:
+            return Domain(frozenset((low,)))
+        excluded = frozenset(e for e in self.excluded if isinstance(e, str) or low <= e <= high)
+        return Domain(None, excluded, low, high, low_open, high_open)
+
+
+TRUTH: Domain = Domain(frozenset((True, False)))
+_RELATIONS = Domain(frozenset("<=>"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """`roots` are the variables that the term is made of."""
+
+    term: str
+    roots: frozenset[str]
+    domain: Domain
+
+
+@dataclass(frozen=True, slots=True)
+class Knowledge:
+    entries: tuple[_Entry, ...] = ()
+    """Sorted by term."""
+
+    def of(self, term: str) -> Domain | None:
+        return next((entry.domain for entry in self.entries if entry.term == term), None)
+
+    def without(self, variable: str) -> Knowledge:
+        """Without the terms in which there is a variable."""
+        kept = tuple(entry for entry in self.entries if variable not in entry.roots)
+        return self if len(kept) == len(self.entries) else Knowledge(kept)
+
+    def within(self, variables: frozenset[str]) -> Knowledge:
+        """Only the terms all whose variables are among these."""
+        kept = tuple(entry for entry in self.entries if entry.roots <= variables)
+        return self if len(kept) == len(self.entries) else Knowledge(kept)
+
+    def enumerates(self, before: Knowledge) -> bool:
+        """Whether some term has been compared for equality with several constants since `before`, and is none of them:
+        as it is with the values of an enumeration when none is left."""
+        return any(
+            entry.domain.only is None and len(entry.domain.excluded) > 1 and entry not in before.entries
+            for entry in self.entries
+        )
+
+    def _with(self, term: str, roots: frozenset[str], domain: Domain) -> Knowledge:
+        others = [entry for entry in self.entries if entry.term != term]
+        return Knowledge(tuple(sorted((*others, _Entry(term, roots, domain)), key=lambda entry: entry.term)))
+
+
+NOTHING = Knowledge()
+
+
+class _Term(NamedTuple):
+    """`text` is None for an expression whose value may differ each time it is read, or that cannot be read."""
+
+    text: str | None
+    roots: frozenset[str]
+    constant: Constant | None
+    followed: bool
+    expr: Expr
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What holds for the variables of a chart on every path.
+
+    Attributes:
+        whole: variables whose values are integers.
+        logical: variables that are true or false.
+        followed: variables of which something is to be known; None for all.
+        counted: variables to which sums and remainders are followed.
+        constants: names of values, such as `SUCCESS`.
+    """
+
+    whole: frozenset[str] = frozenset()
+    logical: frozenset[str] = frozenset()
+    followed: frozenset[str] | None = None
+    counted: frozenset[str] = frozenset()
+    constants: Mapping[str, Constant] = field(default_factory=dict)
+    _terms: dict[int, _Term] = field(default_factory=dict, repr=False, compare=False)
+
+    def term(self, expr: Expr) -> _Term:
+        """What an expression is called here; computed once for each (the expressions outlive this)."""
+        known = self._terms.get(id(expr))
+        if known is None:
+            if isinstance(expr, Boolean | String):
+                value: Constant | None = expr.value
+            elif isinstance(expr, Name) and expr.name in self.constants:
+                value = self.constants[expr.name]
+            else:
+                value = constant(expr)
+            roots = _roots(expr)
+            followed = self.followed is None or roots <= self.followed
+            known = self._terms[id(expr)] = _Term(_text(expr), roots, value, followed, expr)
+        return known
+
+    # ------------------------------------------------------------ conditions
+
+    def assume(self, knowledge: Knowledge, condition: Expr, holds: bool = True) -> tuple[Knowledge, ...]:
+        """What is known where `condition` holds, or does not: one of several conjunctions, none if that cannot be."""
+        ways = tuple(dict.fromkeys(self._assume(knowledge, condition, holds)))
+        return ways if len(ways) <= MOST_WAYS else (knowledge,)
+
+    def _assume(self, knowledge: Knowledge, condition: Expr, holds: bool) -> Iterator[Knowledge]:
+        match condition:
+            case Boolean():
+                if condition.value == holds:
+                    yield knowledge
+            case Unary(operator=UnaryOperator.NOT):
+                yield from self.assume(knowledge, condition.operand, not holds)
+            case Binary(operator=Operator.AND | Operator.OR):
+                both = (condition.operator is Operator.AND) == holds
+                for first in self.assume(knowledge, condition.left, holds):
+                    yield from self.assume(first, condition.right, holds) if both else (first,)
+                if not both:
+                    for first in self.assume(knowledge, condition.left, not holds):
+                        yield from self.assume(first, condition.right, holds)
+            case Conditional():
+                for part, chosen in ((condition.then, True), (condition.otherwise, False)):
+                    for tested in self.assume(knowledge, condition.test, chosen):
+                        yield from self.assume(tested, part, holds)
+            case Binary() if condition.operator.kind in ("order", "equality"):
+                yield from self._compare(knowledge, condition, holds)
+            case _:
+                yield from self._narrow(knowledge, condition, TRUTH, Domain(frozenset((holds,))))
+
+    def _compare(self, knowledge: Knowledge, condition: Binary, holds: bool) -> Iterator[Knowledge]:
+        left, right, relation = condition.left, condition.right, _relation(condition.operator, holds)
+        if self._is_logical(left) and self._is_logical(right) and condition.operator.kind == "equality":
+            for value in (True, False):
+                for first in self.assume(knowledge, left, value):
+                    yield from self.assume(first, right, value if "=" in relation else not value)
+            return
+        one, other = self.value(knowledge, left), self.value(knowledge, right)
+        if one is not None and other is not None:
+            if _stands(one, other) & relation:
+                yield knowledge
+        elif other is not None:
+            yield from self._bound(knowledge, left, relation, other)
+        elif one is not None:
+            yield from self._bound(knowledge, right, frozenset(_MIRROR[r] for r in relation), one)
+        else:
+            yield from self._relate(knowledge, left, right, relation)
+
+    def _relate(self, knowledge: Knowledge, left: Expr, right: Expr, relation: frozenset[str]) -> Iterator[Knowledge]:
+        (one, roots, _, followed, _), (other, more, _, both, _) = self.term(left), self.term(right)
+        if one is None or other is None or not (followed and both):
+            yield knowledge
+            return
+        if one == other:
+            if "=" in relation:
+                yield knowledge
+            return
+        if one > other:
+            one, other, relation = other, one, frozenset(_MIRROR[r] for r in relation)
+        yield from self._meet(knowledge, f"{one} ? {other}", roots | more, _RELATIONS, Domain(relation))
+
+    def _bound(
+        self, knowledge: Knowledge, term: Expr, relation: frozenset[str], value: Constant
+    ) -> Iterator[Knowledge]:
+        if isinstance(value, bool):
+            wanted = Domain(frozenset((value if "=" in relation else not value,)))
+        elif isinstance(value, str):
+            only = frozenset((value,))
+            wanted = Domain(only) if "=" in relation else Domain(excluded=only)
+        elif relation == {"<", ">"}:
+            wanted = Domain(excluded=frozenset((value,)))
+        else:
+            wanted = Domain(
+                low=-math.inf if "<" in relation else value,
+                high=math.inf if ">" in relation else value,
+                low_open="=" not in relation and "<" not in relation,
+                high_open="=" not in relation and ">" not in relation,
+            )
+        yield from self._narrow(knowledge, term, Domain(), wanted)
+
+    def _narrow(self, knowledge: Knowledge, expr: Expr, before: Domain, wanted: Domain) -> Iterator[Knowledge]:
+        term = self.term(expr)
+        if term.text is None or not term.followed:
+            yield knowledge
+        else:
+            yield from self._meet(knowledge, term.text, term.roots, before, wanted)
+
+    def _meet(
+        self, knowledge: Knowledge, term: str, roots: frozenset[str], before: Domain, wanted: Domain
+    ) -> Iterator[Knowledge]:
+        known = knowledge.of(term) or before
+        whole = roots <= self.whole and "/" not in term and "Math." not in term
+        met = _both(known, wanted).narrowed(whole)
+        if met is not None:
+            yield knowledge if met == known and knowledge.of(term) else knowledge._with(term, roots, met)
+
+    # ---------------------------------------------------------------- values
+
+    def value(self, knowledge: Knowledge, expr: Expr) -> Constant | None:
+        """The value of an expression, if it is certain."""
+        term = self.term(expr)
+        if term.constant is not None or term.text is None:
+            return term.constant
+        domain = knowledge.of(term.text)
+        return domain.value if domain is not None else None
+
+    def values(self, knowledge: Knowledge, expr: Expr, calculates: bool = True) -> Domain:
+        """The values that an expression may have. `calculates` tells whether sums and remainders are looked into."""
+        term = self.term(expr)
+        if term.constant is not None:
+            return Domain(frozenset((term.constant,)))
+        known = knowledge.of(term.text) if term.text is not None else None
+        if known is not None or not calculates:
+            return known or Domain()
+        match expr:
+            case Binary(operator=Operator.REMAINDER) if (divisor := constant(expr.right)) and divisor > 0:
+                return Domain(low=0, high=divisor - 1)
+            case Binary(operator=Operator.ADD | Operator.SUBTRACT) if (step := constant(expr.right)) is not None:
+                by = step if expr.operator is Operator.ADD else -step
+                return _shifted(self.values(knowledge, expr.left), by)
+        return Domain()
+
+    def assign(self, knowledge: Knowledge, location: Expr, value: Expr | None) -> tuple[Knowledge, ...]:
+        """What is known after an assignment. A condition that is stored splits what is known in two."""
+        root = next(iter(self.term(location).roots), "")
+        if value is None or not isinstance(location, Name):
+            return (knowledge.without(root),)
+        if location.name in self.logical or isinstance(value, Boolean):
+            found = []
+            for truth in (True, False):
+                for known in self.assume(knowledge, value, truth):
+                    after = known.without(root)
+                    found.append(after._with(root, frozenset((root,)), Domain(frozenset((truth,)))))
+            return tuple(dict.fromkeys(found))
+        domain = self.values(knowledge, value, root in self.counted)
+        after = knowledge.without(root)
+        return (after if domain == Domain() else after._with(root, frozenset((root,)), domain),)
+
+    def know(self, knowledge: Knowledge, term: str, domain: Domain) -> Knowledge:
+        """With a domain for a variable or for `_event` data."""
+        return knowledge._with(term, frozenset((term.partition(".")[0],)), domain)
+
+    def _is_logical(self, expr: Expr) -> bool:
+        match expr:
+            case Boolean():
+                return True
+            case Name():
+                return expr.name in self.logical
+            case Unary():
+                return expr.operator is UnaryOperator.NOT
+            case Binary():
+                return expr.operator.kind not in ("arithmetic",)
+        return False
+
+
+def _text(expr: Expr) -> str | None:
+    if isinstance(expr, Name):
+        return expr.name
+    if any(isinstance(node, ErrorExpr) or is_draw(node) for node in walk(expr)):
+        return None
+    return format_expr(expr)
+
+
+def _roots(expr: Expr) -> frozenset[str]:
+    """The variables in an expression."""
+    if isinstance(expr, Name):
+        return frozenset((expr.name,))
+    skipped = {
+        node.function.object for node in walk(expr) if isinstance(node, Call) and isinstance(node.function, Member)
+    }
+    return frozenset(node.name for node in walk(expr) if isinstance(node, Name) and node not in skipped)
+
+
+_MIRROR = {"<": ">", "=": "=", ">": "<"}
+_HOLDING = {
+    Operator.EQUAL: "=",
+    Operator.NOT_EQUAL: "<>",
+    Operator.LESS: "<",
+    Operator.LESS_EQUAL: "<=",
+    Operator.GREATER: ">",
+    Operator.GREATER_EQUAL: ">=",
+}
+
+
+def _relation(operator: Operator, holds: bool) -> frozenset[str]:
+    """How two values may stand to each other where a comparison holds, or does not."""
+    relation = frozenset(_HOLDING[operator])
+    return relation if holds else frozenset("<=>") - relation
+
+
+def _stands(first: Constant, second: Constant) -> frozenset[str]:
+    if isinstance(first, str) or isinstance(second, str):
+        return frozenset("=" if first == second else "<>")
+    return frozenset("=" if first == second else "<" if first < second else ">")
+
+
+def _both(one: Domain, other: Domain) -> Domain:
+    if one.only is not None and other.only is not None:
+        only: frozenset[Constant] | None = one.only & other.only
+    else:
+        only = one.only if one.only is not None else other.only
+    low, low_open = max((one.low, one.low_open), (other.low, other.low_open))
+    high, high_closed = min((one.high, not one.high_open), (other.high, not other.high_open))
+    return Domain(only, one.excluded | other.excluded, low, high, low_open, not high_closed)
+
+
+def _shifted(domain: Domain, by: float) -> Domain:
+    if domain.only is not None:
+        return Domain(frozenset(v if isinstance(v, str) else v + by for v in domain.only))
+    return replace(domain, low=domain.low + by, high=domain.high + by, excluded=frozenset())
+
+
+def variables_in(expressions: Iterable[Expr]) -> frozenset[str]:
+    """The variables that some expressions read."""
+    return frozenset(name for expr in expressions for name in _roots(expr))
+
+
+def is_literal(expr: Expr) -> bool:
+    return isinstance(expr, Boolean | String) or constant(expr) is not None

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What other machines see of a graph: what each answer waits for, and what makes a machine send something.
+
+It holds names of states and handles, but no places, so that most changes of a file leave it as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from roaml.model.behavior.explore import NOWHERE, Behavior, Duty, Event, Step, explore
+from roaml.model.machine import Chart, Machine
+
+Needs: TypeAlias = frozenset[frozenset[Event]]
+"""Alternatives: each is a set of events that suffice together. No alternative: it never comes."""
+
+AT_ONCE: frozenset[Event] = frozenset()
+START = Event("start", "")
+"""What comes before the first event of a machine."""
+
+MOST_ALTERNATIVES = 6
+MOST_EVENTS = 4
+REPEATED = ("message", "event", "feedback", "thread-start", "thread-free")
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """An answer of a server that does not come at once.
+
+    Attributes:
+        duty: "request", "goal" or "result".
+        state: where the machine waits; `scope` tells the threads of a file apart.
+        taken: the request has been taken; else the machine does not even take it there.
+        busy: the result of an earlier goal is still owed there.
+        needs: what has to happen before the answer is sent, or before the request is taken.
+    """
+
+    duty: Duty
+    state: str
+    scope: str
+    taken: bool
+    busy: bool
+    needs: Needs
+
+
+@dataclass(frozen=True, slots=True)
+class ChartOutline:
+    """
+    Attributes:
+        promises: the answers that do not come at once, for each configuration in which they are awaited.
+        reactions: pairs: on the first event, in some state, the second one is sent.
+        repeats: for each event that is sent, what has to happen before it is sent again.
+    """
+
+    promises: tuple[Promise, ...]
+    reactions: frozenset[tuple[Event, Event]]
+    repeats: tuple[tuple[Event, Needs], ...]
+
+
+UNKNOWN = ChartOutline((), frozenset(), ())
+
+
+def summarised(machine: Machine, chart: Chart) -> ChartOutline:
+    """The outline of a chart, kept with it; it says nothing where there is no graph."""
+    known: dict[str, ChartOutline] = chart.__dict__.setdefault("summary", {})
+    if "outline" not in known:
+        behavior = explore(machine, chart)
+        known["outline"] = UNKNOWN if behavior is None else summarise(behavior)
+    return known["outline"]
+
+
+def summarise(behavior: Behavior) -> ChartOutline:
+    return _Summary(behavior).outline()
+
+
+@dataclass(frozen=True, slots=True)
+class _Edge:
+    """Steps that are alike here. `event` is a bit, 0 for none; `taken` and `sent` are what is received and sent."""
+
+    source: int
+    target: int
+    event: int
+    taken: Event | None
+    sent: frozenset[Event]
+
+
+class _Summary:
+    """Sets of events are numbers here, with one bit for each event."""
+
+    def __init__(self, behavior: Behavior) -> None:
+        self.behavior = behavior
+        self.events: dict[Event, int] = {}
+        self.edges = list(dict.fromkeys(self._edge(step) for step in behavior.steps))
+        self.names = {bit: event for event, bit in self.events.items()}
+
+    def _edge(self, step: Step) -> _Edge:
+        bit = 0 if step.event is None else self.events.setdefault(step.event, 1 << len(self.events))
+        return _Edge(step.source, step.target, bit, step.event, frozenset(step.sent))
+
+    def outline(self) -> ChartOutline:
+        promises = dict.fromkeys(
+            promise for duty in self._duties() for promise in self._promises(duty) if AT_ONCE not in promise.needs
+        )
+        return ChartOutline(tuple(promises), self._reactions(), tuple(self._repeats()))
+
+    def _duties(self) -> list[Duty]:
+        """What the machine answers as a server."""
+        found: dict[Duty, None] = {}
+        for event in self.events:
+            if event.part in ("request", "goal"):
+                found[Duty(event.part, event.name)] = None
+            if event.part in ("goal", "thread-start"):
+                found[Duty("result", event.name)] = None
+        return list(found)
+
+    def _promises(self, duty: Duty) -> Iterator[Promise]:
+        """Where an answer is owed, and where a request is not even taken."""
+        taking, configurations = Event(duty.kind, duty.handle), self.behavior.configurations
+        owing = [c.owes(duty) for c in configurations]
+        on_the_way = [edge for edge in self.edges if owing[edge.source]]
+        answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
+        needs = self._needs(on_the_way, answers)
+        for number, alternatives in needs.items():
+            if configurations[number].phase(duty.kind, duty.handle) != "several":
+                yield self._promise(duty, number, True, alternatives)
+        if duty.kind != "result":
+            takes = [replace(edge, event=0) for edge in self.edges if edge.taken == taking]
+            idle = [edge for edge in self.edges if not owing[edge.source] and not owing[edge.target]]
+            for number, alternatives in self._needs([*idle, *takes], takes).items():
+                yield self._promise(duty, number, False, alternatives)
+
+    def _promise(self, duty: Duty, number: int, taken: bool, alternatives: tuple[int, ...]) -> Promise:
+        configuration = self.behavior.configurations[number]
+        busy = not taken and bool(configuration.phase("result", duty.handle))
+        scope = self.behavior.chart.scope
+        return Promise(duty, configuration.state, scope, taken, busy, frozenset(map(self._set, alternatives)))
+
+    def _set(self, mask: int) -> frozenset[Event]:
+        return frozenset(event for bit, event in self.names.items() if mask & bit)
+
+    def _repeats(self) -> Iterator[tuple[Event, Needs]]:
+        at_start = [event for event in self.behavior.at_start if event.part in REPEATED]
+        twice = {e for step in self.behavior.steps for e in step.sent if step.sent.count(e) > 1}
+        for event in dict.fromkeys([*(e for edge in self.edges for e in sorted(edge.sent)), *at_start]):
+            if event.part not in REPEATED:
+                continue
+            sending = [edge for edge in self.edges if event in edge.sent]
+            needs = self._needs(self.edges, sending)
+            after = {edge.target for edge in sending}
+            if event in at_start:
+                after.update(range(self.behavior.starts))
+            found = {mask for number in after for mask in needs.get(number, ())} | ({0} if event in twice else set())
+            yield event, frozenset(map(self._set, _least(found)))
+
+    def _reactions(self) -> frozenset[tuple[Event, Event]]:
+        before: list[set[Event]] = [set() for _ in self.behavior.configurations]
+        for start in range(self.behavior.starts):
+            before[start].add(START)
+        changed = True
+        while changed:
+            changed = False
+            for edge in self.edges:
+                causes = before[edge.source] if edge.taken is None else {edge.taken}
+                if not causes <= before[edge.target]:
+                    before[edge.target] |= causes
+                    changed = True
+        found = {(START, event) for event in self.behavior.at_start}
+        for edge in self.edges:
+            causes = before[edge.source] if edge.taken is None else {edge.taken}
+            found |= {(cause, event) for cause in causes for event in edge.sent}
+        return frozenset(found)
+
+    def _needs(self, edges: Iterable[_Edge], reaching: Iterable[_Edge]) -> dict[int, tuple[int, ...]]:
+        """For each configuration from which `edges` lead to one of those that are `reaching`, the least sets of events
+        by which that happens."""
+        goals = set(reaching)
+        incoming: dict[int, list[_Edge]] = {}
+        found: dict[int, tuple[int, ...]] = {}
+        waiting: dict[int, None] = {}
+        for edge in edges:
+            if edge in goals:
+                found[edge.source] = _least((*found.get(edge.source, ()), edge.event))
+                waiting[edge.source] = None
+            elif edge.source != edge.target:
+                incoming.setdefault(edge.target, []).append(edge)
+        while waiting:
+            target = next(iter(waiting))
+            del waiting[target]
+            for edge in incoming.get(target, ()):
+                known = found.get(edge.source, ())
+                if known == (0,):
+                    continue
+                least = _least((*known, *(edge.event | mask for mask in found[target])))
+                if least != known:
+                    found[edge.source] = least
+                    waiting[edge.source] = None
+        return found
+
+
+def _least(masks: Iterable[int]) -> tuple[int, ...]:
+    """Without those that contain another one; of many, the smallest."""
+    found: list[int] = []
+    for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
+        if mask.bit_count() > MOST_EVENTS:
+            break
+        if not any(known & mask == known for known in found):
+            found.append(mask)
+    return tuple(found[:MOST_ALTERNATIVES])
