@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib.resources
 
 from roaml.rules import (
+    answer_needs_time,
     blackboard_never_read,
     blackboard_never_written,
     blackboard_read,
@@ -90,9 +91,11 @@ from roaml.rules import (
     port_value,
     probability_sum,
     removed_bt_event,
+    repeated_answer,
     repeated_element,
     repeated_interface,
     repeated_parameter,
+    running_condition,
     schema_violation,
     several_servers,
     shadowed_transition,
@@ -111,7 +114,9 @@ from roaml.rules import (
     tree_structure,
     tree_too_large,
     type_mismatch,
+    unanswered_goal,
     unanswered_halt,
+    unanswered_request,
     unanswered_tick,
     undeclared_handle,
     undeclared_port,
@@ -132,6 +137,7 @@ from roaml.rules import (
     unknown_property_variable,
     unknown_remap,
     unknown_ros_type,
+    unknown_thread,
     unknown_type,
     unreachable_state,
     unset_field,
@@ -146,11 +152,13 @@ from roaml.rules import (
     unused_suppression,
     unused_variable,
     wrong_file_kind,
+    wrong_goal_id,
     xml_syntax,
 )
 from roaml.rules.rule import Rule
 
 RULES: tuple[Rule, ...] = (
+    answer_needs_time.RULE,
     blackboard_never_read.RULE,
     blackboard_never_written.RULE,
     blackboard_read.RULE,
@@ -235,9 +243,11 @@ RULES: tuple[Rule, ...] = (
     port_value.RULE,
     probability_sum.RULE,
     removed_bt_event.RULE,
+    repeated_answer.RULE,
     repeated_element.RULE,
     repeated_interface.RULE,
     repeated_parameter.RULE,
+    running_condition.RULE,
     schema_violation.RULE,
     several_servers.RULE,
     shadowed_transition.RULE,
@@ -256,7 +266,9 @@ RULES: tuple[Rule, ...] = (
     tree_structure.RULE,
     tree_too_large.RULE,
     type_mismatch.RULE,
+    unanswered_goal.RULE,
     unanswered_halt.RULE,
+    unanswered_request.RULE,
     unanswered_tick.RULE,
     undeclared_handle.RULE,
     undeclared_port.RULE,
@@ -277,6 +289,7 @@ RULES: tuple[Rule, ...] = (
     unknown_property_variable.RULE,
     unknown_remap.RULE,
     unknown_ros_type.RULE,
+    unknown_thread.RULE,
     unknown_type.RULE,
     unreachable_state.RULE,
     unset_field.RULE,
@@ -291,6 +304,7 @@ RULES: tuple[Rule, ...] = (
     unused_suppression.RULE,
     unused_variable.RULE,
     wrong_file_kind.RULE,
+    wrong_goal_id.RULE,
     xml_syntax.RULE,
 )
 

@@ -6,7 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Handler, Machine, State
+from roaml.expr.tree import Expr, is_draw, walk
+from roaml.model.behavior.explore import condition_facts
+from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, Facts, Knowledge
+from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.typing import find_handle
@@ -21,10 +24,10 @@ TOPIC = "message"
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for state in chart.states:
-            yield from _check(context, state)
+            yield from _check(context, chart, state)
 
 
-def _check(context: MachineContext, state: State) -> Iterator[Finding]:
+def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
     machine = context.machine
     certain: dict[tuple[str, str, int], Handler] = {}
     for handler in state.handlers:
@@ -42,6 +45,56 @@ def _check(context: MachineContext, state: State) -> Iterator[Finding]:
             )
         elif handler.cond is None and not chooses(handler):
             certain[key] = handler
+    if len(state.handlers) > 1:
+        yield from _same_condition(context, chart, state)
+
+
+def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
+    """Transitions whose conditions never hold where those of the earlier ones do not."""
+    groups: dict[tuple[str, str, int], list[Handler]] = {}
+    for handler in state.handlers:
+        key = trigger(context.machine, handler)
+        if key is not None and handler.effective and handler.cond is not None and not chooses(handler):
+            groups.setdefault(key, []).append(handler)
+    for handlers in groups.values():
+        if len(handlers) > 1:
+            yield from _in_order(context, condition_facts(chart), handlers)
+
+
+def _in_order(context: MachineContext, facts: Facts, handlers: list[Handler]) -> Iterator[Finding]:
+    left: tuple[Knowledge, ...] = (NOTHING,)
+    for number, handler in enumerate(handlers):
+        cond = handler.cond
+        if cond is None or cond.broken or any(is_draw(node) for node in walk(cond.tree)):
+            continue
+        if number and not any(facts.assume(known, cond.tree) for known in left):
+            if any(facts.assume(NOTHING, cond.tree)):
+                yield _covered(context, facts, handler, handlers[:number])
+            continue
+        left = tuple(rest for known in left for rest in facts.assume(known, cond.tree, False))
+        if len(left) > MOST_WAYS:
+            return
+
+
+def _covered(context: MachineContext, facts: Facts, handler: Handler, earlier: list[Handler]) -> Finding:
+    assert handler.cond is not None
+    covering = [h for h in earlier if h.cond and not _beside(facts, h.cond.tree, handler.cond.tree)]
+    related = [Related(h.element.name_span, "taken first") for h in (covering or earlier)]
+    what = "without an event" if handler.trigger == "" else "on the same event"
+    if any(h.cond and not _beside(facts, handler.cond.tree, h.cond.tree) for h in covering):
+        why = f"an earlier transition {what} has the same condition"
+    elif covering:
+        why = f"whenever its condition holds, that of an earlier transition {what} holds, too"
+    else:
+        why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
+    drop = remove(context.document, handler.element, "Remove this transition")
+    message = f"this is never taken: {why}; change one of the conditions"
+    return RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
+
+
+def _beside(facts: Facts, one: Expr, other: Expr) -> bool:
+    """Whether `other` may hold where `one` does not."""
+    return any(facts.assume(known, other) for known in facts.assume(NOTHING, one, False))
 
 
 def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:

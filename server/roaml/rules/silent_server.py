@@ -84,12 +84,18 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     ]
     if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
         return
+    lines = response(declaration, interface)
+    edits = tuple(last_in(context.document, place, *lines) for place in places)
+    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
+
+
+def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
+    """The lines that answer a request with 0, or what is like it, in each field."""
+    assert declaration.handle is not None
     types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
     fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
     tag = f'<ros_service_send_response name="{declaration.handle.value}"'
-    lines = (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
-    edits = tuple(last_in(context.document, place, *lines) for place in places)
-    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
+    return (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
 
 
 def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:

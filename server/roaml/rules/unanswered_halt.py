@@ -7,8 +7,21 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import HALT
+from roaml.model.behavior.explore import Behavior, Step
+from roaml.model.machine import State
 from roaml.model.system import Automaton
-from roaml.rules import misspelled, removed_bt_event
+from roaml.rules import misspelled
+from roaml.rules.answers import (
+    behaviors,
+    deaf_states,
+    is_spelled,
+    missed,
+    place,
+    plugins,
+    target_of,
+    with_unknown_elements,
+)
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
@@ -17,35 +30,78 @@ from roaml.xml import Document, Element
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """A plugin whose parent halts it must answer, or the parent waits for ever (spec/01 §11.2)."""
-    found = next(_halted(context), None)
-    if found is None or removed_bt_event.is_used(context.machine):
+    halted = list(_halted(context))
+    if not halted:
         return
-    plugin, parent = found[0].outline.plugin, found[1].outline.name
+    plugin, parent = halted[0][0].outline.plugin, halted[0][1].outline.name
     root, name = context.machine.element, context.machine.name
-    span = name.span if name else root.name_span
-    elements = list(root.walk())
     if not plugin.halted:
-        if not misspelled.among(elements, "bt_halt", HL_SCXML):
+        if not misspelled.among(root.walk(), "bt_halt", HL_SCXML):
             message = f"the plugin takes no halts, but `{parent}` halts it: it has no `<bt_halt>`"
-            yield RULE.at(span, message, *_add_handlers(context, root))
-    elif not plugin.answers_halt and not misspelled.among(elements, "bt_return_halted", HL_SCXML):
-        message = f"the plugin never answers a halt, but `{parent}` halts it: it has no `<bt_return_halted>`"
-        yield RULE.at(span, message, *_answer(context, root))
+            yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
+        return
+    if not is_spelled(context, HALT):
+        return
+    for behavior in behaviors(context):
+        if behavior.chart is context.machine.chart:
+            yield from _missed(context, behavior)
+            yield from _not_taken(context, behavior, [automaton for automaton, _ in halted])
 
 
 def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
     """What the plugin is in the tree, with the parent, if that halts its children."""
-    for automaton in context.automata:
+    for automaton in plugins(context):
         number = automaton.instance.parent if automaton.instance else None
         parent = context.system.by_instance.get(number) if context.system and number is not None else None
         if parent is not None and parent.outline.plugin.halts_children:
             yield automaton, parent
 
 
+def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    for step, certain in missed(behavior, HALT):
+        if not with_unknown_elements(context, step.handler):
+            severity = None if certain else Severity.WARNING
+            message = _message(step, certain)
+            fixes = _answer(context, step)
+            yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+
+
+def _message(step: Step, certain: bool) -> str:
+    if step.ignored:
+        what = "what comes while this condition does not hold is dropped, and the halt is never answered"
+        tag = f"<{step.handler.element.name}>"
+        return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
+    halted = step.event is not None and step.event.part == "bt-halt"
+    where = "a halt that is taken here" if halted else "the halt that is waiting here"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
+    return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_halted>` on each path"
+
+
+def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
+    """States in which the plugin waits and that have no `<bt_halt>`."""
+    told: set[State] = set()
+    for automaton in automata:
+        for state, standing in deaf_states(context, behavior, automaton, HALT):
+            if state not in told and state.id is not None:
+                told.add(state)
+                how = "while it is running " if standing == "running" else ""
+                message = f"a halt that comes {how}in the state `{state.id.value}` is never taken, so that the tree "
+                message += "waits for ever; add a `<bt_halt>`"
+                fixes = _add_handler(context, state)
+                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
+
+
 def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:
     edits = halts(context.document, root, root.elements)
     if edits:
         yield Fix("Add `<bt_halt>` to every state that takes ticks", edits)
+
+
+def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
+    initial = context.machine.chart.initial
+    if initial is not None and state.element.complete:
+        lines = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
+        yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
 
 
 def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
@@ -60,12 +116,12 @@ def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple
     return tuple(edits)
 
 
-def _answer(context: MachineContext, root: Element) -> Iterator[Fix]:
-    """Add a `<bt_return_halted />` to each `<bt_halt>`."""
-    halts = [element for element in root.walk() if element.name == "bt_halt" and element.complete]
-    if halts:
-        edits = tuple(last_in(context.document, halt, "<bt_return_halted />") for halt in halts)
-        yield Fix("Add `<bt_return_halted />`", edits)
+def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:
+    """Add a `<bt_return_halted />` to the handler."""
+    place = step.handler.targets[step.choice].element or step.handler.element
+    sent = {event.part for event in step.sent}
+    if place.complete and step.certain and not step.ignored and not sent & {"bt-halted", "bt-status"}:
+        yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 
-RULE = Rule("unanswered-halt", Severity.ERROR, "A plugin cannot answer a halt that its parent sends.", machine=check)
+RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not taken or not answered on every path.", machine=check)
