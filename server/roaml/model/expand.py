@@ -46,8 +46,8 @@ class TreeFileOutline:
 
     Attributes:
         defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
-        conditions: the plugins that `<TreeNodesModel>` declares as conditions.
         from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+        conditions: the plugins that are conditions in `<TreeNodesModel>`.
     """
 
     path: str
@@ -55,8 +55,8 @@ class TreeFileOutline:
     trees: tuple[TreeOutline, ...]
     defaults: tuple[tuple[str, str, str], ...]
     declared: tuple[tuple[str, str], ...] = ()
-    conditions: frozenset[str] = frozenset()
     from_project: bool = False
+    conditions: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
         tuple(
             (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
         ),
-        frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
+        conditions=frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
     )
 
 

@@ -80,12 +80,13 @@ def _covered(context: MachineContext, facts: Facts, handler: Handler, earlier: l
     assert handler.cond is not None
     covering = [h for h in earlier if h.cond and not _beside(facts, h.cond.tree, handler.cond.tree)]
     related = [Related(h.element.name_span, "taken first") for h in (covering or earlier)]
+    what = "without an event" if handler.trigger == "" else "on the same event"
     if any(h.cond and not _beside(facts, handler.cond.tree, h.cond.tree) for h in covering):
-        why = "an earlier transition on the same event has the same condition"
+        why = f"an earlier transition {what} has the same condition"
     elif covering:
-        why = "whenever its condition holds, that of an earlier transition on the same event holds, too"
+        why = f"whenever its condition holds, that of an earlier transition {what} holds, too"
     else:
-        why = "whenever its condition holds, one of the earlier transitions on the same event is taken"
+        why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
     drop = remove(context.document, handler.element, "Remove this transition")
     message = f"this is never taken: {why}; change one of the conditions"
     return RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
