@@ -19,6 +19,8 @@ EXPECTED = {
     "delivery_robot/main.xml": {"all_delivered": 1.0, "never_empty": 1.0},
     "assembly_robot/main.xml": {"block_placed": 1.0, "never_placed_empty": 1.0, "block_dropped": 0.5},
     "assembly_robot/main_with_bug.xml": {"block_placed": 0.5, "never_placed_empty": 0.5, "block_dropped": 0.5},
+    "case_study/main.xml": {"recovers_or_succeeds": 1.0},
+    "case_study/main_with_bug.xml": {"recovers_or_succeeds": 0.7},
     "grid_world/main.xml": {"arrives": 0.914925},
 }
 
