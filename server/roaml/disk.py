@@ -16,9 +16,6 @@ MEGABYTE = 1024 * 1024
 MAX_BYTES = 32 * MEGABYTE
 """Of a model or interface definition."""
 
-MAX_CONFIGURATION = MEGABYTE
-"""Of a configuration, a baseline's options or a `package.xml`."""
-
 MAX_DATA = 512 * MEGABYTE
 """Of what tools write for tools: a translated model, a baseline, the state of a verification."""
 

@@ -142,7 +142,7 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     assert "it reads bt_1000_response__status" in story
     # Each line has its time and place, and what has moved below it.
     lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
-    number = next(n for n, text in enumerate(lines, 1) if "<bt_tick" in text)
+    number = next(n for n, text in enumerate(lines, 1) if '<bt_tick target="carrying"' in text)
     (first, *_) = [text for text in story.splitlines() if "  Deliver (bt_" in text and "is ticked" in text]
     assert f"plugins/deliver.ascxml:{number}" in first
     assert ".000 s  Deliver (bt_1004) " in first
@@ -248,8 +248,8 @@ def test_resume(command: Command, tmp_path: Path) -> None:
     ("change", "message"),
     [
         (lambda folder: write(folder, coin(0.4)), "another model"),
-        (lambda folder: (folder / "state.json").write_text("{}"), "no state of a verification"),
-        (lambda folder: (folder / "state.json").write_text("nonsense"), "no state of a verification"),
+        (lambda folder: (folder / "state.json").write_text("{}"), "not the state of a verification"),
+        (lambda folder: (folder / "state.json").write_text("nonsense"), "not the state of a verification"),
     ],
 )
 def test_a_state_that_does_not_fit(command: Command, tmp_path: Path, change: Any, message: str) -> None:

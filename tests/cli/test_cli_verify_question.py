@@ -441,4 +441,4 @@ def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "state.json")
     done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
     assert done.status == 2
-    assert "is no state of a verification" in done.err
+    assert "state.json: it is no regular file" in done.err

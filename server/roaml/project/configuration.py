@@ -115,6 +115,9 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
                 if name == CONFIG_FILE and source is not Problem.MISSING:
                     return Settings(), (f"{file}: {source.value}",)
                 continue
+            if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:
+                words = f"the file is too large to be read (up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
+                return Settings(origin=file), (f"{file}: {words}",)
             found = read_configuration(source)
             if name == PROJECT_FILE and found.table is None and not found.findings:
                 continue
