@@ -154,13 +154,14 @@ def test_a_server_that_cannot_come_to_respond(tmp_path: Path) -> None:
     deaf = """free
 <ros_service_server name="s" service_name="/s" type="std_srvs/Empty" />
 <ros_time_rate name="t" rate_hz="0.5" />
-<state id="free"><ros_service_handle_request name="s" target="done" cond="1 == 1" />
-<ros_service_handle_request name="s" target="free"><ros_service_send_response name="s" /></ros_service_handle_request>
-</state>
+<datamodel><data id="n" type="int16" expr="0" /></datamodel>
+<state id="free"><ros_service_handle_request name="s" target="done">
+<if cond="n &gt; 0"><ros_service_send_response name="s" /></if><assign location="n" expr="n + 0" />
+</ros_service_handle_request></state>
 <state id="done"><ros_rate_callback name="t" target="done" /></state>
 """
     found = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
-    assert found[3] == "Deaf stays in `done` and never sends the response of the service `/s` (Deaf.ascxml:7)"
+    assert found[3] == "Deaf stays in `done` and never sends the response of the service `/s` (Deaf.ascxml:8)"
 
 
 def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
