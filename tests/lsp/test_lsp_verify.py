@@ -216,6 +216,7 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
 async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
     robot = tmp_path / "robot"
     shutil.copytree(EXAMPLE.parent / "delivery_robot", robot)
+    (robot / "as2fm.toml").write_text('[verify]\nscheduler = "uniform"\n')
     main, name = robot / "main.xml", "all_delivered"
     async with connect(robot) as client:
         await verify(client, main, [name], {**QUICK, "expectations": {name: "<= 0.5"}})
