@@ -151,7 +151,9 @@ async def test_what_it_can_do() -> None:
         "resolveProvider": True,
     }
     assert capabilities["codeLensProvider"] == {"resolveProvider": True}
-    assert capabilities["executeCommandProvider"] == {"commands": ["as2fm.showFirstError", "as2fm.translateToJani", "as2fm.verify"]}
+    assert capabilities["executeCommandProvider"] == {
+        "commands": ["as2fm.showFirstError", "as2fm.translateToJani", "as2fm.verify"]
+    }
     assert capabilities["workspace"]["workspaceFolders"] == {"supported": True, "changeNotifications": True}
 
 

@@ -13,6 +13,7 @@ from roaml.model.machine import Declaration
 from roaml.model.syntax import PortRead
 from roaml.rules import misspelled
 from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.undeclared_handle import KINDS
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
 
@@ -24,7 +25,7 @@ def check(context: FileContext) -> Iterator[Finding]:
         if not isinstance(violation, MissingAttribute):
             continue
         element, attribute = violation.element, violation.attribute
-        if attribute.name == "name" and attribute.refers:
+        if attribute.name == "name" and set(attribute.refers) & KINDS.keys():
             continue  # undeclared-handle says more
         if not misspelled.attribute(element, attribute.name, violation.type.attributes):
             choices = [choice.value for choice in attribute.simple.choices if not choice.use]

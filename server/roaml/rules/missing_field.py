@@ -29,8 +29,8 @@ def _missing(context: MachineContext, statement: Communicate) -> list[tuple[str,
     """The fields that must be set and are not, with their types."""
     unset = context.typed.unset.get(statement.element, ())
     part = sent_part(context, statement) if unset else None
-    if part is None:
-        return []
+    if part is None or any(field.name is None for field in statement.fields):
+        return []  # a field without a name (missing-attribute) may be the one that is missing
     # What is only misspelled, or set as a whole, is reported as an unknown field.
     names = {field.name.value for field in statement.fields if field.name}
     known = [".".join(path) for path, _ in leaves(part)]

@@ -19,7 +19,7 @@ from random import Random
 from fuzz.checked import LIMITS, problems_of_check
 from fuzz.damage import ANY, PIECES
 from fuzz.strategy import Failure, Strategy
-from roaml.project.settings import find_settings
+from roaml.project.configuration import find_settings
 
 NAMES = ("as2fm.toml", "pyproject.toml", "package.xml", "msg/Level.msg")
 _KEYS = ("roots", "ros-path", "exclude", "select", "ignore", "severity", "warnings-as-errors", "max-cells", "max-parts")
