@@ -63,7 +63,8 @@ def build(source: Path = SOURCE) -> Path:
 def main(source: Path = SOURCE) -> int:
     """
     Returns:
-        The exit status: 0 if the kernel was compiled, 1 if it cannot be compiled here, 2 if the attempt was interrupted.
+        The exit status: 0 if the kernel was compiled, 1 if it cannot be compiled here, 2 if the attempt was
+            interrupted.
     """
     try:
         build(source)
