@@ -17,10 +17,10 @@ from markdown_it import MarkdownIt
 from fixture import split_files
 from roaml.ide.completion import complete
 from roaml.ide.completion.document import document
-from roaml.ide.hints import explain, inlay_hints
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, plain, prose
 from roaml.ide.hover import hover
-from roaml.ide.markdown import code, file, lines, name, names, paragraphs, plain, prose
-from roaml.ide.signature import signature_help
+from roaml.ide.inlay_hints import explain, inlay_hints
+from roaml.ide.signature_help import signature_help
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import Span
