@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from ide_case import analysis_of, path_of
 from ide_models import CORNERS, ROBOT
@@ -63,6 +63,8 @@ anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
 
 
 @given(anything, anything, anything)
+@example("`<i>``<i>`", "[x](y)`<i>`", "")
+@example("[x]`(y)<i>`", "", "")
 def test_pieces(first: str, second: str, third: str) -> None:
     """However they are put together."""
     made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))

@@ -69,12 +69,17 @@ def prose(text: str) -> str:
 def _tame(paragraph: str) -> str:
     """A paragraph of a user. Escapes would be seen in code, so code that needs them is shown as text."""
     parts: list[str] = []
+    text = ""
     done = 0
     for found in _USERS_CODE.finditer(paragraph):
-        is_harmless = "<" not in found[2] and "&" not in found[2]
-        parts += (_without_marks_of_users(paragraph[done : found.start()]), found[0] if is_harmless else found[2])
+        text += paragraph[done : found.start()]
+        if "<" in found[2] or "&" in found[2]:
+            text += found[2]
+        else:
+            parts += (_without_marks_of_users(text), found[0])
+            text = ""
         done = found.end()
-    parts.append(_without_marks_of_users(paragraph[done:]))
+    parts.append(_without_marks_of_users(text + paragraph[done:]))
     return _USERS_BLOCK.sub(r"\\", _without_tags("".join(parts)))
 
 
