@@ -15,6 +15,7 @@ from roaml.model.system import Automaton, System
 from roaml.model.typing import find_handle
 from roaml.rules import misspelled, removed_bt_event
 from roaml.rules.rule import MachineContext
+from roaml.rules.shadowed_transition import has_shadowed
 from roaml.text import Span
 
 SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
@@ -68,16 +69,23 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
     return found
 
 
-def missed(behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
-    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it."""
+def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
+    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it.
+
+    Left out is what another report explains: an element that cannot be read might be the answer, and of two conditions
+    one of which is never decisive (shadowed-transition) one was meant to be another.
+    """
     steps: dict[Handler, list[Step]] = {}
     for step in dead_ends(behavior, duty):
         wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
             steps.setdefault(step.handler, []).append(step)
-    for found in steps.values():
-        certain = [step for step in found if step.certain and not step.ignored]
-        yield (certain or found)[0], bool(certain)
+    for handler, found in steps.items():
+        if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
+            continue
+        if not _has_unknown_elements(handler):
+            certain = [step for step in found if step.certain and not step.ignored]
+            yield (certain or found)[0], bool(certain)
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
@@ -100,7 +108,7 @@ def target_of(step: Step) -> Iterator[Related]:
             yield Related(element.name_span, "on this way")
 
 
-def with_unknown_elements(context: MachineContext, handler: Handler) -> bool:
+def _has_unknown_elements(handler: Handler) -> bool:
     """Whether something in a handler cannot be read, which might be what seems to be missing."""
     return any(not e.prefix and HL_SCXML.find(e.name) is None for e in handler.element.walk())
 
@@ -152,6 +160,10 @@ def deaf_states(
     """The states in which a tick or halt may come and is not taken, with how the node stands there: "" (it has not been
     ticked yet), "running" or "ended"."""
     assert context.system is not None
+    takes, tag = f"bt-{duty.kind}", f"bt_{duty.kind}"
+    deaf = [state for state in behavior.chart.states if not any(h.trigger == takes for h in state.handlers)]
+    if not deaf:
+        return
     may_come = _coming(context.system, automaton, duty)
     found: dict[str, str] = {}
     for number in untaken(behavior, duty, possible):
@@ -159,7 +171,9 @@ def deaf_states(
         if configuration.tree in may_come:
             found.setdefault(configuration.state, configuration.tree)
     for state in behavior.chart.states:
-        if state.id is not None and state.id.value in found and not _is_for_errors(behavior, state):
+        if state.id is None or state.id.value not in found or _is_for_errors(behavior, state):
+            continue
+        if not misspelled.among(state.element.walk(), tag, HL_SCXML):
             yield state, found.pop(state.id.value)
 
 

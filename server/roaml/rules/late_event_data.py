@@ -83,13 +83,14 @@ def _names(tree: Expr) -> Iterator[Name]:
 
 
 def _message(value: TypedValue, name: str) -> str:
+    newer = f"when `{name}` may already hold the data of a later event than the one that is handled"
     advice = f"store what you need of `{name}` in a variable first thing in the body"
     match value.use:
         case Use.BRANCH:
-            return f"this condition is evaluated in a later step, when `{name}` may already be newer; {advice}"
+            return f"this condition is evaluated in a later step, {newer}; {advice}"
         case Use.ASSIGNED | Use.LOCATION:
-            return f"here `{name}` may already be newer: something was sent or tested before; {advice}"
-    return f"what is sent is read in a later step, when `{name}` may already be newer; {advice}"
+            return f"this is read after something was sent or tested, {newer}; {advice}"
+    return f"what is sent is read in a later step, {newer}; {advice}"
 
 
 def _severity(value: TypedValue) -> Severity | None:
