@@ -286,6 +286,7 @@ class _Explorer:
         followed = None if not self.fine else self.relevant | EVENT_VARIABLES
         self.facts = Facts(whole, logical, followed, counted)
         self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
+        self.counts_down = bool(self.counts) and self._counts_down()
         self.goal_ids = self._goal_ids()
         self.may_be_ids = self._may_be_ids() if self.goal_ids else frozenset()
         self.declarations: dict[Handler | Communicate, Declaration | None] = {}
@@ -341,6 +342,31 @@ class _Explorer:
         given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
         return frozenset(given) - set(STATUSES)
 
+    def _counts_down(self) -> bool:
+        """Whether a thread that becomes free changes the number of the next one. How many threads are running is not
+        followed, so that such a number seems to fall without end."""
+        numbers = set(self._counted())
+        while True:
+            values = [
+                s.value.tree
+                for s in self.chart.statements
+                if isinstance(s, Assign) and s.location and isinstance(s.value, Expression)
+                if not variables_in((s.location.tree,)).isdisjoint(numbers)
+            ]
+            if variables_in(values) <= numbers:
+                break
+            numbers |= variables_in(values)
+        return any(
+            isinstance(statement, Assign)
+            and statement.location is not None
+            and not variables_in((statement.location.tree,)).isdisjoint(numbers)
+            for state in self.chart.states
+            for handler in state.handlers
+            if handler.trigger == "thread-free"
+            for target in handler.targets
+            for statement in statements(target.body)
+        )
+
     def _counted(self) -> frozenset[str]:
         """The variables that number threads."""
         started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, Communicate) and s.thread_id)
@@ -352,6 +378,14 @@ class _Explorer:
             s.goal_id.tree.name
             for s in self.chart.statements
             if isinstance(s, Communicate) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
+        }
+        if not found:
+            return frozenset()
+        found |= {
+            s.location.tree.name
+            for s in self.chart.statements
+            if isinstance(s, Assign) and s.location and isinstance(s.location.tree, Name)
+            if isinstance(s.value, Expression) and access_path(s.value.tree) == ("_action", "goal_id")
         }
         while True:
             copied = {
@@ -821,8 +855,9 @@ class _Explorer:
             return path
         values = self.facts.values(path.knowledge, statement.thread_id.tree)
         if values.only is not None:
-            beyond = [v for v in values.only if not isinstance(v, str) and not 0 <= v < count]
-            wrong = bool(beyond)
+            numbers = [number for number in values.only if not isinstance(number, str)]
+            below = min(numbers, default=0) < 0 and not self.counts_down
+            wrong = below or max(numbers, default=0) >= count
         else:
             wrong = values.high != float("inf") and values.high >= count
             wrong = wrong or values.low >= count
