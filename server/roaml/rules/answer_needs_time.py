@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.model.behavior.duties import HALT, TICK, distances, entering, unfinished
 from roaml.model.behavior.explore import Behavior, Duty, Event, Step
-from roaml.model.behavior.instants import Delay, Instants, channel_of
+from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
 from roaml.model.machine import Handler
 from roaml.model.system import Automaton, System
 from roaml.rules.answers import behaviors, place, plugins
@@ -23,6 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     told: set[tuple[Handler, Duty]] = set()
     for automaton in plugins(context):
+        if not is_readable(system, automaton):
+            continue
         instants = Instants(system, automaton)
         for behavior in behaviors(context):
             if behavior.chart is not context.machine.chart:

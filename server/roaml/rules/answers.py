@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken
+from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
 from roaml.model.behavior.explore import Behavior, Duty, Step, explore
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
@@ -83,9 +83,10 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     for handler, found in steps.items():
         if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        if not _has_unknown_elements(handler):
-            certain = [step for step in found if step.certain and not step.ignored]
-            yield (certain or found)[0], bool(certain)
+        told = [step for step in found if not _may_be_unread(behavior, duty, step)]
+        if told:
+            certain = [step for step in told if step.certain and not step.ignored]
+            yield (certain or told)[0], bool(certain)
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
@@ -108,9 +109,16 @@ def target_of(step: Step) -> Iterator[Related]:
             yield Related(element.name_span, "on this way")
 
 
-def _has_unknown_elements(handler: Handler) -> bool:
-    """Whether something in a handler cannot be read, which might be what seems to be missing."""
-    return any(not e.prefix and HL_SCXML.find(e.name) is None for e in handler.element.walk())
+def _may_be_unread(behavior: Behavior, duty: Duty, step: Step) -> bool:
+    """Whether an element that is not known might be the answer that is missed behind a step, or take what leads to it:
+    it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
+    states = {state.id.value: state.element for state in behavior.chart.states if state.id}
+    source = behavior.configurations[step.source]
+    names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
+    if step.ignored or source.owes(duty):
+        names.add(source.state)
+    elements = [step.handler.element, *(states[name] for name in names if name in states)]
+    return any(not e.prefix and HL_SCXML.find(e.name) is None for element in elements for e in element.walk())
 
 
 # ------------------------------------------------------------ place in the tree

@@ -48,7 +48,7 @@ def _may_be_newer(context: MachineContext, place: Place, at: int) -> bool:
     event = _event(context, handler)
     if handler.trigger in _ANSWERS:
         return any(Event(part, event.name) in sent for part in _ANSWERS[handler.trigger])
-    if context.system is None or not context.system.complete or not context.automata:
+    if context.system is None or not context.automata:
         return True
     chart = context.machine.charts.index(place.chart)
     return any(comes_again(context.system, automaton, chart, event, sent) for automaton in context.automata)

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.behavior.instants import Instants
+from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import State
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
@@ -88,7 +88,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
                 message += "waits for ever; add a `<bt_halt>`"
                 fixes = _add_handler(context, state)
                 yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
-        if context.system is None:
+        if context.system is None or not is_readable(context.system, automaton):
             continue
         possible = Instants(context.system, automaton).possible
         for state, _ in deaf_states(context, behavior, automaton, HALT, possible):

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.behavior.instants import Instants
+from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
 from roaml.rules.answers import (
@@ -81,7 +81,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
                 message += "for ever; add a `<bt_tick>`"
                 severity = Severity.WARNING if standing == "ended" else None
                 yield RULE.at(state.id.span, message, *_take(context, state.element), severity=severity)
-        if context.system is None:
+        if context.system is None or not is_readable(context.system, automaton):
             continue
         possible = Instants(context.system, automaton).possible
         for state, _ in deaf_states(context, behavior, automaton, TICK, possible):

@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.infer import constant
 from roaml.expr.tree import access_path
-from roaml.model.behavior.explore import Behavior, Fault, Step
+from roaml.model.behavior.explore import Behavior, Duty, Fault, Step
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Communicate, If, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
 from roaml.model.typing import find_handle
-from roaml.rules.answers import behaviors, place
+from roaml.rules.answers import behaviors, is_spelled, place
 from roaml.rules.interfaces import declared
 from roaml.rules.layout import first_in
 from roaml.rules.rule import MachineContext, Rule
@@ -37,6 +37,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         told: set[tuple[str, str]] = set()
         for step, fault in _faults(behavior).values():
             statement = fault.statement
+            if fault.kind == "undecided" and not is_spelled(context, Duty("goal", fault.duty.handle)):
+                continue
             assert isinstance(statement, Communicate)
             assert statement.goal_id is not None
             variable = statement.goal_id.text.strip()

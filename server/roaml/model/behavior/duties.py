@@ -103,6 +103,12 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
             yield step
 
 
+def waiting_behind(behavior: Behavior, duty: Duty, step: Step) -> set[int]:
+    """The configurations to which a step leads, itself or by further ones, and which owe an answer that never comes."""
+    lost = unfinished(behavior, duty)
+    return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
+
+
 def is_suspicious(behavior: Behavior) -> bool:
     """Whether there may be a mistake in what the chart answers, or in which thread it starts."""
     known = behavior.chart.__dict__.setdefault("suspicion", {})

@@ -4,7 +4,8 @@
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
 So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
 
-Where a part of the system cannot be read that might send what is awaited, it is taken to come at once.
+Where a part of the system cannot be read that might send what is awaited, it is taken to come at once; so is all that
+comes from a machine of which a part cannot be read that takes events.
 """
 
 from __future__ import annotations
@@ -159,12 +160,16 @@ class Instants:
                 server = server_of(self.system, automaton, event)
                 if server is None or may_be_sent(self.system, automaton, event):
                     return True
+                if not is_readable(self.system, server.automaton):
+                    return True
                 return not any(self._takes_time(server, p) for p in self._kept(server, event))
         if event == START or event.part == "tick" or is_clock(self.system, automaton, event):
             return False
         if may_be_sent(self.system, automaton, event):
             return True
         for sender, sent in solver.senders(automaton, event):
+            if not is_readable(self.system, sender):
+                return True
             for cause in solver.causes(sender, sent):
                 if sender is self.plugin or solver.read(solver.number(sender), cause):
                     return True
@@ -226,6 +231,11 @@ def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
     return any(system.may(act, name or "") for act in acts)
 
 
+def is_readable(system: System, automaton: Automaton) -> bool:
+    """Whether all that an automaton takes and sends can be read; the fields of what it sends do not matter."""
+    return id(automaton) not in system.partly_read
+
+
 def promises(server: Endpoint, event: Event) -> Iterator[Promise]:
     """The answers of a server that a client receives as `event` and that do not come at once."""
     for chart in server.automaton.outline.charts:
@@ -278,7 +288,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
         automaton = system.automata[number]
         if awaited == START or awaited.part in ("tick", "bt-tick", "bt-halt", "child-status", "child-halted"):
             return True
-        if is_clock(system, automaton, awaited):
+        if is_clock(system, automaton, awaited) or may_be_sent(system, automaton, awaited):
             return True
         if awaited.part in _PROMISED:
             server = server_of(system, automaton, awaited)
@@ -288,7 +298,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
         else:
             answers = list(solver.senders(automaton, awaited))
         for sender, what in answers:
-            if sender is receiver and what in sent:
+            if (sender is receiver and what in sent) or not is_readable(system, sender):
                 return True
             if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, what)):
                 return True
@@ -298,6 +308,8 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
     if is_clock(system, receiver, event) or (event.part == "event" and event in sent):
         return True
     senders = list(solver.senders(receiver, event))
+    if may_be_sent(system, receiver, event) or not all(is_readable(system, sender) for sender, _ in senders):
+        return True
     if any(sender is receiver and what in sent for sender, what in senders):
         return True
     # Each copy of a thread is a sender of its own.
