@@ -164,7 +164,9 @@ def place(error: BaseException) -> str:
     """Where an exception comes from, without what differs from case to case."""
     frames = traceback.extract_tb(error.__traceback__)
     ours = (f for f in reversed(frames) if "/roaml/" in f.filename or "/as2fm_lsp/" in f.filename)
-    last = next(ours, frames[-1])
+    last = next(ours, frames[-1] if frames else None)
+    if last is None:  # made, but never raised
+        return f"{type(error).__name__} at an unknown place"
     return f"{type(error).__name__} at {last.filename.rpartition('/server/')[2]}:{last.lineno}"
 
 

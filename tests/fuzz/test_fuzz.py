@@ -59,6 +59,10 @@ def test_undamaged_models_hold() -> None:
         assert crashes.errors == []
 
 
+def test_an_exception_that_was_never_raised_has_a_place() -> None:
+    assert runner.place(MemoryError()) == "MemoryError at an unknown place"
+
+
 def test_crashes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     def crash(context: FileContext) -> Iterator[None]:
         raise RuntimeError("on purpose")

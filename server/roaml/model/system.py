@@ -157,6 +157,10 @@ class BoundPort:
         return self.automaton.instance.source
 
 
+_BESIDE_EVENTS = (PORT, VARIABLE, REMAP, NAME, PARAMETER)
+"""What a gap may say that does not decide which events a machine takes and sends."""
+
+
 @dataclass(frozen=True, eq=False)
 class System:
     """A system file and everything that it names.
@@ -250,6 +254,15 @@ class System:
             if use.port and automaton.interface_name(use) is None:
                 found |= self.facts_of_name(automaton, use)
         return found
+
+    @cached_property
+    def partly_read(self) -> frozenset[int]:
+        """The automata, by `id`, of which something cannot be read that takes events or sends them."""
+        return frozenset(
+            id(automaton)
+            for automaton in self.automata
+            if any(act not in _BESIDE_EVENTS and not act.endswith(" field") for act, _ in self.facts_of(automaton))
+        )
 
     def facts_of_name(self, automaton: Automaton, use: InterfaceUse) -> set[Fact]:
         """What a node of the tree may say whose port should name a topic, service or action, and does not."""

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.model.behavior.duties import HALT, TICK, entering, unfinished
+from roaml.model.behavior.duties import HALT, TICK, distances, entering, unfinished
 from roaml.model.behavior.explore import Behavior, Duty, Event, Step
-from roaml.model.behavior.instants import Delay, Instants, channel_of
+from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
 from roaml.model.machine import Handler
 from roaml.model.system import Automaton, System
 from roaml.rules.answers import behaviors, place, plugins
@@ -19,10 +19,12 @@ from roaml.rules.rule import MachineContext, Rule
 def check(context: MachineContext) -> Iterator[Finding]:
     """A tick or halt is answered in the instant in which it comes, or the clock of the model stops (spec/05 §7)."""
     system = context.system
-    if system is None or not system.complete:
+    if system is None:
         return
     told: set[tuple[Handler, Duty]] = set()
     for automaton in plugins(context):
+        if not is_readable(system, automaton):
+            continue
         instants = Instants(system, automaton)
         for behavior in behaviors(context):
             if behavior.chart is not context.machine.chart:
@@ -60,14 +62,15 @@ def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
 
 
 def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], instants: Instants) -> Event | None:
-    """The first event on the way to the answer that does not come without time."""
-    outgoing = behavior.outgoing()
+    """The first event on the way to the answer that does not come without time: of several, one that leads to it."""
+    outgoing, left = behavior.outgoing(), distances(behavior, slow)
     seen, waiting = {first.target}, [first.target]
     while waiting:
         here = waiting.pop(0)
         for step in outgoing[here]:
             if not instants.possible(step):
-                if not step.ignored and step.event is not None and not instants.comes(step.event):
+                nearer = left.get(step.target, len(left)) < left.get(step.source, len(left))
+                if nearer and not step.ignored and step.event is not None and not instants.comes(step.event):
                     return step.event
             elif step.target in slow and step.target not in seen:
                 seen.add(step.target)

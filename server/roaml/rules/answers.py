@@ -8,13 +8,14 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken
+from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
 from roaml.model.behavior.explore import Behavior, Duty, Step, explore
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
 from roaml.model.typing import find_handle
 from roaml.rules import misspelled, removed_bt_event
 from roaml.rules.rule import MachineContext
+from roaml.rules.shadowed_transition import has_shadowed
 from roaml.text import Span
 
 SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
@@ -68,16 +69,24 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
     return found
 
 
-def missed(behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
-    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it."""
+def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
+    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it.
+
+    Left out is what another report explains: an element that cannot be read might be the answer, and of two conditions
+    one of which is never decisive (shadowed-transition) one was meant to be another.
+    """
     steps: dict[Handler, list[Step]] = {}
     for step in dead_ends(behavior, duty):
         wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
             steps.setdefault(step.handler, []).append(step)
-    for found in steps.values():
-        certain = [step for step in found if step.certain and not step.ignored]
-        yield (certain or found)[0], bool(certain)
+    for handler, found in steps.items():
+        if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
+            continue
+        told = [step for step in found if not _may_be_unread(behavior, duty, step)]
+        if told:
+            certain = [step for step in told if step.certain and not step.ignored]
+            yield (certain or told)[0], bool(certain)
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
@@ -100,9 +109,16 @@ def target_of(step: Step) -> Iterator[Related]:
             yield Related(element.name_span, "on this way")
 
 
-def with_unknown_elements(context: MachineContext, handler: Handler) -> bool:
-    """Whether something in a handler cannot be read, which might be what seems to be missing."""
-    return any(not e.prefix and HL_SCXML.find(e.name) is None for e in handler.element.walk())
+def _may_be_unread(behavior: Behavior, duty: Duty, step: Step) -> bool:
+    """Whether an element that is not known might be the answer that is missed behind a step, or take what leads to it:
+    it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
+    states = {state.id.value: state.element for state in behavior.chart.states if state.id}
+    source = behavior.configurations[step.source]
+    names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
+    if step.ignored or source.owes(duty):
+        names.add(source.state)
+    elements = [step.handler.element, *(states[name] for name in names if name in states)]
+    return any(not e.prefix and HL_SCXML.find(e.name) is None for element in elements for e in element.walk())
 
 
 # ------------------------------------------------------------ place in the tree
@@ -152,6 +168,10 @@ def deaf_states(
     """The states in which a tick or halt may come and is not taken, with how the node stands there: "" (it has not been
     ticked yet), "running" or "ended"."""
     assert context.system is not None
+    takes, tag = f"bt-{duty.kind}", f"bt_{duty.kind}"
+    deaf = [state for state in behavior.chart.states if not any(h.trigger == takes for h in state.handlers)]
+    if not deaf:
+        return
     may_come = _coming(context.system, automaton, duty)
     found: dict[str, str] = {}
     for number in untaken(behavior, duty, possible):
@@ -159,7 +179,9 @@ def deaf_states(
         if configuration.tree in may_come:
             found.setdefault(configuration.state, configuration.tree)
     for state in behavior.chart.states:
-        if state.id is not None and state.id.value in found and not _is_for_errors(behavior, state):
+        if state.id is None or state.id.value not in found or _is_for_errors(behavior, state):
+            continue
+        if not misspelled.among(state.element.walk(), tag, HL_SCXML):
             yield state, found.pop(state.id.value)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.grammar import UNBOUNDED, ElementType
+from roaml.model.gaps import ANYTHING, TREE
 from roaml.model.outline import MachineOutline
 from roaml.model.system import builtin_plugins
 from roaml.model.tree import SUBTREES, TreeNode, nodes
@@ -63,7 +64,7 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
     least = max(calls.children, 1 if calls.any_child else 0)
     if count < least:
         yield _too_few(node, least, UNBOUNDED if calls.any_child else least)
-    if calls.ticked_children is None:
+    if calls.ticked_children is None or any(gap.act in (TREE, ANYTHING) for gap in plugin.gaps):
         return
     for index, child in enumerate(node.children):
         span = child.element.name_span

@@ -48,7 +48,7 @@ def _may_be_newer(context: MachineContext, place: Place, at: int) -> bool:
     event = _event(context, handler)
     if handler.trigger in _ANSWERS:
         return any(Event(part, event.name) in sent for part in _ANSWERS[handler.trigger])
-    if context.system is None or not context.system.complete or not context.automata:
+    if context.system is None or not context.automata:
         return True
     chart = context.machine.charts.index(place.chart)
     return any(comes_again(context.system, automaton, chart, event, sent) for automaton in context.automata)
@@ -83,13 +83,14 @@ def _names(tree: Expr) -> Iterator[Name]:
 
 
 def _message(value: TypedValue, name: str) -> str:
+    newer = f"when `{name}` may already hold the data of a later event than the one that is handled"
     advice = f"store what you need of `{name}` in a variable first thing in the body"
     match value.use:
         case Use.BRANCH:
-            return f"this condition is evaluated in a later step, when `{name}` may already be newer; {advice}"
+            return f"this condition is evaluated in a later step, {newer}; {advice}"
         case Use.ASSIGNED | Use.LOCATION:
-            return f"here `{name}` may already be newer: something was sent or tested before; {advice}"
-    return f"what is sent is read in a later step, when `{name}` may already be newer; {advice}"
+            return f"this is read after something was sent or tested, {newer}; {advice}"
+    return f"what is sent is read in a later step, {newer}; {advice}"
 
 
 def _severity(value: TypedValue) -> Severity | None:

@@ -66,3 +66,10 @@ def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
         not element.prefix and grammar.find(element.name) is None and close_names(element.name, [name])
         for element in elements
     )
+
+
+def is_hidden(root: Element, name: str, grammar: Grammar) -> bool:
+    """Whether there may be a `<name>` below `root` that is not read: its own name is misspelled, or that of an element
+    around it."""
+    unknown = [element for element in root.walk() if not element.prefix and grammar.find(element.name) is None]
+    return among(unknown, name, grammar) or any(inner.name == name for each in unknown for inner in each.walk())

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.behavior.explore import Behavior, Duty, Event, Fault, Step
-from roaml.model.machine import Handler, ReturnStatus, Statement
+from roaml.model.machine import Communicate, Handler, If, ReturnHalted, ReturnStatus, Statement, statements
+from roaml.model.typing import find_handle
 from roaml.rules.answers import SENT, answered_in, behaviors, place, plugins
 from roaml.rules.elements import removal
 from roaml.rules.rule import MachineContext, Rule
@@ -26,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if (step.handler, fault.duty) in told or not _counts(context, behavior, step, fault, in_tree):
                     continue
                 told.add((step.handler, fault.duty))
-                yield _finding(context, step, fault)
+                yield _finding(context, behavior, step, fault)
 
 
 def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Fault, in_tree: bool) -> bool:
@@ -58,6 +59,11 @@ def _owes_another(behavior: Behavior, step: Step, duty: Duty) -> bool:
 
 def _twice(step: Step, fault: Fault) -> bool:
     """Whether the answer is sent more than once in the very same step."""
+    return sum(event in _answers(fault) for event in step.sent) > 1
+
+
+def _answers(fault: Fault) -> set[Event]:
+    """What counts as an answer to what a fault answers."""
     if fault.duty.kind == "goal":
         parts = {"goal-accepted", "goal-rejected"}
     elif fault.duty.kind in ("tick", "halt"):
@@ -65,30 +71,123 @@ def _twice(step: Step, fault: Fault) -> bool:
     else:
         parts = {SENT[fault.duty.kind]}
     handle = "" if fault.duty.kind in ("tick", "halt") else fault.duty.handle
-    return sum(event in {Event(part, handle) for part in parts} for event in step.sent) > 1
+    return {Event(part, handle) for part in parts}
 
 
-def _finding(context: MachineContext, step: Step, fault: Fault) -> Finding:
+def _finding(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Finding:
     where = place(step.handler, fault.statement)
-    related = [Related(fault.statement.element.name_span, "this answer")]
+    first = _first_answer(context, behavior, step, fault)
+    related = [Related(first.element.name_span, "the first answer")] if first is not None else []
+    again = "the second answer" if first is not None else "this answer"
+    related.append(Related(fault.statement.element.name_span, again))
     # What is sent when a state is entered may be meant for another way into it.
     shared = where == fault.statement.element.name_span and not _twice(step, fault)
     severity = Severity.INFORMATION if shared else None
-    return RULE.at(where, _message(step, fault), *_fixes(context, step, fault), severity=severity, related=related)
+    message = _message(behavior, step, fault, first)
+    return RULE.at(where, message, *_fixes(context, step, fault), severity=severity, related=related)
 
 
-def _message(step: Step, fault: Fault) -> str:
+def _message(behavior: Behavior, step: Step, fault: Fault, first: Statement | None) -> str:
     what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
     if fault.kind == "wrong-kind":
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
         return f"a {what} is answered with `<{tag}>`, which its parent does not wait for; send `<{right}>` instead"
-    if _twice(step, fault):
-        how = {"result": "ends", "goal": "is accepted or rejected"}.get(fault.duty.kind, "is answered")
-        return f"on a path through this a {what} {how} twice: the second answer is taken for that to the next; send one"
-    return (
-        f"`<{tag}>` is sent here though no {what} is waiting for it: it was answered before, or has not come yet; "
-        "send the answer where it is taken"
-    )
+    how = {"result": "ended", "goal": "accepted or rejected"}.get(fault.duty.kind, "answered")
+    tail = f"the second answer is taken for that to the next {what}; send one of them only"
+    if first is None:
+        if _twice(step, fault):
+            return f"on a path through this a {what} is {how} twice: {tail}"
+        return f"`<{tag}>` is sent here though no {what} has come that waits for it; send it where the {what} is taken"
+    earlier, place, other = f"`<{first.element.name}>`", _where(behavior, first), _where(behavior, fault.statement)
+    if not _twice(step, fault):
+        why = f"on a path that leads here it was {how} before, by {earlier} {place}"
+        return f"`<{tag}>` is sent here though no {what} is waiting for it: {why}; {tail}"
+    by = f"first by {earlier} {place}, then by `<{tag}>` {other}"
+    if place == other:
+        by = f"by {earlier} and then by `<{tag}>`, both {place}"
+    return f"on a path through this a {what} is {how} twice, {by}: {tail}"
+
+
+def _first_answer(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Statement | None:
+    """What has answered the question before, in the same step or in the nearest one that leads to it."""
+    if fault.kind == "wrong-kind":
+        return None
+    events = _answers(fault)
+    earlier = _executed_before(behavior, step, fault.statement)
+    if sum(event in events for event in step.sent) > 1:
+        found = [s for s in earlier if _event(context, s) in events]
+        if found:
+            return found[-1]
+    incoming: dict[int, list[Step]] = {}
+    for each in behavior.steps:
+        incoming.setdefault(each.target, []).append(each)
+    seen, waiting = {step.source}, [step.source]
+    for here in waiting:
+        for each in incoming.get(here, ()):
+            if any(event in events for event in each.sent):
+                sent = [s for s in _executed_before(behavior, each, None) if _event(context, s) in events]
+                if sent:
+                    return sent[-1]
+            if each.source not in seen:
+                seen.add(each.source)
+                waiting.append(each.source)
+    return None
+
+
+def _executed_before(behavior: Behavior, step: Step, statement: Statement | None) -> list[Statement]:
+    """What a step may have executed before a statement, in order; all that it may execute for None."""
+    states = {state.id.value: state for state in behavior.chart.states if state.id}
+    left = states.get(behavior.configurations[step.source].state)
+    target = step.handler.targets[step.choice]
+    entered = states.get(target.state.value) if target.state else None
+    found: list[Statement] = []
+    leave = left.exit.statements if left and left.exit else ()
+    enter = entered.entry.statements if entered and entered.entry else ()
+    for body in (leave, target.body, enter):
+        if not _append(found, body, statement):
+            break
+    return found
+
+
+def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
+    """Append what is executed in a body before `last`, which is not in another branch; whether the body ends first."""
+    for each in body:
+        if each is last:
+            return False
+        if isinstance(each, If):
+            parts = [part.body for part in (*each.branches, each.otherwise) if part is not None]
+            chosen = [part for part in parts if last is not None and last in statements(part)]
+            for part in chosen or parts:
+                if not _append(found, part, last):
+                    return False
+        else:
+            found.append(each)
+    return True
+
+
+def _event(context: MachineContext, statement: Statement) -> Event | None:
+    if isinstance(statement, ReturnStatus):
+        return Event("bt-status", "")
+    if isinstance(statement, ReturnHalted):
+        return Event("bt-halted", "")
+    if isinstance(statement, Communicate):
+        declaration = find_handle(context.machine, statement)
+        return Event(statement.type.sends, declaration.handle.value) if declaration and declaration.handle else None
+    return None
+
+
+def _where(behavior: Behavior, statement: Statement) -> str:
+    """Where a statement stands, in words."""
+    at = statement.element.span
+    for state in behavior.chart.states:
+        name = state.id.value if state.id else ""
+        for content, tag in ((state.entry, "onentry"), (state.exit, "onexit")):
+            if content is not None and any(each is statement for each in statements(content.statements)):
+                return f"in the `<{tag}>` of the state `{name}`"
+        for handler in state.handlers:
+            if handler.element.span.start <= at.start and at.end <= handler.element.span.end:
+                return f"in the `<{handler.element.name}>` of the state `{name}`"
+    return "before"
 
 
 _QUESTION = {"tick": "tick", "halt": "halt", "request": "request", "goal": "goal", "result": "goal"}

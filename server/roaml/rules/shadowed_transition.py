@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.expr.tree import Expr, is_draw, walk
 from roaml.model.behavior.explore import condition_facts
-from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, Facts, Knowledge
+from roaml.model.behavior.knowledge import Facts
 from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.typing import find_handle
+from roaml.rules.conditions import covered
 from roaml.rules.elements import removal
 from roaml.rules.layout import indent_of, remove
 from roaml.rules.rule import MachineContext, Rule
@@ -51,50 +51,46 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
 
 def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
     """Transitions whose conditions never hold where those of the earlier ones do not."""
+    for handlers in _conditional(context.machine, state):
+        yield from _in_order(context, condition_facts(chart), handlers)
+
+
+def _conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
+    """The handlers of a state with conditions, in groups with the same trigger."""
     groups: dict[tuple[str, str, int], list[Handler]] = {}
     for handler in state.handlers:
-        key = trigger(context.machine, handler)
+        key = trigger(machine, handler)
         if key is not None and handler.effective and handler.cond is not None and not chooses(handler):
             groups.setdefault(key, []).append(handler)
-    for handlers in groups.values():
-        if len(handlers) > 1:
-            yield from _in_order(context, condition_facts(chart), handlers)
+    return (handlers for handlers in groups.values() if len(handlers) > 1)
+
+
+def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
+    """Whether a handler for the same trigger as `handler`, in its state, has a condition that never decides."""
+    state = next((state for state in chart.states if handler in state.handlers), None)
+    groups = _conditional(machine, state) if state is not None else ()
+    return any(
+        any(covered(condition_facts(chart), [each.cond for each in handlers]))
+        for handlers in groups
+        if handler in handlers
+    )
 
 
 def _in_order(context: MachineContext, facts: Facts, handlers: list[Handler]) -> Iterator[Finding]:
-    left: tuple[Knowledge, ...] = (NOTHING,)
-    for number, handler in enumerate(handlers):
-        cond = handler.cond
-        if cond is None or cond.broken or any(is_draw(node) for node in walk(cond.tree)):
-            continue
-        if number and not any(facts.assume(known, cond.tree) for known in left):
-            if any(facts.assume(NOTHING, cond.tree)):
-                yield _covered(context, facts, handler, handlers[:number])
-            continue
-        left = tuple(rest for known in left for rest in facts.assume(known, cond.tree, False))
-        if len(left) > MOST_WAYS:
-            return
-
-
-def _covered(context: MachineContext, facts: Facts, handler: Handler, earlier: list[Handler]) -> Finding:
-    assert handler.cond is not None
-    covering = [h for h in earlier if h.cond and not _beside(facts, h.cond.tree, handler.cond.tree)]
-    related = [Related(h.element.name_span, "taken first") for h in (covering or earlier)]
-    what = "without an event" if handler.trigger == "" else "on the same event"
-    if any(h.cond and not _beside(facts, handler.cond.tree, h.cond.tree) for h in covering):
-        why = f"an earlier transition {what} has the same condition"
-    elif covering:
-        why = f"whenever its condition holds, that of an earlier transition {what} holds, too"
-    else:
-        why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
-    drop = remove(context.document, handler.element, "Remove this transition")
-    message = f"this is never taken: {why}; change one of the conditions"
-    return RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
-
-
-def _beside(facts: Facts, one: Expr, other: Expr) -> bool:
-    """Whether `other` may hold where `one` does not."""
-    return any(facts.assume(known, other) for known in facts.assume(NOTHING, one, False))
+    for found in covered(facts, [handler.cond for handler in handlers]):
+        handler = handlers[found.number]
+        earlier = [handlers[n] for n in found.by or range(found.number)]
+        what = "without an event" if handler.trigger == "" else "on the same event"
+        if found.same:
+            why = f"an earlier transition {what} has the same condition"
+        elif found.by:
+            why = f"whenever its condition holds, that of an earlier transition {what} holds, too"
+        else:
+            why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
+        drop = remove(context.document, handler.element, "Remove this transition")
+        message = f"this is never taken: {why}; change one of the conditions"
+        related = [Related(each.element.name_span, "taken first") for each in earlier]
+        yield RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
 
 
 def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:

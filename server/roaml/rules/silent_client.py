@@ -58,14 +58,16 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
-    """The elements that send something, with their declaration; None if it may be any, because one is misspelled."""
+    """The elements that send something, with their declaration; None if it may be any, because one cannot be read."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Communicate):
                 yield find_handle(context.machine, statement), statement.element.name
-    unknown = [element for element in context.machine.element.walk() if element.name not in HL_SCXML.elements]
+    read = {statement.element for chart in context.machine.charts for statement in chart.statements}
+    unread = [element for element in context.machine.element.walk() if element not in read]
+    unknown = [element for element in unread if element.name not in HL_SCXML.elements]
     for name in dict.fromkeys(name for _, name in ANSWERS.values()):
-        if misspelled.among(unknown, name, HL_SCXML):
+        if any(element.name == name for element in unread) or misspelled.among(unknown, name, HL_SCXML):
             yield None, name
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.behavior.explore import Behavior, Duty, Step
-from roaml.rules.answers import answered_in, behaviors, is_spelled, missed, place, target_of, with_unknown_elements
+from roaml.rules.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.interfaces import declared
 from roaml.rules.rule import MachineContext, Rule
 
@@ -29,8 +29,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _awaited(context: MachineContext) -> set[str]:
     """The handles of the actions whose results some client waits for."""
-    if context.system is None or not context.system.complete:
-        return set()
     return {
         declaration.handle.value
         for declaration, _, channel in declared(context, "action-server")
@@ -39,11 +37,10 @@ def _awaited(context: MachineContext) -> set[str]:
 
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[Finding]:
-    for step, certain in missed(behavior, duty):
-        if not with_unknown_elements(context, step.handler):
-            severity = None if certain else Severity.WARNING
-            message = _message(step, duty, certain)
-            yield RULE.at(place(step.handler), message, severity=severity, related=target_of(step))
+    for step, certain in missed(context, behavior, duty):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, duty, certain)
+        yield RULE.at(place(step.handler), message, severity=severity, related=target_of(step))
 
 
 def _message(step: Step, duty: Duty, certain: bool) -> str:

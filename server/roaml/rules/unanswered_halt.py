@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, Step
+from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import State
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
@@ -20,7 +21,6 @@ from roaml.rules.answers import (
     place,
     plugins,
     target_of,
-    with_unknown_elements,
 )
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
@@ -36,7 +36,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     plugin, parent = halted[0][0].outline.plugin, halted[0][1].outline.name
     root, name = context.machine.element, context.machine.name
     if not plugin.halted:
-        if not misspelled.among(root.walk(), "bt_halt", HL_SCXML):
+        if not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
             message = f"the plugin takes no halts, but `{parent}` halts it: it has no `<bt_halt>`"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
         return
@@ -58,12 +58,11 @@ def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
 
 
 def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
-    for step, certain in missed(behavior, HALT):
-        if not with_unknown_elements(context, step.handler):
-            severity = None if certain else Severity.WARNING
-            message = _message(step, certain)
-            fixes = _answer(context, step)
-            yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+    for step, certain in missed(context, behavior, HALT):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, certain)
+        fixes = _answer(context, step)
+        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
 
 
 def _message(step: Step, certain: bool) -> str:
@@ -84,9 +83,19 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
         for state, standing in deaf_states(context, behavior, automaton, HALT):
             if state not in told and state.id is not None:
                 told.add(state)
-                how = "while it is running " if standing == "running" else ""
+                how = "while the plugin is running " if standing == "running" else ""
                 message = f"a halt that comes {how}in the state `{state.id.value}` is never taken, so that the tree "
                 message += "waits for ever; add a `<bt_halt>`"
+                fixes = _add_handler(context, state)
+                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
+        if context.system is None or not is_readable(context.system, automaton):
+            continue
+        possible = Instants(context.system, automaton).possible
+        for state, _ in deaf_states(context, behavior, automaton, HALT, possible):
+            if state not in told and state.id is not None:
+                told.add(state)
+                message = f"a halt that comes in the state `{state.id.value}` is not taken before time has passed, but "
+                message += "the clock waits until it is answered; add a `<bt_halt>`"
                 fixes = _add_handler(context, state)
                 yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
 

@@ -10,7 +10,7 @@ from roaml.model.behavior.explore import Behavior, Duty, Step
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import find_handle
-from roaml.rules.answers import answered_in, behaviors, is_spelled, missed, place, target_of, with_unknown_elements
+from roaml.rules.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.layout import last_in
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.silent_server import response
@@ -29,12 +29,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Handler) -> Iterator[Finding]:
-    for step, certain in missed(behavior, duty):
-        if not with_unknown_elements(context, step.handler):
-            severity = None if certain else Severity.WARNING
-            message = _message(step, duty, certain)
-            fixes = _fixes(context, step, handler)
-            yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+    for step, certain in missed(context, behavior, duty):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, duty, certain)
+        fixes = _fixes(context, step, handler)
+        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
 
 
 def _message(step: Step, duty: Duty, certain: bool) -> str:

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.behavior.instants import Instants
+from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.system import Automaton
 from roaml.rules import misspelled
 from roaml.rules.answers import (
@@ -20,7 +20,6 @@ from roaml.rules.answers import (
     place,
     plugins,
     target_of,
-    with_unknown_elements,
 )
 from roaml.rules.layout import after, last_in
 from roaml.rules.rule import MachineContext, Rule
@@ -35,7 +34,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     plugin, name, root = automata[0].outline.plugin, context.machine.name, context.machine.element
     if not plugin.ticked:
-        if not misspelled.among(root.walk(), "bt_tick", HL_SCXML):
+        if not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
             message = "the plugin takes no ticks: it has no `<bt_tick>`"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handler(context))
         return
@@ -48,15 +47,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
-    for step, certain in missed(behavior, TICK):
-        if not with_unknown_elements(context, step.handler):
-            yield RULE.at(
-                place(step.handler),
-                _message(step, certain),
-                *_fixes(context, step),
-                severity=None if certain else Severity.WARNING,
-                related=target_of(step),
-            )
+    for step, certain in missed(context, behavior, TICK):
+        yield RULE.at(
+            place(step.handler),
+            _message(step, certain),
+            *_fixes(context, step),
+            severity=None if certain else Severity.WARNING,
+            related=target_of(step),
+        )
 
 
 def _message(step: Step, certain: bool) -> str:
@@ -83,7 +81,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Autom
                 message += "for ever; add a `<bt_tick>`"
                 severity = Severity.WARNING if standing == "ended" else None
                 yield RULE.at(state.id.span, message, *_take(context, state.element), severity=severity)
-        if context.system is None or not context.system.complete:
+        if context.system is None or not is_readable(context.system, automaton):
             continue
         possible = Instants(context.system, automaton).possible
         for state, _ in deaf_states(context, behavior, automaton, TICK, possible):

@@ -103,8 +103,14 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
             yield step
 
 
+def waiting_behind(behavior: Behavior, duty: Duty, step: Step) -> set[int]:
+    """The configurations to which a step leads, itself or by further ones, and which owe an answer that never comes."""
+    lost = unfinished(behavior, duty)
+    return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
+
+
 def is_suspicious(behavior: Behavior) -> bool:
-    """Whether there may be a mistake in what the chart answers."""
+    """Whether there may be a mistake in what the chart answers, or in which thread it starts."""
     known = behavior.chart.__dict__.setdefault("suspicion", {})
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}
@@ -114,6 +120,7 @@ def is_suspicious(behavior: Behavior) -> bool:
             any(step.faults for step in behavior.steps)
             or any(unfinished(behavior, duty) for duty in duties)
             or any(untaken(behavior, duty) for duty in asked)
+            or any(event.part == "thread-start" for step in behavior.steps for event in step.sent)
         )
     return bool(known[behavior])
 
@@ -121,6 +128,22 @@ def is_suspicious(behavior: Behavior) -> bool:
 def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Step]:
     """The steps that lead into a set of configurations from outside."""
     return (step for step in behavior.steps if step.target in configurations and step.source not in configurations)
+
+
+def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, int]:
+    """How many steps lead out of a set of configurations from each of them, and from what lies outside: 0."""
+    incoming: dict[int, list[int]] = {}
+    for step in behavior.steps:
+        if step.source in configurations:
+            incoming.setdefault(step.target, []).append(step.source)
+    found = {number: 0 for number in incoming if number not in configurations}
+    waiting = list(found)
+    for here in waiting:
+        for source in incoming.get(here, ()):
+            if source not in found:
+                found[source] = found[here] + 1
+                waiting.append(source)
+    return found
 
 
 def _back(goals: set[int], steps: Iterable[Step]) -> set[int]:

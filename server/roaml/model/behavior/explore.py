@@ -18,6 +18,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from roaml.expr.format import format_expr
 from roaml.expr.tree import Expr, Name, access_path
 from roaml.model.behavior.knowledge import NOTHING, Domain, Facts, Knowledge, is_literal, variables_in
 from roaml.model.machine import (
@@ -71,18 +72,22 @@ class Fault:
 
     Attributes:
         kind: "unasked" (nothing waits for the answer: it has been given, or was not asked for), "wrong-kind" (a tick
-            that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored), "other"
-            (the id of a goal of another action), "rejected" or "undecided" (a result for such a goal), or "thread" (a
-            thread that does not exist).
+            that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored),
+            "foreign" (a value that is not the id of a goal), "other" (the id of a goal of another action), "earlier"
+            (the id of an earlier goal in place of the one that has just come), "rejected" or "undecided" (a result for
+            such a goal), or "thread" (a thread that does not exist).
         duty: what is answered.
         statement: what sends it.
         certain: no condition on the way decides on it.
+        source: for "foreign" the expression that the variable was given, for "earlier" a variable that holds the id of
+            the goal that has come, if there is one.
     """
 
     kind: str
     duty: Duty
     statement: Statement
     certain: bool
+    source: str = ""
 
 
 Phases = tuple[tuple[tuple[str, str], str], ...]
@@ -199,8 +204,17 @@ class _Path(NamedTuple):
         others = [entry for entry in self.phases if entry[0] != (kind, handle)]
         return self._replace(phases=tuple(sorted((*others, ((kind, handle), phase)) if phase else others)))
 
-    def wrong(self, kind: str, duty: Duty, statement: Statement, certain: bool = True) -> _Path:
-        return self._replace(faults=(*self.faults, Fault(kind, duty, statement, certain and self.certain)))
+    def wrong(self, kind: str, duty: Duty, statement: Statement, source: str = "") -> _Path:
+        return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
+
+    def variable_with(self, held: str) -> str:
+        """A variable that holds the id of such a goal; "" if none does."""
+        return next((variable for (kind, variable), id_ in self.phases if kind == "id" and id_ == held), "")
+
+    def with_ids(self, before: str, after: str) -> _Path:
+        """With another phase for each variable that holds the id of such a goal."""
+        changed = ((key, after if key[0] == "id" and held == before else held) for key, held in self.phases)
+        return self._replace(phases=tuple(changed))
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
@@ -272,7 +286,9 @@ class _Explorer:
         followed = None if not self.fine else self.relevant | EVENT_VARIABLES
         self.facts = Facts(whole, logical, followed, counted)
         self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
+        self.counts_down = bool(self.counts) and self._counts_down()
         self.goal_ids = self._goal_ids()
+        self.may_be_ids = self._may_be_ids() if self.goal_ids else frozenset()
         self.declarations: dict[Handler | Communicate, Declaration | None] = {}
         self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
         self.groups: dict[str, list[_Group]] = {}
@@ -309,10 +325,15 @@ class _Explorer:
             for name in often
             if all(name in logical or (v is not None and is_literal(v)) for v in assigned.get(name, ()))
         }
-        sources = wanted
+        sources = set(wanted)
         while sources:
-            values = [v for name in sources for v in assigned.get(name, ()) if isinstance(v, Name)]
-            sources = {v.name for v in values if v.name in scalar} - wanted
+            values = [
+                value
+                for name in sources
+                for value in assigned.get(name, ())
+                if isinstance(value, Name) or (value is not None and name in self._counted())
+            ]
+            sources = {name for name in variables_in(values) if name in scalar} - wanted
             wanted |= sources
         return frozenset(wanted) - EVENT_VARIABLES
 
@@ -320,6 +341,31 @@ class _Explorer:
         """The variables that hold answers."""
         given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
         return frozenset(given) - set(STATUSES)
+
+    def _counts_down(self) -> bool:
+        """Whether a thread that becomes free changes the number of the next one. How many threads are running is not
+        followed, so that such a number seems to fall without end."""
+        numbers = set(self._counted())
+        while True:
+            values = [
+                s.value.tree
+                for s in self.chart.statements
+                if isinstance(s, Assign) and s.location and isinstance(s.value, Expression)
+                if not variables_in((s.location.tree,)).isdisjoint(numbers)
+            ]
+            if variables_in(values) <= numbers:
+                break
+            numbers |= variables_in(values)
+        return any(
+            isinstance(statement, Assign)
+            and statement.location is not None
+            and not variables_in((statement.location.tree,)).isdisjoint(numbers)
+            for state in self.chart.states
+            for handler in state.handlers
+            if handler.trigger == "thread-free"
+            for target in handler.targets
+            for statement in statements(target.body)
+        )
 
     def _counted(self) -> frozenset[str]:
         """The variables that number threads."""
@@ -333,6 +379,14 @@ class _Explorer:
             for s in self.chart.statements
             if isinstance(s, Communicate) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
         }
+        if not found:
+            return frozenset()
+        found |= {
+            s.location.tree.name
+            for s in self.chart.statements
+            if isinstance(s, Assign) and s.location and isinstance(s.location.tree, Name)
+            if isinstance(s.value, Expression) and access_path(s.value.tree) == ("_action", "goal_id")
+        }
         while True:
             copied = {
                 s.value.tree.name
@@ -343,6 +397,21 @@ class _Explorer:
             if copied <= found:
                 return frozenset(found)
             found |= copied
+
+    def _may_be_ids(self) -> frozenset[str]:
+        """The variables, and the data of events, from which the id of a goal may be had: all but the fields of a goal
+        and what is made of nothing but them, of constants and of each other."""
+        found = set(EVENT_VARIABLES - {"_goal"})
+        assigned = [
+            ((access_path(s.location.tree) or ("",))[0], s.value.tree if isinstance(s.value, Expression) else None)
+            for s in self.chart.statements
+            if isinstance(s, Assign) and s.location
+        ]
+        while True:
+            more = {root for root, value in assigned if value is None or not variables_in((value,)).isdisjoint(found)}
+            if more <= found:
+                return frozenset(found)
+            found |= more
 
     # ----------------------------------------------------------------- search
 
@@ -542,7 +611,10 @@ class _Explorer:
             for path in self._bodies([leave, target.body, enter], paths):
                 known = self._kept(path.knowledge) if entered else NOTHING
                 after = name if entered else NOWHERE
-                self.found.append((after, path._replace(knowledge=known), handler, choice, False))
+                done = path._replace(knowledge=known)
+                if event is not None and event.part == "goal":  # what was the earlier goal is an accepted one again
+                    done = done.with_ids(f"earlier {event.name}", f"accepted {event.name}")
+                self.found.append((after, done, handler, choice, False))
 
     def _received(self, path: _Path, event: Event | None) -> _Path:
         """What an event changes before anything is executed."""
@@ -558,6 +630,7 @@ class _Explorer:
             case "request":
                 return path.at("request", event.name, "due")
             case "goal":
+                path = path.with_ids(f"accepted {event.name}", f"earlier {event.name}")
                 return path.at("goal", event.name, "due")
             case "thread-start":
                 return path.at("result", event.name, "due")
@@ -635,9 +708,12 @@ class _Explorer:
             server = self.goal_here.removeprefix("asked ")
             decided = server != self.goal_here and not path.phase("goal", server)
             return "any" if decided else self.goal_here
-        if isinstance(value, Name):
-            return path.phase("id", value.name) if value.name in self.goal_ids else "any"
-        return "" if self.facts.value(NOTHING, value) is not None else "any"
+        if isinstance(value, Name) and value.name in self.goal_ids:
+            return path.phase("id", value.name)
+        if self.facts.value(NOTHING, value) is not None:
+            return ""
+        roots = variables_in((value,))
+        return f"foreign {format_expr(value)}" if roots and roots.isdisjoint(self.may_be_ids) else "any"
 
     def _if(self, statement: If, path: _Path) -> Iterable[_Path]:
         if not self.fine:
@@ -706,22 +782,26 @@ class _Explorer:
                 return self._decided(statement, path, handle, part == "goal-accepted")
             case "result":
                 return self._finished(statement, path, handle)
-            case "feedback" | "thread-start":
+            case "feedback":
+                return self._checked_id(
+                    statement, path, handle, Duty("result", handle), ("asked", "accepted", "earlier")
+                )
+            case "thread-start":
                 path = self._checked_id(statement, path, handle, Duty("result", handle), ("asked", "accepted"))
-                return self._started(statement, path, handle) if part == "thread-start" else path
+                return self._started(statement, path, handle)
         return path
 
     def _decided(self, statement: Communicate, path: _Path, handle: str, accepts: bool) -> _Path:
         duty = Duty("goal", handle)
-        path = self._checked_id(statement, path, handle, duty, ("asked", "accepted", "rejected", "finished"))
+        is_due = bool(path.phase("goal", handle))
+        decided = () if is_due else ("accepted", "earlier", "rejected", "finished")
+        path = self._checked_id(statement, path, handle, duty, ("asked", *decided))
         if any(fault.statement is statement and fault.kind == "other" for fault in path.faults):
             return path
-        if not path.phase("goal", handle):
+        if not is_due:
             return path.wrong("unasked", duty, statement)
         path = path.at("goal", handle, "")
-        for (kind, variable), held in path.phases:
-            if kind == "id" and held == f"asked {handle}":
-                path = path.at("id", variable, f"{'accepted' if accepts else 'rejected'} {handle}")
+        path = path.with_ids(f"asked {handle}", f"{'accepted' if accepts else 'rejected'} {handle}")
         if accepts and handle not in self.threaded:
             path = path.at("result", handle, "several" if path.phase("result", handle) else "due")
         return path
@@ -729,12 +809,13 @@ class _Explorer:
     def _finished(self, statement: Communicate, path: _Path, handle: str) -> _Path:
         duty = Duty("result", handle)
         before = len(path.faults)
-        path = self._checked_id(statement, path, handle, duty, ("accepted",))
+        path = self._checked_id(statement, path, handle, duty, ("accepted", "earlier"))
         variable = statement.goal_id.tree if statement.goal_id else None
-        if isinstance(variable, Name) and path.phase("id", variable.name) == f"accepted {handle}":
+        ended = (f"accepted {handle}", f"earlier {handle}")
+        if isinstance(variable, Name) and path.phase("id", variable.name) in ended:
             path = path.at("id", variable.name, f"finished {handle}")
         if len(path.faults) > before:
-            return path
+            return path.at("result", handle, "")  # that it ends no goal is said already
         if handle in self.threaded and not self.thread:
             return path
         match path.phase("result", handle):
@@ -757,9 +838,13 @@ class _Explorer:
         if not held:
             return path.wrong("unstored", duty, statement)
         status, _, server = held.partition(" ")
+        if status == "foreign":
+            return path.wrong("foreign", duty, statement, server)
         if server != handle:
             return path.wrong("other", duty, statement)
         if status not in wanted:
+            if duty.kind == "goal":
+                return path.wrong("earlier", duty, statement, path.variable_with(f"asked {handle}"))
             kind = {"asked": "undecided", "finished": "unasked"}.get(status, status)
             return path.wrong(kind, duty, statement)
         return path
@@ -770,8 +855,9 @@ class _Explorer:
             return path
         values = self.facts.values(path.knowledge, statement.thread_id.tree)
         if values.only is not None:
-            beyond = [v for v in values.only if not isinstance(v, str) and not 0 <= v < count]
-            wrong = bool(beyond)
+            numbers = [number for number in values.only if not isinstance(number, str)]
+            below = min(numbers, default=0) < 0 and not self.counts_down
+            wrong = below or max(numbers, default=0) >= count
         else:
             wrong = values.high != float("inf") and values.high >= count
             wrong = wrong or values.low >= count

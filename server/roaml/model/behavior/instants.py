@@ -3,6 +3,9 @@
 
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
 So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
+
+Where a part of the system cannot be read that might send what is awaited, it is taken to come at once; so is all that
+comes from a machine of which a part cannot be read that takes events.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from dataclasses import dataclass, field
 
 from roaml.model.behavior.explore import Event, Step
 from roaml.model.behavior.summary import START, Needs, Promise
+from roaml.model.gaps import SENDS
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
 
 _PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
@@ -26,6 +30,10 @@ _KINDS = {
     "result": ("action-client",),
 }
 _SENDERS = {"message": "publisher", "request": "service-client", "goal": "action-client", "feedback": "action-server"}
+
+_SERVERS = {"response": "service-server", "goal-response": "action-server", "result": "action-server"}
+_ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}
+"""What a server sends that a client receives."""
 
 _Fact = tuple[int, Event]
 
@@ -150,10 +158,18 @@ class Instants:
                 return id(automaton) in self.below
             case "response" | "goal-response" | "result":
                 server = server_of(self.system, automaton, event)
-                return server is None or not any(self._takes_time(server, p) for p in self._kept(server, event))
+                if server is None or may_be_sent(self.system, automaton, event):
+                    return True
+                if not is_readable(self.system, server.automaton):
+                    return True
+                return not any(self._takes_time(server, p) for p in self._kept(server, event))
         if event == START or event.part == "tick" or is_clock(self.system, automaton, event):
             return False
+        if may_be_sent(self.system, automaton, event):
+            return True
         for sender, sent in solver.senders(automaton, event):
+            if not is_readable(self.system, sender):
+                return True
             for cause in solver.causes(sender, sent):
                 if sender is self.plugin or solver.read(solver.number(sender), cause):
                     return True
@@ -196,6 +212,28 @@ class Instants:
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
+
+
+def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
+    """Whether an event may come from something that cannot be read."""
+    if event.part == "event":
+        return system.may(SENDS, event.name)
+    if event.part in ("thread-start", "thread-free"):
+        acts: tuple[str, ...] = (f"action-server {event.part}",)
+        name = next(
+            (automaton.interface_name(use) for use in automaton.outline.interfaces if use.handle == event.name), ""
+        )
+    else:
+        sender = _SENDERS.get(event.part) or _SERVERS.get(event.part, "")
+        acts = tuple(f"{sender} {part}" for part in _ANSWERS.get(event.part, (event.part,)))
+        channel = channel_of(system, automaton, event)
+        name = channel.name if channel else ""
+    return any(system.may(act, name or "") for act in acts)
+
+
+def is_readable(system: System, automaton: Automaton) -> bool:
+    """Whether all that an automaton takes and sends can be read; the fields of what it sends do not matter."""
+    return id(automaton) not in system.partly_read
 
 
 def promises(server: Endpoint, event: Event) -> Iterator[Promise]:
@@ -250,7 +288,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
         automaton = system.automata[number]
         if awaited == START or awaited.part in ("tick", "bt-tick", "bt-halt", "child-status", "child-halted"):
             return True
-        if is_clock(system, automaton, awaited):
+        if is_clock(system, automaton, awaited) or may_be_sent(system, automaton, awaited):
             return True
         if awaited.part in _PROMISED:
             server = server_of(system, automaton, awaited)
@@ -260,7 +298,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
         else:
             answers = list(solver.senders(automaton, awaited))
         for sender, what in answers:
-            if sender is receiver and what in sent:
+            if (sender is receiver and what in sent) or not is_readable(system, sender):
                 return True
             if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, what)):
                 return True
@@ -270,6 +308,8 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
     if is_clock(system, receiver, event) or (event.part == "event" and event in sent):
         return True
     senders = list(solver.senders(receiver, event))
+    if may_be_sent(system, receiver, event) or not all(is_readable(system, sender) for sender, _ in senders):
+        return True
     if any(sender is receiver and what in sent for sender, what in senders):
         return True
     # Each copy of a thread is a sender of its own.
@@ -283,6 +323,3 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
             if any(all(solver.solve(number, need) for need in alternative) for alternative in needs):
                 return True
     return False
-
-
-_ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Conditions that are tried one after the other: which of them can never hold because earlier ones do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from roaml.expr.tree import Expr, is_draw, walk
+from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, Facts, Knowledge
+from roaml.model.syntax import Expression
+
+
+class Covered(NamedTuple):
+    """A condition that holds only where earlier ones do.
+
+    Attributes:
+        number: of the condition, from 0.
+        by: the numbers of the earlier ones each of which covers it alone; empty if it takes several together.
+        same: one of these is the same condition.
+    """
+
+    number: int
+    by: tuple[int, ...]
+    same: bool
+
+
+def covered(facts: Facts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
+    """The conditions that never decide, in order.
+
+    Conditions that never hold by themselves are not among them. None, a condition that cannot be read and one that
+    draws a random number cover nothing.
+    """
+    left: tuple[Knowledge, ...] = (NOTHING,)
+    for number, condition in enumerate(conditions):
+        if condition is None or condition.broken or any(is_draw(node) for node in walk(condition.tree)):
+            continue
+        tree = condition.tree
+        if number and not any(facts.assume(known, tree) for known in left):
+            if any(facts.assume(NOTHING, tree)):
+                earlier = [(n, c.tree) for n, c in enumerate(conditions[:number]) if c is not None and not c.broken]
+                by = [(n, other) for n, other in earlier if not _beside(facts, other, tree)]
+                same = any(not _beside(facts, tree, other) for _, other in by)
+                yield Covered(number, tuple(n for n, _ in by), same)
+            continue
+        left = tuple(rest for known in left for rest in facts.assume(known, tree, False))
+        if len(left) > MOST_WAYS:
+            return
+
+
+def _beside(facts: Facts, one: Expr, other: Expr) -> bool:
+    """Whether `other` may hold where `one` does not."""
+    return any(facts.assume(known, other) for known in facts.assume(NOTHING, one, False))
