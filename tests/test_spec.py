@@ -15,7 +15,8 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 
-SPEC = Path(__file__).resolve().parents[1] / "docs" / "spec"
+ROOT = Path(__file__).resolve().parents[1]
+SPEC = ROOT / "docs" / "spec"
 PAGES = sorted(SPEC.glob("*.md"))
 STYLE = SPEC.parent / "STYLE.md"
 
