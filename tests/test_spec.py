@@ -7,17 +7,20 @@ folder.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
 from as2fm_lsp.cli.main import run
+from roaml import api
 from roaml.expr.operators import FUNCTIONS, Operator
 from roaml.expr.types import BASE_TYPES
+from roaml.jani.writer import write
 from roaml.language import BEHAVIOR_TREE, HL_SCXML
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
 from roaml.model.system import Automaton
@@ -114,6 +117,40 @@ def test_sections_are_numbered_in_order(page: Path) -> None:
 def test_the_contents_name_every_page() -> None:
     linked = set(re.findall(r"^\| \[[^]]+\]\((\w[\w-]*\.md)\)", (SPEC / "README.md").read_text(encoding="utf-8"), re.M))
     assert linked == {page.name for page in PAGES} - {"README.md"}
+
+
+def test_the_example_of_a_translation(tmp_path: Path) -> None:
+    for path, content in EXAMPLES["jani.md"].items():
+        (tmp_path / path).write_text(content, encoding="utf-8")
+    model = json.loads("".join(write(api.to_jani(api.load(tmp_path / "main.xml")))))
+    machines = [listing(automaton) for automaton in model["automata"] if automaton["name"] in ("Sensor", "Guard")]
+    (shown,) = [text for _, kind, text in _BLOCK.findall(section("jani", "example")) if kind == "text"]
+    assert shown == "".join(machines)
+
+
+def listing(automaton: Any) -> str:
+    """The edges of an automaton in JANI, one below the other."""
+    lines = [f"{automaton['name']}, initially {automaton['initial-locations'][0]}"]
+    for edge in automaton["edges"]:
+        guard = f"  [{infix(edge['guard']['exp'])}]" if "guard" in edge else ""
+        lines.append(f"    {edge['location']}  {edge['action']}{guard}")
+        for way in edge["destinations"]:
+            stored = [f"{each['ref']} := {infix(each['value'])}" for each in way.get("assignments", ())]
+            chance = f"{way['probability']['exp']}: " if len(edge["destinations"]) > 1 else ""
+            lines.append(f"        {chance}{way['location']}{'  ' if stored else ''}{'; '.join(stored)}")
+    return "\n".join(lines) + "\n"
+
+
+def infix(expression: Any) -> str:
+    """An expression in JANI as people write it; this covers what the example needs."""
+    match expression:
+        case bool():
+            return str(expression).lower()
+        case {"op": "¬", "exp": operand}:
+            return f"¬{infix(operand)}" if isinstance(operand, str) else f"¬({infix(operand)})"
+        case {"op": operator, "left": left, "right": right}:
+            return f"{infix(left)} {operator} {infix(right)}"
+    return str(expression)
 
 
 # ---------------------------------------------------------------- what is said twice
