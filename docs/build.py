@@ -21,7 +21,7 @@ from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
 from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
-from roaml.rules import RULES, document
+from roaml.rules import RULES, document, in_reference
 
 HERE = Path(__file__).resolve().parent
 REFERENCE = HERE / "reference"
@@ -169,7 +169,7 @@ def properties() -> str:
 
 def rules() -> str:
     index = "\n".join(f"| [{rule.code}](#{rule.code}) | {rule.severity.label} | {rule.summary} |" for rule in RULES)
-    texts = "\n".join(demoted(document(rule.code)) for rule in RULES)
+    texts = "\n".join(demoted(in_reference(document(rule.code))) for rule in RULES)
     return f"""# Rules
 
 Each finding has a code. `as2fm-lsp --explain CODE` prints what stands here. A comment `<!-- as2fm: ignore[code] -->`

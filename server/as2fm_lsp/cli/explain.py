@@ -6,12 +6,12 @@ from __future__ import annotations
 from as2fm_lsp.cli.arguments import unknown_rule
 from as2fm_lsp.cli.check import CLEAN, USAGE
 from as2fm_lsp.cli.output import complain, print_text
-from roaml.rules import BY_CODE, document
+from roaml.rules import BY_CODE, cited, document
 
 
 def run(code: str) -> int:
     if code not in BY_CODE:
         complain(unknown_rule(code))
         return USAGE
-    print_text(document(code))
+    print_text(cited(document(code)))
     return CLEAN

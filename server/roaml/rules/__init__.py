@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.resources
+import re
 
 from roaml.rules import (
     answer_needs_time,
@@ -320,8 +321,21 @@ BY_CODE = {rule.code: rule for rule in RULES}
 
 
 def document(code: str) -> str:
-    """The document of a rule (Markdown). KeyError if there is no such rule."""
+    """The document of a rule (Markdown), with a link relative to its file. KeyError if there is no such rule."""
     if code not in BY_CODE:
         raise KeyError(code)
     name = code.replace("-", "_") + ".md"
     return (importlib.resources.files("roaml.rules") / name).read_text(encoding="utf-8")
+
+
+def cited(text: str) -> str:
+    """The document of a rule for readers outside of the repository: links to the definition become citations."""
+    return _DEFINITION.sub(r"\1 (docs/spec/\2)", text)
+
+
+def in_reference(text: str) -> str:
+    """The document of a rule with links that are valid in docs/reference."""
+    return _DEFINITION.sub(r"[\1](../spec/\2)", text)
+
+
+_DEFINITION = re.compile(r"\[([^]]+)\]\((?:\.\./)+docs/spec/([^)]+)\)")

@@ -14,7 +14,7 @@ from typing import Any
 
 from as2fm_lsp.cli.formats.report import Entry, Place, Report
 from roaml import __version__
-from roaml.rules import BY_CODE, document
+from roaml.rules import BY_CODE, cited, document
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 MAX_RESULTS = 25_000
@@ -42,7 +42,7 @@ def render(report: Report) -> str:
 
 
 def _rule(code: str) -> dict[str, Any]:
-    rule, text = BY_CODE[code], document(code)
+    rule, text = BY_CODE[code], cited(document(code))
     return {
         "id": code,
         "name": "".join(word.capitalize() for word in code.split("-")),
