@@ -16,7 +16,6 @@ from pathlib import Path
 from lsprotocol import types
 from pygls import uris
 
-import roaml.rules
 from as2fm_lsp.buffer import MARK, Units
 from roaml.diagnostics import Diagnostic, Severity, Tag
 from roaml.text import Location, SourceFile, Span, TextEdit
@@ -145,5 +144,4 @@ def _file(uri: str) -> str:
 
 def rule_uri(code: str) -> str:
     """The document of a rule, as it is installed beside the server: it needs no network and fits the version."""
-    folder = Path(roaml.rules.__file__).parent
-    return (folder / f"{code.replace('-', '_')}.md").as_uri()
+    return document_file(code).as_uri()

@@ -17,7 +17,8 @@ from roaml.diagnostics import Diagnostic, Severity
 from roaml.language import HL_SCXML, SYSTEM
 from roaml.language.validate import SchemaViolation
 from roaml.project.settings import Settings
-from roaml.rules import BY_CODE, schema_violation
+from roaml.rules import BY_CODE
+from roaml.rules.elements import schema_violation
 from roaml.rules.rule import FileContext
 from roaml.text import SourceFile
 from roaml.xml import parse

@@ -21,7 +21,8 @@ from roaml import api
 from roaml.diagnostics import Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import SEVERITIES, ament_prefixes
-from roaml.rules import BY_CODE, internal_error
+from roaml.rules import BY_CODE
+from roaml.rules.files import internal_error
 
 _CRASH = internal_error.RULE.code
 

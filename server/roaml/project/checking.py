@@ -36,8 +36,10 @@ from roaml.project.locate import locate
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
-from roaml.rules import BY_CODE, RULES, file_too_large, invalid_setting, toml_syntax, unused_suppression
-from roaml.rules import internal_error as internal_error_rule
+from roaml.rules import BY_CODE, RULES
+from roaml.rules.files import file_too_large, unused_suppression
+from roaml.rules.files import internal_error as internal_error_rule
+from roaml.rules.parser_rules import INVALID_SETTING, TOML_SYNTAX
 from roaml.rules.rule import (
     FileContext,
     MachineContext,
@@ -56,7 +58,7 @@ MAX_FINDINGS = 1000
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
-_OF_CONFIGURATION = (toml_syntax.RULE.code, invalid_setting.RULE.code)
+_OF_CONFIGURATION = (TOML_SYNTAX.code, INVALID_SETTING.code)
 
 _GRAMMARS: dict[FileKind, Grammar] = {
     FileKind.SYSTEM: SYSTEM,

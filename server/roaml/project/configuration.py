@@ -18,7 +18,7 @@ from roaml.disk import Problem
 from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, Mistake, Settings, folders_above, folders_in, settings_from
-from roaml.rules import invalid_setting, missing_folder, toml_syntax
+from roaml.rules.parser_rules import INVALID_SETTING, MISSING_FOLDER, TOML_SYNTAX
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
@@ -46,12 +46,12 @@ def read_configuration(source: SourceFile) -> Configuration:
         return Configuration(None)  # told by `file-too-large`
     if is_ours and source.encoding != "utf-8":
         text = f"this file is encoded as {source.encoding}, but TOML is written in UTF-8"
-        return Configuration(None, (toml_syntax.RULE.at(Span(0, min(1, len(source.text))), text),))
+        return Configuration(None, (TOML_SYNTAX.at(Span(0, min(1, len(source.text))), text),))
     try:
         table: Any = loads(source.text)
     except TomlError as error:
         message = str(error)
-        syntax = (toml_syntax.RULE.at(error.span, f"{message[:1].lower()}{message[1:]}"),)
+        syntax = (TOML_SYNTAX.at(error.span, f"{message[:1].lower()}{message[1:]}"),)
         return Configuration(None, syntax if is_ours else ())
     for key in prefix:
         table = table.get(key) if isinstance(table, dict) else None
@@ -60,7 +60,7 @@ def read_configuration(source: SourceFile) -> Configuration:
     known = places(source.text)
     if not isinstance(table, dict):
         message = "`tool.as2fm` must be a table of settings"
-        return Configuration(None, (invalid_setting.RULE.at(_span(source, known, prefix), message),))
+        return Configuration(None, (INVALID_SETTING.at(_span(source, known, prefix), message),))
     _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
     found = tuple(_finding(source, known, prefix, each) for each in mistakes)
     folders = folders_in(table, os.path.dirname(source.path))
@@ -70,7 +70,9 @@ def read_configuration(source: SourceFile) -> Configuration:
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
     """The folders that are not there at this moment."""
     return tuple(
-        missing_folder.finding(span, folder.written)
+        MISSING_FOLDER.at(
+            span, f"there is no folder `{folder.written}`; relative paths begin at the folder of this file"
+        )
         for span, folder in configuration.folders
         if not os.path.isdir(folder.full)
     )
@@ -86,7 +88,7 @@ def _finding(source: SourceFile, known: Places, prefix: Path, mistake: Mistake) 
         Fix(f"Change to `{name}`", (TextEdit(span, f"{quotes}{name}{quotes}"),), preferred=number == 0)
         for number, name in enumerate(mistake.instead)
     )
-    return invalid_setting.RULE.at(span, mistake.message, *fixes)
+    return INVALID_SETTING.at(span, mistake.message, *fixes)
 
 
 def _span(source: SourceFile, known: Places, path: Path) -> Span:

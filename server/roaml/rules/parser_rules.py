@@ -1,18 +1,64 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules whose findings the parsers make: each passes on those with its code."""
+"""The rules whose findings are made where files are parsed: a code, a severity and a sentence for each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 
-from roaml.diagnostics import Finding
-from roaml.rules.rule import FileContext
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import FileContext, Rule
 
 
-def passes_on(code: str) -> Callable[[FileContext], Iterator[Finding]]:
-    """A check that reports what the parsers found under `code`."""
+def parser_findings(code: str, context: FileContext) -> Iterator[Finding]:
+    """What the parsers found in a file under `code`."""
+    return (finding for finding in context.findings if finding.code == code)
 
-    def check(context: FileContext) -> Iterator[Finding]:
-        return (finding for finding in context.findings if finding.code == code)
 
-    return check
+def _parser_rule(code: str, severity: Severity, summary: str) -> Rule:
+    return Rule(code, severity, summary, file=partial(parser_findings, code))
+
+
+DUPLICATE_ATTRIBUTE = _parser_rule("duplicate-attribute", Severity.ERROR, "An element has the same attribute twice.")
+DUPLICATE_JSON_KEY = _parser_rule(
+    "duplicate-json-key", Severity.WARNING, "An object has the same key twice; only the last one counts."
+)
+INTERFACE_SYNTAX = _parser_rule(
+    "interface-syntax", Severity.ERROR, "A ROS interface definition does not follow the rules of ROS 2."
+)
+INVALID_SETTING = _parser_rule(
+    "invalid-setting",
+    Severity.ERROR,
+    "A configuration file has a setting that does not exist, or a value that does not fit.",
+)
+JANI_NAME = _parser_rule("jani-name", Severity.ERROR, "Two properties in a file have the same name.")
+JANI_SYNTAX = _parser_rule("jani-syntax", Severity.ERROR, "A property does not have the form that JANI wants.")
+JSON_SCHEMA = _parser_rule("json-schema", Severity.ERROR, "A JSON Schema says something for which there is no struct.")
+JSON_SYNTAX = _parser_rule("json-syntax", Severity.ERROR, "The file is not well-formed JSON.")
+MISSING_FOLDER = _parser_rule(
+    "missing-folder", Severity.WARNING, "A configuration file names a folder that does not exist."
+)
+NESTING_TOO_DEEP = _parser_rule(
+    "nesting-too-deep", Severity.ERROR, "Elements are nested deeper than the analysis goes."
+)
+TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not TOML.")
+UNDEFINED_ENTITY = _parser_rule(
+    "undefined-entity", Severity.ERROR, "An entity is used that is not one of the five predefined ones."
+)
+XML_SYNTAX = _parser_rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.")
+
+RULES = (
+    DUPLICATE_ATTRIBUTE,
+    DUPLICATE_JSON_KEY,
+    INTERFACE_SYNTAX,
+    INVALID_SETTING,
+    JANI_NAME,
+    JANI_SYNTAX,
+    JSON_SCHEMA,
+    JSON_SYNTAX,
+    MISSING_FOLDER,
+    NESTING_TOO_DEEP,
+    TOML_SYNTAX,
+    UNDEFINED_ENTITY,
+    XML_SYNTAX,
+)

@@ -9,7 +9,7 @@ from roaml.ide.code_actions.action import REWRITE, Action, Change, known
 from roaml.model.tree import EXPLICIT, SUBTREES, TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
-from roaml.rules.elements import removal
+from roaml.rules.support.elements import removal
 from roaml.text import Span, TextEdit
 
 

@@ -26,9 +26,9 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
-from roaml.rules.elements import removal
-from roaml.rules.layout import after, first_in
 from roaml.rules.rule import close_names
+from roaml.rules.support.elements import removal
+from roaml.rules.support.layout import after, first_in
 from roaml.text import SourceFile, Span, TextEdit
 
 _MOST = 3

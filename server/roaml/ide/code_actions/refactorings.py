@@ -14,8 +14,8 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
-from roaml.rules.layout import after, last_in
-from roaml.rules.unanswered_halt import halts
+from roaml.rules.answers.unanswered_halt import halts
+from roaml.rules.support.layout import after, last_in
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
 

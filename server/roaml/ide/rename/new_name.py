@@ -22,8 +22,8 @@ from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
 from roaml.model.typing import STATUSES
 from roaml.project.analysis import Analysis
-from roaml.rules.event_data_unavailable import EVENT_VARIABLES
-from roaml.rules.invalid_name import EVENT, RESERVED, VARIABLE, variable_problem
+from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.rules.variables.invalid_name import EVENT, RESERVED, VARIABLE, variable_problem
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)

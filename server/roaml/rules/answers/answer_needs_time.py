@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""answer-needs-time: see answer_needs_time.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.model.behavior.duties import HALT, TICK, distances, entering, unfinished
+from roaml.model.behavior.explore import Behavior, Duty, Event, Step
+from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
+from roaml.model.machine import Handler
+from roaml.model.system import Automaton, System
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors, place, plugins
+from roaml.rules.support.asynchronous import rewritten
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A tick or halt is answered in the instant in which it comes, or the clock of the model stops
+    (docs/spec/semantics.md#time)."""
+    system = context.system
+    if system is None:
+        return
+    told: set[tuple[Handler, Duty]] = set()
+    for automaton in plugins(context):
+        if not is_readable(system, automaton):
+            continue
+        instants = Instants(system, automaton)
+        for behavior in behaviors(context):
+            if behavior.chart is not context.machine.chart:
+                continue
+            for duty in (TICK, HALT):
+                slow = unfinished(behavior, duty, instants.possible) - unfinished(behavior, duty)
+                for step in entering(behavior, slow):
+                    awaited = _awaited(behavior, step, slow, instants)
+                    if awaited is None or not instants.possible(step):
+                        continue
+                    for handler in _beginning(behavior, step, duty):
+                        if (handler, duty) not in told:
+                            told.add((handler, duty))
+                            yield _finding(context, system, handler, duty, instants.delay(awaited), automaton)
+
+
+def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
+    """Where the wait begins: the handler of the step; behind a decision on a goal, which has no content, the handlers
+    of the ticks that lead there."""
+    if step.event is None or step.event.part != "goal-response":
+        return (step.handler,)
+    sources, waiting = {step.source}, [step.source]
+    found: dict[Handler, None] = {}
+    while waiting:
+        here = waiting.pop()
+        for each in behavior.steps:
+            if each.target != here:
+                continue
+            if not behavior.configurations[each.source].owes(duty):
+                found[each.handler] = None
+            elif each.source not in sources:
+                sources.add(each.source)
+                waiting.append(each.source)
+    return found
+
+
+def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], instants: Instants) -> Event | None:
+    """The first event on the way to the answer that does not come without time: of several, one that leads to it."""
+    outgoing, left = behavior.outgoing(), distances(behavior, slow)
+    seen, waiting = {first.target}, [first.target]
+    while waiting:
+        here = waiting.pop(0)
+        for step in outgoing[here]:
+            if not instants.possible(step):
+                nearer = left.get(step.target, len(left)) < left.get(step.source, len(left))
+                if nearer and not step.ignored and step.event is not None and not instants.comes(step.event):
+                    return step.event
+            elif step.target in slow and step.target not in seen:
+                seen.add(step.target)
+                waiting.append(step.target)
+    return None
+
+
+def _finding(
+    context: MachineContext, system: System, handler: Handler, duty: Duty, delay: Delay, automaton: Automaton
+) -> Finding:
+    reason = "; ".join(_reasons(system, delay))
+    message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
+    message += f", which takes time: {reason}" if reason else ""
+    what = "answer RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
+    if _not_taken(delay):
+        what = "take the request in that state, too"
+    message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {what}"
+    fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
+    return RULE.at(place(handler), message, *fixes, related=_related(delay))
+
+
+def _not_taken(delay: Delay) -> bool:
+    return delay.promise is not None and not delay.promise.taken
+
+
+def _reasons(system: System, delay: Delay | None) -> Iterator[str]:
+    """The chain of who waits for whom, without its beginning."""
+    while delay is not None and delay.next is not None:
+        then = delay.next
+        what = _named(system, then.automaton, then.event)
+        timed = then.event.part == "tick"
+        if delay.promise is not None and delay.server is not None:
+            name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
+            doing, state = _DOING[delay.event.part], delay.promise.state
+            if not delay.promise.taken:
+                question = "request for" if delay.promise.duty.kind == "request" else "goal for"
+                yield f"`{name}` takes no {question} {channel} in its state `{state}` before {what}"
+            else:
+                yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {what}"
+        else:
+            yield f"`{then.automaton.name}` sends it only {'at' if timed else 'after'} {what}"
+        delay = then
+
+
+_DOING = {"response": "answers", "goal-response": "decides on the goals of", "result": "sends the result of"}
+_WHAT = {
+    "response": "the response of",
+    "goal-response": "the decision on its goal for",
+    "result": "the result of",
+    "feedback": "feedback of",
+    "message": "a message on",
+    "request": "a request for",
+    "goal": "a goal for",
+}
+
+
+def _channel(system: System, automaton: Automaton, event: Event) -> str:
+    channel = channel_of(system, automaton, event)
+    return f"`{channel.name if channel else event.name}`"
+
+
+def _named(system: System, automaton: Automaton, event: Event) -> str:
+    """What is waited for, in words."""
+    match event.part:
+        case "tick":
+            return f"its timer `{event.name}`"
+        case "event":
+            return f"the event `{event.name}`"
+        case "start":
+            return "its start"
+        case "bt-tick" | "bt-halt":
+            return f"the next {event.part[3:]} of `{automaton.name}`"
+        case "thread-start":
+            return "the start of a thread"
+        case "thread-free":
+            return "a thread that becomes free"
+    return f"{_WHAT.get(event.part, event.part)} {_channel(system, automaton, event)}"
+
+
+def _related(delay: Delay) -> Iterator[Related]:
+    each: Delay | None = delay
+    while each is not None:
+        if each.promise is not None and each.server is not None:
+            path, promise = each.server.automaton.path, each.promise
+            yield Related(Symbol(path, "state", promise.state, promise.scope), "it waits here")
+        elif each.next is None and each.event.part == "tick":
+            yield Related(Symbol(each.automaton.path, "timer", each.event.name), "the timer")
+        each = each.next
+
+
+RULE = Rule(
+    "answer-needs-time",
+    Severity.WARNING,
+    "The answer to a tick or halt waits for time to pass, which stops the clock for ever.",
+    machine=check,
+)

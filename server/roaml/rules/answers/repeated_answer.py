@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""repeated-answer: see repeated_answer.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.behavior.explore import Behavior, Duty, Event, Fault, Step
+from roaml.model.machine import Communicate, Handler, If, ReturnHalted, ReturnStatus, Statement, statements
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import SENT, answered_in, behaviors, place, plugins
+from roaml.rules.support.elements import removal
+from roaml.text import TextEdit
+
+KINDS = ("unasked", "wrong-kind")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """What is answered twice, or without having been asked for, counts as the answer to the next question."""
+    told: set[tuple[Handler, Duty]] = set()
+    in_tree = bool(plugins(context))
+    for behavior in behaviors(context):
+        for step in behavior.steps:
+            for fault in step.faults:
+                if (step.handler, fault.duty) in told or not _counts(context, behavior, step, fault, in_tree):
+                    continue
+                told.add((step.handler, fault.duty))
+                yield _finding(context, behavior, step, fault)
+
+
+def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Fault, in_tree: bool) -> bool:
+    if fault.kind not in KINDS:
+        return False
+    if fault.duty.kind in ("tick", "halt"):
+        if not in_tree or behavior.chart is not context.machine.chart:
+            return False
+        takes = "bt-tick" if isinstance(fault.statement, ReturnStatus) else "bt-halt"
+        if not any(s.event and s.event.part == takes for s in behavior.steps) and not _twice(step, fault):
+            return False  # the handler that is missing is reported
+    elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
+        return False
+    elif fault.duty.kind == "request" and _owes_another(behavior, step, fault.duty):
+        return False  # the request that is not answered is reported
+    return not behavior.approximate or _twice(step, fault)
+
+
+def _is_asked(behavior: Behavior, duty: Duty) -> bool:
+    """Whether this chart takes what is answered."""
+    kinds = ("goal", "thread-start") if duty.kind == "result" else (duty.kind,)
+    return any(step.event and step.event.part in kinds and step.event.name == duty.handle for step in behavior.steps)
+
+
+def _owes_another(behavior: Behavior, step: Step, duty: Duty) -> bool:
+    phases = behavior.configurations[step.target].phases
+    return any(kind == duty.kind and handle != duty.handle for (kind, handle), _ in phases)
+
+
+def _twice(step: Step, fault: Fault) -> bool:
+    """Whether the answer is sent more than once in the very same step."""
+    return sum(event in _answers(fault) for event in step.sent) > 1
+
+
+def _answers(fault: Fault) -> set[Event]:
+    """What counts as an answer to what a fault answers."""
+    if fault.duty.kind == "goal":
+        parts = {"goal-accepted", "goal-rejected"}
+    elif fault.duty.kind in ("tick", "halt"):
+        parts = {"bt-status", "bt-halted"}
+    else:
+        parts = {SENT[fault.duty.kind]}
+    handle = "" if fault.duty.kind in ("tick", "halt") else fault.duty.handle
+    return {Event(part, handle) for part in parts}
+
+
+def _finding(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Finding:
+    where = place(step.handler, fault.statement)
+    first = _first_answer(context, behavior, step, fault)
+    related = [Related(first.element.name_span, "the first answer")] if first is not None else []
+    again = "the second answer" if first is not None else "this answer"
+    related.append(Related(fault.statement.element.name_span, again))
+    # What is sent when a state is entered may be meant for another way into it.
+    shared = where == fault.statement.element.name_span and not _twice(step, fault)
+    severity = Severity.INFORMATION if shared else None
+    message = _message(behavior, step, fault, first)
+    return RULE.at(where, message, *_fixes(context, step, fault), severity=severity, related=related)
+
+
+def _message(behavior: Behavior, step: Step, fault: Fault, first: Statement | None) -> str:
+    what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
+    if fault.kind == "wrong-kind":
+        right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
+        return f"a {what} is answered with `<{tag}>`, which its parent does not wait for; send `<{right}>` instead"
+    how = {"result": "ended", "goal": "accepted or rejected"}.get(fault.duty.kind, "answered")
+    tail = f"the second answer is taken for that to the next {what}; send one of them only"
+    if first is None:
+        if _twice(step, fault):
+            return f"on a path through this a {what} is {how} twice: {tail}"
+        return f"`<{tag}>` is sent here though no {what} has come that waits for it; send it where the {what} is taken"
+    earlier, place, other = f"`<{first.element.name}>`", _where(behavior, first), _where(behavior, fault.statement)
+    if not _twice(step, fault):
+        why = f"on a path that leads here it was {how} before, by {earlier} {place}"
+        return f"`<{tag}>` is sent here though no {what} is waiting for it: {why}; {tail}"
+    by = f"first by {earlier} {place}, then by `<{tag}>` {other}"
+    if place == other:
+        by = f"by {earlier} and then by `<{tag}>`, both {place}"
+    return f"on a path through this a {what} is {how} twice, {by}: {tail}"
+
+
+def _first_answer(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Statement | None:
+    """What has answered the question before, in the same step or in the nearest one that leads to it."""
+    if fault.kind == "wrong-kind":
+        return None
+    events = _answers(fault)
+    earlier = _executed_before(behavior, step, fault.statement)
+    if sum(event in events for event in step.sent) > 1:
+        found = [s for s in earlier if _event(context, s) in events]
+        if found:
+            return found[-1]
+    incoming: dict[int, list[Step]] = {}
+    for each in behavior.steps:
+        incoming.setdefault(each.target, []).append(each)
+    seen, waiting = {step.source}, [step.source]
+    for here in waiting:
+        for each in incoming.get(here, ()):
+            if any(event in events for event in each.sent):
+                sent = [s for s in _executed_before(behavior, each, None) if _event(context, s) in events]
+                if sent:
+                    return sent[-1]
+            if each.source not in seen:
+                seen.add(each.source)
+                waiting.append(each.source)
+    return None
+
+
+def _executed_before(behavior: Behavior, step: Step, statement: Statement | None) -> list[Statement]:
+    """What a step may have executed before a statement, in order; all that it may execute for None."""
+    states = {state.id.value: state for state in behavior.chart.states if state.id}
+    left = states.get(behavior.configurations[step.source].state)
+    target = step.handler.targets[step.choice]
+    entered = states.get(target.state.value) if target.state else None
+    found: list[Statement] = []
+    leave = left.exit.statements if left and left.exit else ()
+    enter = entered.entry.statements if entered and entered.entry else ()
+    for body in (leave, target.body, enter):
+        if not _append(found, body, statement):
+            break
+    return found
+
+
+def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
+    """Append what is executed in a body before `last`, which is not in another branch; whether the body ends first."""
+    for each in body:
+        if each is last:
+            return False
+        if isinstance(each, If):
+            parts = [part.body for part in (*each.branches, each.otherwise) if part is not None]
+            chosen = [part for part in parts if last is not None and last in statements(part)]
+            for part in chosen or parts:
+                if not _append(found, part, last):
+                    return False
+        else:
+            found.append(each)
+    return True
+
+
+def _event(context: MachineContext, statement: Statement) -> Event | None:
+    if isinstance(statement, ReturnStatus):
+        return Event("bt-status", "")
+    if isinstance(statement, ReturnHalted):
+        return Event("bt-halted", "")
+    if isinstance(statement, Communicate):
+        declaration = find_handle(context.machine, statement)
+        return Event(statement.type.sends, declaration.handle.value) if declaration and declaration.handle else None
+    return None
+
+
+def _where(behavior: Behavior, statement: Statement) -> str:
+    """Where a statement stands, in words."""
+    at = statement.element.span
+    for state in behavior.chart.states:
+        name = state.id.value if state.id else ""
+        for content, tag in ((state.entry, "onentry"), (state.exit, "onexit")):
+            if content is not None and any(each is statement for each in statements(content.statements)):
+                return f"in the `<{tag}>` of the state `{name}`"
+        for handler in state.handlers:
+            if handler.element.span.start <= at.start and at.end <= handler.element.span.end:
+                return f"in the `<{handler.element.name}>` of the state `{name}`"
+    return "before"
+
+
+_QUESTION = {"tick": "tick", "halt": "halt", "request": "request", "goal": "goal", "result": "goal"}
+
+
+def _fixes(context: MachineContext, step: Step, fault: Fault) -> Iterator[Fix]:
+    element = fault.statement.element
+    if fault.kind == "wrong-kind":
+        right = (
+            "<bt_return_halted />"
+            if isinstance(fault.statement, ReturnStatus)
+            else '<bt_return_status status="SUCCESS" />'
+        )
+        yield Fix(f"Change to `{right}`", (TextEdit(element.span, right),), preferred=False)
+    elif _is_last(step.handler, fault.statement):
+        yield Fix(f"Remove this `<{element.name}>`", (removal(context.source.text, element.span),), preferred=False)
+
+
+def _is_last(handler: Handler, statement: Statement) -> bool:
+    """Whether the statement stands in the handler itself, so that taking it away leaves no empty `<if>`."""
+    return any(statement in target.body for target in handler.targets)
+
+
+RULE = Rule(
+    "repeated-answer", Severity.WARNING, "Something is answered twice, or without having been asked.", machine=check
+)

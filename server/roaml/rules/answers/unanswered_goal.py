@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unanswered-goal: see unanswered_goal.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.behavior.explore import Behavior, Duty, Step
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
+from roaml.rules.support.interfaces import declared
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A goal that is neither accepted nor rejected on some path, or accepted and never ended; an action that never does
+    is reported by silent-server."""
+    awaited = _awaited(context)
+    for behavior in behaviors(context):
+        asked = {s.event.name for s in behavior.steps if s.event and s.event.part in ("goal", "thread-start")}
+        for name in sorted(asked):
+            for kind in ("goal", "result"):
+                duty = Duty(kind, name)
+                if kind == "result" and name not in awaited:
+                    continue
+                if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
+                    yield from _missed(context, behavior, duty)
+
+
+def _awaited(context: MachineContext) -> set[str]:
+    """The handles of the actions whose results some client waits for."""
+    return {
+        declaration.handle.value
+        for declaration, _, channel in declared(context, "action-server")
+        if declaration.handle and any("result" in client.use.receives for client in channel.users)
+    }
+
+
+def _missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[Finding]:
+    for step, certain in missed(context, behavior, duty):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, duty, certain)
+        yield RULE.at(place(step.handler), message, severity=severity, related=target_of(step))
+
+
+def _message(step: Step, duty: Duty, certain: bool) -> str:
+    tag, ends = f"<{step.handler.element.name}>", duty.kind == "result"
+    never = "is never ended" if ends else "is neither accepted nor rejected"
+    if step.ignored:
+        what = "what comes while this condition does not hold is dropped, and a goal"
+        return f"{what} {never}, so that its client waits for ever; add a `{tag}` without `cond` behind it"
+    how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
+    end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
+    which = "a goal that is accepted here" if ends else "a goal that is taken here"
+    if (ends and not {e.part for e in step.sent} & {"goal-accepted"}) or not (ends or _asks(step)):
+        which = "the goal that is waiting here"
+    return f"{which} {how}, so that its client waits for ever; {end} on each path"
+
+
+def _asks(step: Step) -> bool:
+    return step.event is not None and step.event.part == "goal"
+
+
+RULE = Rule(
+    "unanswered-goal", Severity.ERROR, "A goal is not accepted or rejected, or not ended, on every path.", machine=check
+)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unanswered-halt: see unanswered_halt.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import HALT
+from roaml.model.behavior.explore import Behavior, Step
+from roaml.model.behavior.instants import Instants, is_readable
+from roaml.model.machine import State
+from roaml.model.system import Automaton
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.rules.support.answers import (
+    behaviors,
+    deaf_states,
+    is_spelled,
+    missed,
+    place,
+    plugins,
+    target_of,
+)
+from roaml.rules.support.layout import after, last_in
+from roaml.text import TextEdit
+from roaml.xml import Document, Element
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A plugin whose parent halts it must answer, or the parent waits for ever (docs/spec/plugins.md#protocol)."""
+    halted = list(_halted(context))
+    if not halted:
+        return
+    plugin, parent = halted[0][0].outline.plugin, halted[0][1].outline.name
+    root, name = context.machine.element, context.machine.name
+    if not plugin.halted:
+        if not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
+            message = f"the plugin takes no halts, but `{parent}` halts it: it has no `<bt_halt>`"
+            yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
+        return
+    if not is_spelled(context, HALT):
+        return
+    for behavior in behaviors(context):
+        if behavior.chart is context.machine.chart:
+            yield from _missed(context, behavior)
+            yield from _not_taken(context, behavior, [automaton for automaton, _ in halted])
+
+
+def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
+    """What the plugin is in the tree, with the parent, if that halts its children."""
+    for automaton in plugins(context):
+        number = automaton.instance.parent if automaton.instance else None
+        parent = context.system.by_instance.get(number) if context.system and number is not None else None
+        if parent is not None and parent.outline.plugin.halts_children:
+            yield automaton, parent
+
+
+def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    for step, certain in missed(context, behavior, HALT):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, certain)
+        fixes = _answer(context, step)
+        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+
+
+def _message(step: Step, certain: bool) -> str:
+    if step.ignored:
+        what = "what comes while this condition does not hold is dropped, and the halt is never answered"
+        tag = f"<{step.handler.element.name}>"
+        return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
+    halted = step.event is not None and step.event.part == "bt-halt"
+    where = "a halt that is taken here" if halted else "the halt that is waiting here"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
+    return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_halted>` on each path"
+
+
+def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
+    """States in which the plugin waits and that have no `<bt_halt>`."""
+    told: set[State] = set()
+    for automaton in automata:
+        for state, standing in deaf_states(context, behavior, automaton, HALT):
+            if state not in told and state.id is not None:
+                told.add(state)
+                how = "while the plugin is running " if standing == "running" else ""
+                message = f"a halt that comes {how}in the state `{state.id.value}` is never taken, so that the tree "
+                message += "waits for ever; add a `<bt_halt>`"
+                fixes = _add_handler(context, state)
+                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
+        if context.system is None or not is_readable(context.system, automaton):
+            continue
+        possible = Instants(context.system, automaton).possible
+        for state, _ in deaf_states(context, behavior, automaton, HALT, possible):
+            if state not in told and state.id is not None:
+                told.add(state)
+                message = f"a halt that comes in the state `{state.id.value}` is not taken before time has passed, but "
+                message += "the clock waits until it is answered; add a `<bt_halt>`"
+                fixes = _add_handler(context, state)
+                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
+
+
+def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:
+    edits = halts(context.document, root, root.elements)
+    if edits:
+        yield Fix("Add `<bt_halt>` to every state that takes ticks", edits)
+
+
+def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
+    initial = context.machine.chart.initial
+    if initial is not None and state.element.complete:
+        lines = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
+        yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
+
+
+def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
+    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
+    initial = root.get("initial")
+    edits = []
+    for state in states:
+        ticks = [child for child in state.elements if child.name == "bt_tick"]
+        if state.name == "state" and ticks and initial and state.find("bt_halt") is None:
+            halt = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
+            edits.append(after(document, ticks[-1], *halt))
+    return tuple(edits)
+
+
+def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:
+    """Add a `<bt_return_halted />` to the handler."""
+    place = step.handler.targets[step.choice].element or step.handler.element
+    sent = {event.part for event in step.sent}
+    if place.complete and step.certain and not step.ignored and not sent & {"bt-halted", "bt-status"}:
+        yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
+
+
+RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not taken or not answered on every path.", machine=check)

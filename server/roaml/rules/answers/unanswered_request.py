@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unanswered-request: see unanswered_request.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.behavior.explore import Behavior, Duty, Step
+from roaml.model.machine import Handler
+from roaml.model.ros import InterfaceType
+from roaml.model.typing import find_handle
+from roaml.rules.interfaces.silent_server import response
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
+from roaml.rules.support.layout import last_in
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A service that answers on some paths only; one that never answers is reported by silent-server."""
+    for behavior in behaviors(context):
+        asked = {
+            step.event.name: step.handler for step in behavior.steps if step.event and step.event.part == "request"
+        }
+        for name, handler in asked.items():
+            duty = Duty("request", name)
+            if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
+                yield from _missed(context, behavior, duty, handler)
+
+
+def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Handler) -> Iterator[Finding]:
+    for step, certain in missed(context, behavior, duty):
+        severity = None if certain else Severity.WARNING
+        message = _message(step, duty, certain)
+        fixes = _fixes(context, step, handler)
+        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+
+
+def _message(step: Step, duty: Duty, certain: bool) -> str:
+    asked = step.event is not None and step.event.part == "request"
+    if step.ignored:
+        what = f"a request for `{duty.handle}` that comes while this condition does not hold is dropped and"
+        if not asked:
+            what = f"what comes while this condition does not hold is dropped, and the request for `{duty.handle}` is"
+        tag = f"<{step.handler.element.name}>"
+        return f"{what} never answered, so that the client waits for ever; add a `{tag}` without `cond` behind it"
+    where = "a request that is taken here" if asked else f"the request for `{duty.handle}` that is waiting here"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
+    return f"{where} {how}, so that the client waits for ever; send one `<ros_service_send_response>` on each path"
+
+
+def _fixes(context: MachineContext, step: Step, asked: Handler) -> Iterator[Fix]:
+    """Answer with zeros at the end of the handler."""
+    place = step.handler.targets[step.choice].element or step.handler.element
+    declaration = find_handle(context.machine, asked)
+    if not step.certain or step.ignored or not place.complete or declaration is None or declaration.type is None:
+        return
+    interface = context.interface("srv", declaration.type.value)
+    if isinstance(interface, InterfaceType):
+        lines = response(declaration, interface)
+        yield Fix(
+            "Answer with `<ros_service_send_response>`", (last_in(context.document, place, *lines),), preferred=False
+        )
+
+
+RULE = Rule("unanswered-request", Severity.ERROR, "A request is not answered on every path.", machine=check)

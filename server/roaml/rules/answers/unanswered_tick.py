@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unanswered-tick: see unanswered_tick.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import TICK
+from roaml.model.behavior.explore import Behavior, Step
+from roaml.model.behavior.instants import Instants, is_readable
+from roaml.model.system import Automaton
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.rules.support.answers import (
+    behaviors,
+    deaf_states,
+    is_spelled,
+    missed,
+    place,
+    plugins,
+    target_of,
+)
+from roaml.rules.support.layout import after, last_in
+
+ANSWER = '<bt_return_status status="SUCCESS" />'
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A plugin that is used in the tree but cannot take or answer a tick stops the whole tree."""
+    automata = plugins(context)
+    if not automata:
+        return
+    plugin, name, root = automata[0].outline.plugin, context.machine.name, context.machine.element
+    if not plugin.ticked:
+        if not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
+            message = "the plugin takes no ticks: it has no `<bt_tick>`"
+            yield RULE.at(name.span if name else root.name_span, message, *_add_handler(context))
+        return
+    if not is_spelled(context, TICK):
+        return
+    for behavior in behaviors(context):
+        if behavior.chart is context.machine.chart:
+            yield from _missed(context, behavior)
+            yield from _not_taken(context, behavior, automata)
+
+
+def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    for step, certain in missed(context, behavior, TICK):
+        yield RULE.at(
+            place(step.handler),
+            _message(step, certain),
+            *_fixes(context, step),
+            severity=None if certain else Severity.WARNING,
+            related=target_of(step),
+        )
+
+
+def _message(step: Step, certain: bool) -> str:
+    ticked = step.event is not None and step.event.part == "bt-tick"
+    if step.ignored:
+        tag = f"<{step.handler.element.name}>"
+        what = "a tick that comes while this condition does not hold is dropped and never answered"
+        if not ticked:
+            what = "what comes while this condition does not hold is dropped, and the tick is never answered"
+        return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
+    where = "a tick that is taken here" if ticked else "the tick that is waiting here"
+    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
+    return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_status>` on each path"
+
+
+def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
+    """States in which the plugin waits and that have no `<bt_tick>`."""
+    told = set()
+    for automaton in automata:
+        for state, standing in deaf_states(context, behavior, automaton, TICK):
+            if state not in told and state.id is not None:
+                told.add(state)
+                message = f"a tick that comes in the state `{state.id.value}` is never taken, so that the tree waits "
+                message += "for ever; add a `<bt_tick>`"
+                severity = Severity.WARNING if standing == "ended" else None
+                yield RULE.at(state.id.span, message, *_take(context, state.element), severity=severity)
+        if context.system is None or not is_readable(context.system, automaton):
+            continue
+        possible = Instants(context.system, automaton).possible
+        for state, _ in deaf_states(context, behavior, automaton, TICK, possible):
+            if state not in told and state.id is not None:
+                told.add(state)
+                message = f"a tick that comes in the state `{state.id.value}` is not taken before time has passed, but "
+                message += "the clock waits until it is answered; add a `<bt_tick>` that answers RUNNING"
+                yield RULE.at(state.id.span, message, *_take(context, state.element), severity=Severity.WARNING)
+
+
+def _take(context: MachineContext, state: object) -> Iterator[Fix]:
+    """Answer RUNNING in a state that takes no ticks."""
+    for each in context.machine.chart.states:
+        if each.element is state and each.id is not None and each.element.complete:
+            lines = (f'<bt_tick target="{each.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
+            edit = last_in(context.document, each.element, *lines)
+            yield Fix(f"Answer ticks in the state `{each.id.value}` with `RUNNING`", (edit,), preferred=False)
+
+
+def _fixes(context: MachineContext, step: Step) -> Iterator[Fix]:
+    """Succeed at the end of the handler, or where none of its conditions holds."""
+    document, element = context.document, step.handler.element
+    if not element.complete or step.event is None:
+        return
+    if step.ignored and step.event.part == "bt-tick":
+        state = next((s for s in context.machine.chart.states if step.handler in s.handlers), None)
+        if state is not None and state.id is not None:
+            lines = (f'<bt_tick target="{state.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
+            yield Fix("Answer such a tick with `RUNNING`", (after(document, element, *lines),), preferred=False)
+    elif not step.ignored and "bt-status" not in {e.part for e in step.sent} and step.certain:
+        place = step.handler.targets[step.choice].element or element
+        if place.complete:
+            yield Fix("Answer the tick with `SUCCESS`", (last_in(document, place, ANSWER),), preferred=False)
+
+
+def _add_handler(context: MachineContext) -> Iterator[Fix]:
+    """A `<bt_tick>` for the initial state that succeeds at once."""
+    document, chart = context.document, context.machine.chart
+    state = next((s for s in chart.states if s.id and chart.initial and s.id.value == chart.initial.value), None)
+    if state is not None and state.id is not None and state.element.complete:
+        lines = (f'<bt_tick target="{state.id.value}">', f"    {ANSWER}", "</bt_tick>")
+        edit = last_in(document, state.element, *lines)
+        yield Fix(f"Add `<bt_tick>` to the state `{state.id.value}`", (edit,), preferred=False)
+
+
+RULE = Rule("unanswered-tick", Severity.ERROR, "A tick is not taken or not answered on every path.", machine=check)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-thread: see unknown_thread.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.behavior.explore import Fault, Step
+from roaml.model.machine import Communicate, Statement
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors, place
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Threads are numbered from 0; a start for another number reaches none of them."""
+    for behavior in behaviors(context):
+        told: set[Statement] = set()
+        for step in behavior.steps:
+            for fault in step.faults:
+                if fault.kind == "thread" and fault.statement not in told and isinstance(fault.statement, Communicate):
+                    told.add(fault.statement)
+                    yield _finding(context, step, fault, fault.statement)
+
+
+def _finding(context: MachineContext, step: Step, fault: Fault, statement: Communicate) -> Finding:
+    thread = next(t for t in context.machine.threads if t.server and t.server.value == fault.duty.handle)
+    assert statement.thread_id is not None
+    numbers = "the only one is 0" if thread.count == 1 else f"they are 0 to {(thread.count or 1) - 1}"
+    message = (
+        f"`{fault.duty.handle}` has no thread numbered `{statement.thread_id.text.strip()}`: {numbers}, "
+        "so this start reaches nobody; start a thread that exists, or raise `n_threads`"
+    )
+    count = thread.element.get("n_threads")
+    related = [Related(statement.element.name_span, "it is started here")]
+    related += [Related(count.value_span, "the number of threads")] if count else []
+    return RULE.at(place(step.handler, statement), message, related=related)
+
+
+RULE = Rule("unknown-thread", Severity.WARNING, "A thread is started that does not exist.", machine=check)

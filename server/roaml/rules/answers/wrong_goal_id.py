@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wrong-goal-id: see wrong_goal_id.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.infer import constant
+from roaml.expr.tree import access_path
+from roaml.model.behavior.explore import Behavior, Duty, Fault, Step
+from roaml.model.behavior.knowledge import variables_in
+from roaml.model.machine import Assign, Chart, Communicate, If, Statement
+from roaml.model.syntax import Expression
+from roaml.model.system import Channel, System
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors, is_spelled, place
+from roaml.rules.support.interfaces import declared
+from roaml.rules.support.layout import first_in
+from roaml.text import TextEdit
+
+_WHY = {
+    "rejected": "the goal whose id `{id}` holds was rejected; keep the id of the accepted goal in another variable",
+    "earlier": "`{id}` holds the id of an earlier goal, not of the one that has come; {advice}",
+    "undecided": "the goal whose id `{id}` holds has not been accepted; accept it first",
+    "other": "`{id}` holds the id of a goal of another action; name the goal by the id that it came with",
+    "foreign": "`{id}` is given `{source}`, which is not the id of a goal; {advice}",
+    "unstored": "no goal id has been stored in `{id}` before; store `_action.goal_id` in it where the goal is taken",
+}
+"""By the kind of the fault. Of several kinds for one element the first counts: it says most about the mistake."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A goal is known by the id that it came with; what is sent with another one reaches another client, or nobody."""
+    for behavior in behaviors(context):
+        told: set[tuple[str, str]] = set()
+        for step, fault in _faults(behavior).values():
+            statement = fault.statement
+            if fault.kind == "undecided" and not is_spelled(context, Duty("goal", fault.duty.handle)):
+                continue
+            assert isinstance(statement, Communicate)
+            assert statement.goal_id is not None
+            variable = statement.goal_id.text.strip()
+            if (variable, fault.kind) not in told:
+                told.add((variable, fault.kind))
+                yield _finding(context, step, fault, statement, variable)
+    yield from _constants(context)
+
+
+def _faults(behavior: Behavior) -> dict[Statement, tuple[Step, Fault]]:
+    """For each element that names a wrong goal the fault that says most, with a step in which it happens."""
+    order = list(_WHY)
+    found: dict[Statement, tuple[Step, Fault]] = {}
+    for step in behavior.steps:
+        for fault in step.faults:
+            if fault.kind not in _WHY or (behavior.approximate and not fault.certain):
+                continue
+            known = found.get(fault.statement)
+            if known is None or order.index(fault.kind) < order.index(known[1].kind):
+                found[fault.statement] = (step, fault)
+    return found
+
+
+def _finding(context: MachineContext, step: Step, fault: Fault, statement: Communicate, variable: str) -> Finding:
+    advice = "name it by the variable in which `_action.goal_id` is stored"
+    if fault.kind == "earlier":
+        advice = f"name it by `{fault.source}`" if fault.source else "store `_action.goal_id`, and name it by that"
+    why = _WHY[fault.kind].format(id=variable, source=fault.source, advice=advice)
+    message = f"`<{statement.element.name}>` names the wrong goal: {why}"
+    related = [Related(statement.element.name_span, "it is used here")]
+    return RULE.at(place(step.handler, statement), message, *_fixes(context, step, fault, statement), related=related)
+
+
+def _fixes(context: MachineContext, step: Step, fault: Fault, statement: Communicate) -> Iterator[Fix]:
+    assert statement.goal_id is not None
+    if fault.kind == "unstored":
+        yield from _store(context, step, statement.goal_id.text.strip())
+    elif fault.kind == "earlier" and fault.source:
+        edit = TextEdit(statement.goal_id.span, fault.source)
+        yield Fix(f"Name the goal by `{fault.source}`", (edit,), preferred=False)
+
+
+# ------------------------------------------------------------------- constants
+
+
+def _constants(context: MachineContext) -> Iterator[Finding]:
+    """A constant is the id of one client's goals (spec/01 §10), whoever sent the goal."""
+    if context.system is None:
+        return
+    for declaration, _, channel in declared(context, "action-server"):
+        for chart in context.machine.charts:
+            named: dict[float, list[Communicate]] = {}
+            for statement in chart.statements:
+                if isinstance(statement, Communicate) and statement.goal_id is not None:
+                    value = constant(statement.goal_id.tree)
+                    if value is not None and find_handle(context.machine, statement) is declaration:
+                        named.setdefault(value, []).append(statement)
+            for value, statements in named.items():
+                why = _wrong_constant(context.system, channel, value)
+                if why and not _asks_for_ids(chart):
+                    yield _constant_finding(statements, why)
+
+
+def _constant_finding(statements: list[Communicate], why: str) -> Finding:
+    first, *others = statements
+    assert first.goal_id is not None
+    what = f"`<{first.element.name}>` names its goal by the constant `{first.goal_id.text.strip()}`, {why}"
+    advice = "store `_action.goal_id` where the goal is taken, and name the goal by that"
+    related = [Related(statement.element.name_span, "here, too") for statement in others]
+    return RULE.at(first.goal_id.span, f"{what}; {advice}", related=related)
+
+
+def _wrong_constant(system: System, channel: Channel, value: float) -> str:
+    """Why a constant cannot be the id of all goals of an action; "" if it can."""
+    clients = [user.automaton.name for user in channel.users if "goal" in user.use.sends]
+    if 0 <= value < len(channel.users) and value == int(value):
+        if len(clients) < 2:
+            return ""
+        named = channel.users[int(value)].automaton.name
+        return f"which is always that of `{named}`, though `{channel.name}` has {len(clients)} clients"
+    if not clients or system.may("action-client", channel.name):
+        return ""
+    ids = "0" if len(channel.users) == 1 else f"0 to {len(channel.users) - 1}"
+    return f"which no client of `{channel.name}` has: their ids are {ids}"
+
+
+def _asks_for_ids(chart: Chart) -> bool:
+    """Whether some condition reads the id of a goal, so that a constant may be right where it holds."""
+    read = [h.cond.tree for state in chart.states for h in state.handlers if h.cond]
+    stored = {"_action"}
+    for statement in chart.statements:
+        if isinstance(statement, If):
+            read += [branch.cond.tree for branch in statement.branches if branch.cond]
+        elif isinstance(statement, Assign) and statement.location:
+            value = statement.value.tree if isinstance(statement.value, Expression) else None
+            if value is not None and "_action" in variables_in((value,)):
+                stored.update((access_path(statement.location.tree) or ())[:1])
+    return not variables_in(read).isdisjoint(stored)
+
+
+def _store(context: MachineContext, step: Step, variable: str) -> Iterator[Fix]:
+    element = step.handler.targets[step.choice].element or step.handler.element
+    if step.event is not None and step.event.part in ("goal", "thread-start") and element.complete:
+        edit = first_in(context.document, element, f'<assign location="{variable}" expr="_action.goal_id" />')
+        yield Fix(f"Store the goal id in `{variable}`", (edit,))
+
+
+RULE = Rule("wrong-goal-id", Severity.WARNING, "A goal is named by an id that is not its own.", machine=check)

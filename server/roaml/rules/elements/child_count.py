@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""child-count: see child_count.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language.grammar import UNBOUNDED, ElementType
+from roaml.model.gaps import ANYTHING, TREE
+from roaml.model.outline import MachineOutline
+from roaml.model.system import builtin_plugins
+from roaml.model.tree import SUBTREES, TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.elements import removal
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node.is_subtree:
+                yield from _subtree(context, node)
+            elif node.plugin is None:
+                continue
+            elif node.plugin.value in builtin_plugins():
+                yield from _builtin(context, node)
+            elif context.system is not None:
+                _, plugin = context.system.plugin(node.plugin.value)
+                if plugin is not None:
+                    yield from _own(context, node, plugin)
+
+
+def tells(type_: ElementType) -> bool:
+    """Whether this rule says what is wrong with the children of an element, so that others keep quiet."""
+    return bool(type_.node) and (type_.name in builtin_plugins() or type_.name in SUBTREES)
+
+
+def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
+    if node.children:
+        where = f"; its nodes stand in the tree `{node.plugin.value}`" if node.plugin else ""
+        message = f"`{node.element.name}` has no children{where}"
+        yield RULE.at(node.children[0].element.name_span, message, _without(context, node, 0))
+
+
+def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
+    """The schema knows how many children the nodes of BehaviorTree.CPP have."""
+    if node.type is None or node.plugin is None:
+        return
+    allowed, count, name = node.type.any_child, len(node.children), node.plugin.value
+    if allowed is None:
+        if count:
+            yield RULE.at(node.children[0].element.name_span, f"`{name}` has no children", _without(context, node, 0))
+    elif count > allowed.most:
+        message = f"`{name}` has {_children(allowed.most)}: this is one more"
+        extra = node.children[allowed.most].element.name_span
+        yield RULE.at(extra, message, _without(context, node, allowed.most))
+    elif count < allowed.least:
+        yield _too_few(node, allowed.least, allowed.most)
+
+
+def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
+    """A plugin's machine ticks its children by their index, or by a variable that may be any."""
+    count, calls = len(node.children), plugin.plugin
+    least = max(calls.children, 1 if calls.any_child else 0)
+    if count < least:
+        yield _too_few(node, least, UNBOUNDED if calls.any_child else least)
+    if calls.ticked_children is None or any(gap.act in (TREE, ANYTHING) for gap in plugin.gaps):
+        return
+    for index, child in enumerate(node.children):
+        span = child.element.name_span
+        if index >= calls.children and not calls.any_child:
+            if calls.children == 0:
+                message = f"`{plugin.name}` is a leaf: it never ticks a child"
+            else:
+                message = f"`{plugin.name}` has {_children(calls.children)}: this one is never ticked"
+            yield RULE.at(span, message, _without(context, node, index))
+            return
+        if index not in calls.ticked_children:
+            message = f'this child is never ticked: `{plugin.name}` has no `<bt_tick_child id="{index}">`'
+            yield RULE.at(span, message)
+
+
+def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:
+    """Take away the children of a node that are too many."""
+    extra = node.children[most:]
+    edits = tuple(removal(context.source.text, child.element.span) for child in extra)
+    one = "this child" if len(extra) == 1 else "the children that are too many"
+    return Fix(f"Remove {one}", edits, preferred=False)
+
+
+def _too_few(node: TreeNode, least: int, most: int) -> Finding:
+    assert node.plugin is not None
+    if most >= UNBOUNDED:
+        wanted = f"at least {_children(least)}"
+    else:
+        wanted = _children(least) if least == most else f"{least} to {_children(most)}"
+    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {wanted}, and has {len(node.children) or 'none'}")
+
+
+def _children(count: int) -> str:
+    return "one child" if count == 1 else f"{count} children"
+
+
+RULE = Rule("child-count", Severity.ERROR, "A node has too few or too many children.", tree=check)

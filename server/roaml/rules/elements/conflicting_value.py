@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""conflicting-value: see conflicting_value.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.language import HL_SCXML
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.elements import known_elements, removal
+from roaml.xml import Attribute, Element, children_text
+
+VALUE_ELEMENTS = ("expr", "lower_bound_incl", "upper_bound_incl", "topic", "service_name", "action_name", "rate_hz")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for child, _, element in known_elements(context.document, HL_SCXML):
+        if child.name in VALUE_ELEMENTS and element is not None:
+            attribute = element.get(child.name)
+            if attribute is not None and attribute.value.strip():
+                yield _overruled(context, child, attribute)
+            if children_text(child).strip() and child.find("bt_get_input"):
+                yield RULE.at(
+                    child.name_span,
+                    f"`<{child.name}>` holds text or a `<bt_get_input>`, not both",
+                    severity=Severity.ERROR,
+                )
+
+
+def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
+    """Legal: the attribute wins (docs/spec/files.md#attribute-or-child)."""
+    return RULE.at(
+        child.name_span,
+        f"`{child.name}` is given twice: the attribute counts, this is not read",
+        Fix(f"Remove `<{child.name}>`", (removal(context.source.text, child.span),), safe=True),
+        related=(Related(attribute.name_span, "the attribute that counts"),),
+    )
+
+
+RULE = Rule("conflicting-value", Severity.WARNING, "A value is given in two ways.", machine=check)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""deprecated-spelling: see deprecated_spelling.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.language import BEHAVIOR_TREE, AttributeType
+from roaml.language.grammar import ElementType
+from roaml.rules.elements.unknown_element import rename_tag
+from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext
+from roaml.rules.support.elements import known_elements, removal
+from roaml.text import Span, TextEdit
+from roaml.xml import Attribute, Element
+
+ROOT = "ascxml"
+EXTENSION = ".ascxml"
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    grammar, document = context.grammar, context.document
+    if grammar is None or document is None or (grammar is BEHAVIOR_TREE and not _is_newer_tree(document.root)):
+        return
+    for element, type_, parent in known_elements(document, grammar):
+        if type_.use:
+            yield _element(context, element, type_, parent)
+        for attribute in element.attributes:
+            known = type_.attributes.get(attribute.name)
+            if known is not None:
+                yield from _attribute(context, element, attribute, known)
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """The system decides which dialect its machines are written in (docs/spec/files.md#dialects), and the current one
+    has one root only."""
+    machine = context.machine
+    if context.system is not None and not context.older and machine.root != ROOT:
+        message = f"the machines of a `<roaml>` system have the root `<{ROOT}>`, not `<{machine.root}>`"
+        rename = replace(rename_tag(machine.element, ROOT), safe=True)
+        yield RULE.at(machine.element.name_span, message, rename, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
+
+
+def check_system(context: SystemContext) -> Iterator[Finding]:
+    """The reference translator tells by its name, too, whether a file is a machine (docs/spec/files.md#kinds)."""
+    roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
+    for listed in context.files:
+        src = listed.input.src
+        # Where the root is the older one, too, it is reported there.
+        if src is not None and not context.file.older and roots.get(listed.path) == ROOT:
+            name = re.split(r"[/\\]", src.value)[-1]
+            if not name.endswith(EXTENSION):
+                new = (name.rpartition(".")[0] or name) + EXTENSION
+                message = f"the machines of a `<roaml>` system are `{EXTENSION}` files: call it `{new}`"
+                yield RULE.at(src.span, message, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
+
+
+def _is_newer_tree(root: Element | None) -> bool:
+    """Whether a tree says that it is written in a format in which older spellings are no longer right."""
+    version = root.get("BTCPP_format") if root else None
+    return version is not None and version.value.strip() not in ("", "3")
+
+
+def _element(context: FileContext, element: Element, type_: ElementType, parent: Element | None) -> Finding:
+    if parent is not None and parent.find(type_.use) is not None and context.grammar is not BEHAVIOR_TREE:
+        message = f"`<{element.name}>` is the older name of `<{type_.use}>`, which is given too: this is not read"
+        return _unread(context, element.name_span, message, element.span)
+    message = f"`<{element.name}>` is now called `<{type_.use}>`"
+    # The root decides how the other files of the system are read, so it is the last thing to change.
+    inside = parent is not None
+    rename = replace(rename_tag(element, type_.use, preferred=inside), safe=inside)
+    return RULE.at(element.name_span, message, rename, tags=(Tag.DEPRECATED,))
+
+
+def _attribute(context: FileContext, element: Element, attribute: Attribute, known: AttributeType) -> Iterator[Finding]:
+    if known.use and element.get(known.use) is not None:
+        message = f"`{attribute.name}` is the older name of `{known.use}`, which is given too: this is not read"
+        yield _unread(context, attribute.name_span, message, attribute.span)
+    elif known.use:
+        fix = Fix(f"Change to `{known.use}`", (TextEdit(attribute.name_span, known.use),), safe=True)
+        message = f"`<{element.name}>` has `{known.use}` instead of `{attribute.name}` now"
+        # Where the current dialect is spoken, the reference translator does not know the older attribute.
+        severity = None if context.older or context.grammar is BEHAVIOR_TREE else Severity.ERROR
+        yield RULE.at(attribute.name_span, message, fix, severity=severity, tags=(Tag.DEPRECATED,))
+    for choice in known.simple.choices:
+        if choice.use and choice.value == attribute.value:
+            fix = Fix(f"Change to `{choice.use}`", (TextEdit(attribute.value_span, choice.use),), safe=True)
+            message = f"`{choice.value}` is now called `{choice.use}`"
+            yield RULE.at(attribute.value_span, message, fix, tags=(Tag.DEPRECATED,))
+
+
+def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -> Finding:
+    remove = Fix("Remove it", (removal(context.source.text, superfluous),), safe=True)
+    severity = None if context.older else Severity.WARNING
+    return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
+
+
+RULE = Rule(
+    "deprecated-spelling",
+    Severity.HINT,
+    "An older spelling is used.",
+    file=check,
+    machine=check_machine,
+    system=check_system,
+)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""empty-branch: see empty_branch.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language.validate import is_foreign
+from roaml.model.machine import If
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.elements import removal, stands_alone
+from roaml.xml import Element
+
+MARKERS = ("elseif", "else")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, If):
+                yield from _check(context, statement)
+
+
+def _check(context: MachineContext, choice: If) -> Iterator[Finding]:
+    namespaces = dict(context.document.namespaces)
+    parts = [child for child in choice.element.elements if not is_foreign(namespaces, child)]
+    remove = Fix("Remove the `<if>`", (removal(context.source.text, choice.element.span),), preferred=False)
+    useless = all(part.name in MARKERS for part in parts) and not stands_alone(context.document, choice.element)
+    fixes = [remove] if useless else []
+    for branch in choice.branches:
+        if not branch.body and not _content(parts, branch.element):
+            message = f"`<{branch.element.name}>` holds nothing: a part with a condition needs content"
+            yield RULE.at(branch.element.name_span, message, *fixes)
+
+
+def _content(parts: list[Element], marker: Element) -> bool:
+    """Whether an element, be it a misspelled one, follows `marker` before the next one."""
+    following = parts[parts.index(marker) + 1 :] if marker in parts else parts
+    return bool(following) and following[0].name not in MARKERS
+
+
+RULE = Rule("empty-branch", Severity.ERROR, "A part of an `<if>` holds nothing.", machine=check)

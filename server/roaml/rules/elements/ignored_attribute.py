@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ignored-attribute: see ignored_attribute.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.language import AttributeType
+from roaml.rules.rule import FileContext, Rule
+from roaml.rules.support.elements import known_elements, removal
+from roaml.text import TextEdit
+from roaml.xml import Attribute, Element
+
+CHANGES_MEANING = ("delay", "delayexpr", "initial", "src")
+SPEAKS_FOR = {("param", "location"): "expr"}
+"""Ignored attributes and those in which their value would have its effect."""
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    """Attributes that other tools read and the model does not."""
+    if context.document is None or context.grammar is None:
+        return
+    for element, type_, _ in known_elements(context.document, context.grammar):
+        for attribute in element.attributes:
+            known = type_.attributes.get(attribute.name)
+            if known is not None and known.ignored is False and attribute.name != "after":  # delayed-transition tells
+                yield RULE.at(
+                    attribute.span,
+                    f"`{attribute.name}` has no effect: {_reason(known)}",
+                    _fix(context, element, attribute),
+                    severity=_severity(attribute.name, context),
+                    tags=(Tag.UNNECESSARY,),
+                )
+
+
+def _fix(context: FileContext, element: Element, attribute: Attribute) -> Fix:
+    instead = SPEAKS_FOR.get((element.name, attribute.name))
+    if instead is not None and element.get(instead) is None:
+        return Fix(f"Change to `{instead}`", (TextEdit(attribute.name_span, instead),))
+    return Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=False)
+
+
+def _severity(name: str, context: FileContext) -> Severity:
+    if context.older:
+        return Severity.HINT
+    return Severity.WARNING if name in CHANGES_MEANING else Severity.INFORMATION
+
+
+def _reason(attribute: AttributeType) -> str:
+    """What the schema says behind "Ignored:", else its second sentence, else its first."""
+    text = attribute.documentation
+    first, _, second = text.partition(". ")
+    reason = text.partition("Ignored:")[2].strip() or second.partition("Not supported:")[2].strip()
+    reason = (reason or (second if not second.startswith(("Ignored", "It has no effect")) else "") or first).rstrip(".")
+    return reason[:1].lower() + reason[1:]
+
+
+RULE = Rule("ignored-attribute", Severity.INFORMATION, "An attribute has no effect on the model.", file=check)

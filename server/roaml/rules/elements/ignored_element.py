@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ignored-element: see ignored_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.model.machine import NoEffect
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.elements import removal, stands_alone
+from roaml.xml import Element
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        found: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
+        found += [h.element for state in chart.states for h in state.handlers if not h.effective]
+        for element in found:
+            # Whatever it stands alone in needs content, so that goes as well: empty-branch tells.
+            alone = stands_alone(context.document, element)
+            edit = removal(context.source.text, element.span)
+            remove = Fix(f"Remove `<{element.name}>`", (edit,), preferred=not alone, safe=not alone)
+            yield RULE.at(
+                element.name_span,
+                f"`<{element.name}>` has no effect on the model",
+                remove,
+                severity=None if context.older or element.name == "log" else Severity.ERROR,
+                tags=(Tag.UNNECESSARY,),
+            )
+
+
+RULE = Rule("ignored-element", Severity.HINT, "An element has no effect on the model.", machine=check)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""misplaced-element: see misplaced_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
+from roaml.language.validate import MisplacedElement
+from roaml.rules.elements import child_count
+from roaml.rules.elements.branch_order import MARKERS
+from roaml.rules.elements.unknown_element import rename_tag
+from roaml.rules.rule import FileContext, Rule, listing
+
+SAME_PARTS = {"param": "field", "field": "param"}
+"""Elements that do the same in different parents."""
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if isinstance(violation, MisplacedElement):
+            name, parent = violation.element.name, violation.parent.name
+            assert context.grammar is not None
+            if parent in MARKERS and context.grammar in (HL_SCXML, PLAIN_SCXML):
+                continue  # branch-order says more
+            if child_count.tells(violation.parent):
+                continue
+            message = f"`<{name}>` may not stand in `<{parent}>`{_where(context, name, parent)}"
+            yield RULE.at(violation.element.name_span, message, *_fixes(violation))
+
+
+def _where(context: FileContext, name: str, parent: str) -> str:
+    grammar = context.grammar
+    assert grammar is not None
+    if name == "state" and parent == "state":
+        return "; states are flat: they contain no other states"
+    parents = [p for p in grammar.parents(name) if _is_current(context, p)]
+    if grammar is HL_SCXML and len(parents) > 4:
+        return _group(grammar, name)
+    return f"; it stands in {listing(f'<{p}>' for p in parents)}" if 0 < len(parents) <= 4 else ""
+
+
+def _is_current(context: FileContext, name: str) -> bool:
+    """Whether an element is neither an older name nor another root than that of the file."""
+    assert context.grammar is not None
+    root = context.document.root if context.document else None
+    if root is not None and name in context.grammar.roots:
+        return name == root.name
+    return not context.grammar.elements[name].use
+
+
+def _group(grammar: Grammar, name: str) -> str:
+    """Where elements stand that stand in many."""
+    if name in grammar.groups["Executable"]:
+        return "; it stands in a transition, a `<target>`, `<onentry>`, `<onexit>` or `<if>`"
+    return {
+        "target": "; it stands in a transition",
+        "field": "; it stands in the elements that send something to other nodes",
+        "bt_get_input": "; it stands in a value element such as `<expr>`",
+    }.get(name, "")
+
+
+def _fixes(violation: MisplacedElement) -> Iterator[Fix]:
+    other = SAME_PARTS.get(violation.element.name)
+    if other is not None and other in violation.parent.children:
+        yield rename_tag(violation.element, other)
+
+
+RULE = Rule("misplaced-element", Severity.ERROR, "An element stands where it may not stand.", file=check)

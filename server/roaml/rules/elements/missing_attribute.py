@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-attribute: see missing_attribute.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
+from roaml.language.validate import MissingAttribute
+from roaml.model.build_machine import INTERFACE_ATTRIBUTES
+from roaml.model.machine import Declaration
+from roaml.model.syntax import PortRead
+from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.text import Span, TextEdit
+from roaml.xml import Element
+
+DEFAULTS = {"version": "1.0", "unit": "s"}
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if not isinstance(violation, MissingAttribute):
+            continue
+        element, attribute = violation.element, violation.attribute
+        if attribute.name == "name" and set(attribute.refers) & KINDS.keys():
+            continue  # undeclared-handle says more
+        if not misspelled.attribute(element, attribute.name, violation.type.attributes):
+            choices = [choice.value for choice in attribute.simple.choices if not choice.use]
+            value = choices[0] if len(choices) == 1 else _likely(context, element, attribute.name)
+            yield _missing(element, attribute.name, value)
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """What the schema cannot say, because a child element may give it as well."""
+    for declaration in context.machine.declarations:
+        if declaration.kind != "timer":  # of these, invalid-rate tells
+            yield from _interface(declaration)
+
+
+def _interface(declaration: Declaration) -> Iterator[Finding]:
+    element = declaration.element
+    known = HL_SCXML.elements[element.name].attributes
+    name = next(name for name in INTERFACE_ATTRIBUTES if name in known)
+    child = element.find(name)
+    if isinstance(declaration.interface, PortRead) and declaration.handle is None and element.get("name") is None:
+        yield RULE.at(element.name_span, f"`<{element.name}>` needs a `name`: its `{name}` comes from a port")
+    elif declaration.interface is None and element.get(name) is None:
+        if child is not None:
+            yield RULE.at(child.name_span, f"`<{name}>` is empty")
+        elif not misspelled.attribute(element, name, known):
+            yield _missing(element, name, "")
+
+
+def _likely(context: FileContext, element: Element, name: str) -> str:
+    """The value that a missing attribute most likely should have."""
+    if name == "initial":
+        state = element.find("state")
+        identifier = state.get("id") if state else None
+        return identifier.value if identifier else ""
+    if name == "name" and context.document is not None and element is context.document.root:
+        return context.source.path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
+    return DEFAULTS.get(name, "")
+
+
+def _missing(element: Element, name: str, value: str) -> Finding:
+    at = element.name_span.end
+    fix = Fix(f'Add `{name}="{value}"`', (TextEdit(Span(at, at), f' {name}="{value}"'),), preferred=bool(value))
+    return RULE.at(element.name_span, f"`<{element.name}>` needs the attribute `{name}`", fix)
+
+
+RULE = Rule(
+    "missing-attribute",
+    Severity.ERROR,
+    "An element lacks an attribute that it needs.",
+    file=check,
+    machine=check_machine,
+)

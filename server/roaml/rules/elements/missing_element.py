@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-element: see missing_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
+from roaml.language.validate import MissingElement
+from roaml.model.machine import Chart, Thread
+from roaml.rules.elements import child_count
+from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.rules.support.layout import first_in, last_in, remove
+from roaml.text import Span, TextEdit
+from roaml.xml import Element
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if not isinstance(violation, MissingElement):
+            continue
+        element, wanted = violation.element, violation.type.any_child
+        assert context.grammar is not None
+        if wanted is None:
+            if not misspelled.among(element.elements, violation.names[0], context.grammar):
+                message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
+                yield RULE.at(element.name_span, message, *_leave_out(context, element))
+        elif not child_count.tells(violation.type):
+            children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
+            yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """What the schema cannot say, because children may stand in any order."""
+    for chart in context.machine.charts:
+        element = chart.element
+        states = any(child.name == "state" for child in element.elements)
+        if element.complete and not states and not misspelled.among(element.elements, "state", HL_SCXML):
+            message = f"`<{element.name}>` needs at least one `<state>`"
+            yield RULE.at(element.name_span, message, *_add_state(context, chart))
+    for thread in context.machine.threads:
+        yield from _thread_data(context, thread)
+
+
+def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
+    """A machine may do without a datamodel, a thread may not (docs/spec/ros.md#threads)."""
+    element = thread.element
+    wanted = element.complete and element.find("datamodel") is None
+    if wanted and not misspelled.among(element.elements, "datamodel", HL_SCXML):
+        message = f"`<{element.name}>` needs a `<datamodel>`, even if it holds nothing"
+        edit = first_in(context.document, element, "<datamodel />")
+        yield RULE.at(element.name_span, message, Fix("Add an empty `<datamodel>`", (edit,), safe=True))
+
+
+def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
+    """An element that holds nothing, where none is needed."""
+    root = context.document.root if context.document else None
+    if context.document is None or root is None or context.grammar is None or element not in root.elements:
+        return
+    often = context.grammar.elements[root.name].children.get(element.name)
+    if often is not None and often.least == 0 and not element.elements:
+        yield remove(context.document, element, f"Remove the empty `<{element.name}>`")
+
+
+def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
+    name = chart.initial.value if chart.initial else "initial"
+    if chart.element.complete:
+        edits = [last_in(context.document, chart.element, f'<state id="{name}" />')]
+        at = chart.element.name_span.end
+        if chart.element.get("initial") is None and not chart.scope:
+            edits.append(TextEdit(Span(at, at), f' initial="{name}"'))
+        yield Fix(f"Add the state `{name}`", tuple(edits))
+
+
+RULE = Rule(
+    "missing-element", Severity.ERROR, "An element lacks a child that it needs.", file=check, machine=check_machine
+)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""repeated-element: see repeated_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.language import BEHAVIOR_TREE
+from roaml.language.validate import TooManyElements, is_foreign
+from roaml.rules.elements import child_count
+from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.support.elements import own_elements
+from roaml.rules.support.layout import remove
+from roaml.xml import Document, Element
+
+ONCE: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("ascxml", "scxml", "ros_action_thread"), ("datamodel",)),
+    **dict.fromkeys(("assign", "param", "field"), ("expr",)),
+    **dict.fromkeys(("ros_topic_publisher", "ros_topic_subscriber"), ("topic",)),
+    **dict.fromkeys(("ros_service_client", "ros_service_server"), ("service_name",)),
+    **dict.fromkeys(("ros_action_client", "ros_action_server"), ("action_name",)),
+    "ros_time_rate": ("rate_hz",),
+    "state": ("onentry", "onexit"),
+    "data": ("expr", "lower_bound_incl", "upper_bound_incl"),
+}
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if isinstance(violation, TooManyElements) and not child_count.tells(violation.parent):
+            name, parent = violation.element.name, violation.parent.name
+            message = f"`<{parent}>` has only one `<{name}>`"
+            if context.grammar is BEHAVIOR_TREE:
+                most = {0: "no children", 1: "one child"}.get(violation.most, f"{violation.most} children")
+                message = f"`<{parent}>` has {most}; this is one more"
+            related = (Related(violation.first.name_span, "the first one"),) if violation.most else ()
+            fixes = [remove(context.document, violation.element, "Remove this one")] if context.document else []
+            yield RULE.at(violation.element.name_span, message, *fixes, related=related)
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """What the schema cannot say, because children may stand in any order."""
+    for element, children in _families(context.document):
+        for name in ONCE.get(element.name, ()):
+            same = [child for child in children if child.name == name]
+            for other in same[1:]:
+                related = (Related(same[0].name_span, "the first one"),)
+                message = f"`<{element.name}>` has only one `<{name}>`"
+                again = remove(context.document, other, "Remove this one")
+                yield RULE.at(other.name_span, message, again, related=related)
+
+
+def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
+    """Every element with its children; those of other languages are left out."""
+    namespaces = dict(document.namespaces)
+    for element in own_elements(document):
+        yield element, [child for child in element.elements if not is_foreign(namespaces, child)]
+
+
+RULE = Rule(
+    "repeated-element",
+    Severity.ERROR,
+    "An element stands more often than it may.",
+    file=check,
+    machine=check_machine,
+)

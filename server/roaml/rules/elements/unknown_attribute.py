@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-attribute: see unknown_attribute.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language.validate import UnknownAttribute
+from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.elements import removal
+
+WITHOUT_CONDITION = (
+    "ros_action_handle_success_result",
+    "ros_action_handle_canceled_result",
+    "ros_action_handle_aborted_result",
+    "ros_action_handle_thread_start",
+    "bt_halt",
+)
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    for violation in context.violations:
+        if not isinstance(violation, UnknownAttribute):
+            continue
+        element, attribute, known = violation.element, violation.attribute, violation.type.attributes.values()
+        free = [a.name for a in known if a.ignored is None and not a.use and element.get(a.name) is None]
+        close = close_names(attribute.name, free)
+        remove = Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=not close)
+        if attribute.name == "cond" and element.name in WITHOUT_CONDITION:
+            message = f"`<{element.name}>` has no condition; test it with an `<if>` inside"
+            yield RULE.at(attribute.name_span, message, severity=Severity.ERROR)
+            continue
+        # The reference translator refuses unknown attributes of <transition> and overlooks all others
+        # (docs/spec/differences.md#rejected-machines).
+        certain = bool(close) or element.name == "transition"
+        message = f"`<{element.name}>` has no attribute `{attribute.name}`{did_you_mean(close)}"
+        yield RULE.at(
+            attribute.name_span,
+            message,
+            *replacements(attribute.name_span, close),
+            remove,
+            severity=Severity.ERROR if certain else Severity.WARNING,
+        )
+
+
+RULE = Rule("unknown-attribute", Severity.ERROR, "An element has an attribute that it does not know.", file=check)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unsupported-scxml-element: see unsupported_scxml_element.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language import HL_SCXML, PLAIN_SCXML
+from roaml.language.validate import UnknownElement
+from roaml.rules.elements.unknown_element import rename_tag
+from roaml.rules.rule import FileContext, Rule
+
+ADVICE = {
+    "parallel": "states are flat here: make a machine of its own for each region",
+    "final": "a `<state>` without transitions is final",
+    "history": "states are flat here: keep what must be remembered in a variable",
+    "initial": "name the initial state in the attribute `initial` of the root",
+    "raise": "use `<send>`: there is no internal event queue",
+    "script": "use `<assign>`",
+    "foreach": "there are no loops: let a transition lead back to its state",
+    "cancel": "events are never delayed, so nothing can be cancelled",
+    "invoke": "list the other machine in the system file and talk to it by events",
+    "finalize": "there is no `<invoke>`",
+    "donedata": "send an event from the `<onentry>` of the last state",
+    "content": "use `<param>`",
+}
+
+REPLACED = {"final": "state", "raise": "send"}
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    if context.grammar is not HL_SCXML:
+        return
+    for violation in context.violations:
+        if isinstance(violation, UnknownElement) and violation.element.name in PLAIN_SCXML.elements:
+            name = violation.element.name
+            advice = f"; {ADVICE[name]}" if name in ADVICE else ""
+            is_replaced = name in REPLACED and violation.element.find("donedata") is None
+            fixes = [rename_tag(violation.element, REPLACED[name])] if is_replaced else []
+            yield RULE.at(violation.element.name_span, f"`<{name}>` is SCXML but not part of HL-SCXML{advice}", *fixes)
+
+
+RULE = Rule(
+    "unsupported-scxml-element",
+    Severity.ERROR,
+    "An element of SCXML that HL-SCXML does not have.",
+    file=check,
+)

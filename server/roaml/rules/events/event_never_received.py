@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event-never-received: see event_never_received.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import RECEIVES
+from roaml.model.machine import Send
+from roaml.rules.events.removed_bt_event import REMOVED
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.variables.invalid_name import EVENT
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
+    known = () if context.listed_as == {"node_models"} else REMOVED  # of these, removed-bt-event tells
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, Send) and statement.event and statement.event.value not in known:
+                event = system.events.get(statement.event.value)
+                if event is None or event.receivers or system.is_observed(event.name):
+                    continue
+                if not system.may(RECEIVES, event.name):
+                    close = close_names(event.name, awaited)
+                    message = f"no machine has a transition for the event `{event.name}`{did_you_mean(close)}"
+                    yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))
+
+
+RULE = Rule("event-never-received", Severity.HINT, "An event is sent that no machine receives.", machine=check)

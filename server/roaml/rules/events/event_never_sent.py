@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event-never-sent: see event_never_sent.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.interfaces.registry import NotFound
+from roaml.model.gaps import SENDS
+from roaml.model.globals import global_variables
+from roaml.model.machine import Handler
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Name
+from roaml.model.system import System
+from roaml.model.translated import TIMER_PREFIX
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.layout import remove
+
+OF_THE_TREE = ("bt_tick", "bt_halt")
+"""Events by which plugins were called once: of these, removed-bt-event tells."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for event, handler in _unsent(context, system):
+        unread = system.may(SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
+        if not unread and not _generated(context, system, event.value):
+            close = close_names(event.value, [e.name for e in system.events.values() if e.senders])
+            message = f"nobody sends the event `{event.value}`{did_you_mean(close)}"
+            drop = remove(context.document, handler.element, "Remove this transition")
+            yield RULE.at(event.span, message, *replacements(event.span, close), drop)
+
+
+def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Handler]]:
+    """The events of transitions that no machine sends; what is no event name is no business of this rule."""
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                event = handler.event
+                if handler.trigger != "event" or event is None:
+                    continue
+                if event.value in OF_THE_TREE and context.listed_as != {"node_models"}:
+                    continue
+                if "*" in event.value or len(event.value.split()) > 1:
+                    continue
+                known = system.events.get(event.value)
+                if known is None or not known.senders:
+                    yield event, handler
+
+
+def _generated(context: MachineContext, system: System, event: str) -> bool:
+    """Whether it is an event that ROS elements, timers or the tree stand for in the translation
+    (docs/spec/plain-scxml.md)."""
+    timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
+
+    def interface(kind: str, name: str) -> InterfaceType | None:
+        found = context.interface(kind, name)
+        return None if isinstance(found, NotFound) else found
+
+    return event in timers or f"{event}.valid" in global_variables(system, interface)
+
+
+RULE = Rule("event-never-sent", Severity.ERROR, "A transition waits for an event that nobody sends.", machine=check)

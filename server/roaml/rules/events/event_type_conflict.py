@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event-type-conflict: see event_type_conflict.md."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, is_kind, leaves, unwrap
+from roaml.model.machine import Communicate, Declaration, Param, Send
+from roaml.model.outline import SentField
+from roaml.model.system import Event
+from roaml.model.typing import TypedValue, Use, find_handle
+from roaml.rules.expressions.type_mismatch import phrase
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.interfaces import declared
+
+ROUND = "; a number like `2.0` becomes an integer when it is sent: store it in a variable of a float type"
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    values = {value.element: value for value in context.typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, Send) and statement.event and context.system:
+                event = context.system.events.get(statement.event.value)
+                for param in statement.params if event else ():
+                    if event is not None and param.element in values:
+                        yield from _parameter(event, param, values[param.element])
+    for (declaration, _), fields in _sent_fields(context).items():
+        sent = [(field.name.value, values[field.element]) for field in fields if field.name and field.element in values]
+        yield from _fields(sent, _real_elsewhere(context, declaration))
+
+
+def _parameter(event: Event, param: Param, value: TypedValue) -> Iterator[Finding]:
+    """All senders of an event must agree on the types of its parameters (docs/spec/machines.md#send)."""
+    if param.name is None:
+        return
+    for automaton, sent in event.senders:
+        for other in sent.params:
+            for name, mine, theirs in _differing(param.name.value, value.sent, other):
+                there = phrase(theirs)
+                hint = ROUND if value.type != value.sent and same(value.type, theirs) else ""
+                yield RULE.at(
+                    value.value.span,
+                    f"`{name}` is {phrase(mine)} here, and {there} in another `{event.name}`{hint}",
+                    related=(Related(Symbol(automaton.path, "event", event.name), f"sent as {there}"),),
+                )
+                return
+
+
+def _differing(name: str, type_: Type, other: SentField) -> Iterator[tuple[str, Type, Type]]:
+    """What two senders say of one parameter: its name, and its type for one and for the other."""
+    if flat(name) == flat(other.name) and _is_struct(type_) is not _is_struct(other.type):
+        if not isinstance(type_, (Unknown, EmptyArray)) and not isinstance(other.type, (Unknown, EmptyArray)):
+            yield name, type_, other.type
+        return
+    theirs = flattened(other.name, other.type)
+    for leaf, mine in flattened(name, type_).items():
+        if leaf in theirs and not same(mine, theirs[leaf]):
+            yield leaf, mine, theirs[leaf]
+
+
+def _is_struct(type_: Type) -> bool:
+    return isinstance(unwrap(type_)[0], Struct)
+
+
+def flat(name: str) -> str:
+    return name.replace(".", "__")
+
+
+def flattened(name: str, type_: Type) -> dict[str, Type]:
+    """What a parameter is in the translation: one parameter for each leaf of a struct (docs/spec/types.md#leaves)."""
+    return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
+
+
+def same(left: Type, right: Type) -> bool:
+    """Whether two senders give a parameter the same JANI type; bounds make no difference."""
+    match left, right:
+        case (Unknown(), _) | (_, Unknown()) | (EmptyArray(), EmptyArray() | Array()) | (Array(), EmptyArray()):
+            return True
+        case Array(), Array():
+            return same(left.element, right.element)
+        case Scalar(), Scalar():
+            return left.kind == right.kind
+    return False
+
+
+# ------------------------------------------------------------------ ROS fields
+
+
+def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, str], list[Param]]:
+    """The fields that the machine sends, by declaration and part of its interface."""
+    found: defaultdict[tuple[Declaration, str], list[Param]] = defaultdict(list)
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, Communicate) and (declaration := find_handle(context.machine, statement)):
+                found[declaration, statement.type.sends] += statement.fields
+    return found
+
+
+def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
+    """The reference translator gives a field the type of what is sent, whatever its ROS type is
+    (docs/spec/expressions.md#whole-reals)."""
+    real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
+    for name, value in sent:
+        if name in real and is_kind(value.sent, "int") and value.wanted and is_kind(value.wanted, "real"):
+            hint = ROUND if is_kind(value.type, "real") else ""
+            message = f"`{name}` is an integer here, and a real number where else it is sent{hint}"
+            yield RULE.at(value.value.span, message, severity=Severity.INFORMATION)
+
+
+def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[str]:
+    """The fields that other machines publish as real numbers on the topic of `declaration`."""
+    return {
+        field.name
+        for found, automaton, topic in declared(context, "publisher")
+        if found is declaration
+        for endpoint in topic.sources
+        if endpoint.automaton.path != automaton.path
+        for _, fields in endpoint.use.fields
+        for field in fields
+        if is_kind(field.type, "real")
+    }
+
+
+RULE = Rule(
+    "event-type-conflict",
+    Severity.ERROR,
+    "Senders of an event disagree on the type of a parameter.",
+    machine=check,
+)

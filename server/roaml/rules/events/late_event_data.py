@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""late-event-data: see late_event_data.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.tree import Expr, Name, walk
+from roaml.model.behavior.explore import Event
+from roaml.model.behavior.instants import comes_again
+from roaml.model.machine import CallChild, Communicate, Handler, Send, Statement, statements
+from roaml.model.syntax import Expression
+from roaml.model.typing import Place, TypedValue, Use, find_handle
+from roaml.rules.events.event_data_unavailable import known_here
+from roaml.rules.rule import MachineContext, Rule
+
+_ANSWERS = {
+    "request": ("response",),
+    "response": ("request",),
+    "goal": ("goal-accepted", "goal-rejected"),
+    "result": ("goal",),
+    "goal-response": ("goal",),
+    "child-status": ("child",),
+    "child-halted": ("child",),
+    "bt-tick": ("bt-status",),
+    "bt-halt": ("bt-halted",),
+}
+"""What a machine has to send before the next such event can come."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Event data are shared variables, read when the step that reads them is executed
+    (docs/spec/machines.md#event-data-lifetime)."""
+    for value in context.typed.values:
+        if not value.place.late or not isinstance(value.value, Expression):
+            continue
+        known = known_here(value.place)
+        name = next((n for n in _names(value.value.tree) if n.name in known), None) if known else None
+        if name is not None and _may_be_newer(context, value.place, name.span.start):
+            yield RULE.at(name.span, _message(value, name.name), severity=_severity(value))
+
+
+def _may_be_newer(context: MachineContext, place: Place, at: int) -> bool:
+    """Whether the event of a handler may be sent again before the data are read at an offset of the file."""
+    handler = place.handler
+    assert handler is not None
+    sent = frozenset(_sent_before(context, place, handler, at))
+    event = _event(context, handler)
+    if handler.trigger in _ANSWERS:
+        return any(Event(part, event.name) in sent for part in _ANSWERS[handler.trigger])
+    if context.system is None or not context.automata:
+        return True
+    chart = context.machine.charts.index(place.chart)
+    return any(comes_again(context.system, automaton, chart, event, sent) for automaton in context.automata)
+
+
+def _event(context: MachineContext, user: Handler | Communicate) -> Event:
+    """What a handler receives, or what an element sends."""
+    part = user.trigger if isinstance(user, Handler) else user.type.sends
+    if isinstance(user, Handler) and user.trigger == "event":
+        return Event(part, user.event.value if user.event else "")
+    declaration = find_handle(context.machine, user)
+    return Event(part, declaration.handle.value if declaration and declaration.handle else "")
+
+
+def _sent_before(context: MachineContext, place: Place, handler: Handler, at: int) -> Iterator[Event]:
+    leave = place.state.exit.statements if place.state and place.state.exit else ()
+    executed: list[Statement] = [*statements(leave)]
+    for target in handler.targets:
+        executed += [s for s in statements(target.body) if s.element.span.start < at]
+    for statement in executed:
+        match statement:
+            case Send(event=event) if event is not None:
+                yield Event("event", event.value)
+            case CallChild():
+                yield Event("child", "")
+            case Communicate() if not statement.element.span.end > at:
+                yield _event(context, statement)
+
+
+def _names(tree: Expr) -> Iterator[Name]:
+    return (node for node in walk(tree) if isinstance(node, Name))
+
+
+def _message(value: TypedValue, name: str) -> str:
+    newer = f"when `{name}` may already hold the data of a later event than the one that is handled"
+    advice = f"store what you need of `{name}` in a variable first thing in the body"
+    match value.use:
+        case Use.BRANCH:
+            return f"this condition is evaluated in a later step, {newer}; {advice}"
+        case Use.ASSIGNED | Use.LOCATION:
+            return f"this is read after something was sent or tested, {newer}; {advice}"
+    return f"what is sent is read in a later step, {newer}; {advice}"
+
+
+def _severity(value: TypedValue) -> Severity | None:
+    """Data of the tree protocol cannot be overtaken: a node answers once per tick. What is sent at once seldom is."""
+    handler = value.place.handler
+    if handler is not None and handler.trigger in ("child-status", "child-halted", "bt-tick", "bt-halt"):
+        return Severity.HINT
+    return Severity.HINT if value.use in (Use.PARAMETER, Use.FIELD, Use.ARGUMENT, Use.OUTPUT) else None
+
+
+RULE = Rule(
+    "late-event-data",
+    Severity.WARNING,
+    "Event data are read in a step in which they may belong to a newer event.",
+    machine=check,
+)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unsupported-event: see unsupported_event.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.syntax import Name
+from roaml.rules.rule import MachineContext, Rule, listing
+from roaml.rules.support.elements import removal
+from roaml.rules.support.layout import indent_of
+from roaml.text import TextEdit
+from roaml.xml import Attribute, Element
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                attribute = handler.element.get("event")
+                if handler.trigger == "event" and attribute is not None and attribute.has_value:
+                    yield from _check(handler.element, attribute, handler.event, context.source.text)
+
+
+def _check(element: Element, attribute: Attribute, event: Name | None, text: str) -> Iterator[Finding]:
+    if event is None:
+        remove = Fix("Leave out `event`", (removal(text, attribute.span),))
+        yield RULE.at(attribute.span, "the name of the event is missing; without an event leave out `event`", remove)
+    elif len(event.value.split()) > 1:
+        names = listing(event.value.split())
+        # Where one of them is a wildcard, the copy for that one is still wrong.
+        split = Fix("Write one transition for each event", (_copies(element, event, text),), preferred="*" not in names)
+        yield RULE.at(event.span, f"a transition waits for one event; write one for each of {names}", split)
+    elif "*" in event.value:
+        yield RULE.at(event.span, "wildcards are not supported: write one transition for each event")
+
+
+def _copies(element: Element, event: Name, text: str) -> TextEdit:
+    start, end = element.span
+    copies = [
+        f"{text[start : event.span.start]}{name}{text[event.span.end : end]}"
+        for name in dict.fromkeys(event.value.split())
+    ]
+    return TextEdit(element.span, f"\n{indent_of(text, element)}".join(copies))
+
+
+RULE = Rule("unsupported-event", Severity.ERROR, "A transition waits for something else than one event.", machine=check)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""integer-range: see integer_range.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import constant
+from roaml.expr.tree import ArrayLiteral, Conditional, Expr, ObjectLiteral
+from roaml.expr.types import INTEGER_RANGES, Array, Scalar, Struct, Type, unwrap
+from roaml.model.syntax import Expression
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.retype import as_type, wide_enough
+from roaml.text import Span
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        if isinstance(value.value, Expression) and value.wanted is not None:
+            for span, number, type_ in outside(value.value.tree, value.wanted):
+                low, high = INTEGER_RANGES[type_]
+                wider = wide_enough(number, type_)
+                fixes = as_type(context, value, wider) if wider and not _is_nested(value.wanted) else ()
+                message = f"{number} does not fit into `{type_}`, which holds {low} to {high}"
+                yield RULE.at(span, message, *fixes)
+
+
+def _is_nested(wanted: Type) -> bool:
+    """Whether the integer is a member of a struct, whose type stands elsewhere."""
+    return isinstance(unwrap(wanted)[0], Struct)
+
+
+def outside(expr: Expr, wanted: Type) -> Iterator[tuple[Span, int, str]]:
+    """Constants in `expr` that lie outside the range of the integer type wanted there."""
+    match expr, wanted:
+        case ArrayLiteral(), Array():
+            for element in expr.elements:
+                yield from outside(element, wanted.element)
+        case ObjectLiteral(), Struct():
+            for member in expr.members:
+                if type_ := wanted.member(member.key):
+                    yield from outside(member.value, type_)
+        case Conditional(), _:
+            yield from outside(expr.then, wanted)
+            yield from outside(expr.otherwise, wanted)
+        case _, Scalar(kind="int", name=name) if name in INTEGER_RANGES:
+            number = constant(expr)
+            if isinstance(number, int) and not INTEGER_RANGES[name][0] <= number <= INTEGER_RANGES[name][1]:
+                yield expr.span, number, name
+
+
+RULE = Rule(
+    "integer-range",
+    Severity.WARNING,
+    "A constant lies outside the range of its integer type.",
+    machine=check,
+)

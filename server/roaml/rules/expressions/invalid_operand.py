@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""invalid-operand: see invalid_operand.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
+from roaml.expr.types import Array, Struct, is_kind, is_number, unwrap
+from roaml.rules.expressions.type_mismatch import phrase
+from roaml.rules.rule import MachineContext, Rule
+from roaml.text import Span, TextEdit
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            match problem:
+                case BadOperand(operator="+") if is_kind(problem.given, "string"):
+                    yield RULE.at(problem.span, "strings cannot be joined: `+` takes numbers")
+                case BadOperand(operator="?"):
+                    yield RULE.at(
+                        problem.span, f"the condition of `?` is {problem.wanted}, not {phrase(problem.given)}"
+                    )
+                case BadOperand():
+                    message = f"`{problem.operator}` takes {problem.wanted}, not {phrase(problem.given)}"
+                    yield RULE.at(problem.span, message, *_compare(problem))
+                case BadComparison():
+                    yield RULE.at(problem.span, _comparison(problem))
+                case MixedTypes():
+                    message = f"{phrase(problem.first)} and {phrase(problem.other)} have no type in common"
+                    yield RULE.at(problem.span, message)
+                case BadIndex() if isinstance(problem.indexed, Array) or is_kind(problem.indexed, "string"):
+                    message = f"an index is an integer, not {phrase(problem.index)}"
+                    fixes = [_floor(problem.span)] if is_kind(problem.index, "real") else []
+                    yield RULE.at(problem.span, message, *fixes)
+                case BadIndex():
+                    yield RULE.at(
+                        problem.span, f"only arrays and strings have an index; this is {phrase(problem.indexed)}"
+                    )
+
+
+def _compare(problem: BadOperand) -> Iterator[Fix]:
+    """A number where a boolean is wanted."""
+    if problem.wanted == "a boolean" and is_number(problem.given):
+        yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
+
+
+def _floor(span: Span) -> Fix:
+    return Fix("Round down with `Math.floor`", tuple(_around(span, "Math.floor(", ")")), preferred=False)
+
+
+def _around(span: Span, before: str, behind: str) -> Iterator[TextEdit]:
+    yield TextEdit(Span(span.start, span.start), before)
+    yield TextEdit(Span(span.end, span.end), behind)
+
+
+def _comparison(problem: BadComparison) -> str:
+    if isinstance(unwrap(problem.left)[0], Struct) or isinstance(unwrap(problem.right)[0], Struct):
+        return f"structs cannot be compared with `{problem.operator}`; compare their members one by one"
+    return f"{phrase(problem.left)} and {phrase(problem.right)} cannot be compared with `{problem.operator}`"
+
+
+RULE = Rule("invalid-operand", Severity.ERROR, "An operator is used on values that it does not take.", machine=check)

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: Apache-2.0
+"""type-mismatch: see type_mismatch.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import infer
+from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, String, walk
+from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
+from roaml.model.initial import WrongType
+from roaml.model.syntax import Expression, PortRead
+from roaml.model.typing import TypedValue, Use
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.retype import as_type
+from roaml.rules.variables.missing_type import DEFAULTS
+from roaml.text import Span, TextEdit
+
+CHECKED = (Use.ASSIGNED, Use.FIELD, Use.ARGUMENT, Use.OUTPUT)
+HOLDING = (Use.ASSIGNED, Use.FIELD, Use.OUTPUT, Use.INITIAL)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    size = context.system.parameters.max_array_size if context.system else None
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, WrongType):
+                message = f"{_what(value)} is `{problem.wanted}`, not {phrase(problem.given)}"
+                yield RULE.at(
+                    problem.span, message, *_fixes(context, value, problem.given, problem.wanted, problem.span)
+                )
+        if value.wanted is None:
+            continue
+        if (value.use in CHECKED or isinstance(value.value, PortRead)) and not can_hold(value.wanted, value.type):
+            yield _mismatch(context, value, value.wanted)
+        if value.use in HOLDING and isinstance(value.value, Expression):
+            yield from _too_long(value.value.tree, value.wanted, size)
+
+
+def can_hold(wanted: Type, given: Type) -> bool:
+    """Whether a value fits; a struct is assigned leaf by leaf, so another struct with the same leaves does too."""
+    inner, bounds = unwrap(wanted)
+    other, more = unwrap(given)
+    if isinstance(inner, Struct) and isinstance(other, Struct) and len(bounds) == len(more):
+        known = dict(leaves(other))
+        return all(path in known and fits(known[path], leaf) for path, leaf in leaves(inner))
+    return fits(given, wanted)
+
+
+def _mismatch(context: MachineContext, value: TypedValue, wanted: Type) -> Finding:
+    message = f"{_what(value)} is `{wanted}`, not {phrase(value.type)}"
+    edits = _without_points(context, value, wanted)
+    if not edits:
+        return RULE.at(value.value.span, message, *_fixes(context, value, value.type, wanted, value.value.span))
+    new = "leave out `.0`" if len(edits) == 1 else "leave out each `.0`"
+    fix = Fix(new.capitalize(), tuple(edits))
+    return RULE.at(value.value.span, f"{message}; {new}", fix, severity=Severity.WARNING)
+
+
+def _without_points(context: MachineContext, value: TypedValue, wanted: Type) -> list[TextEdit]:
+    """How to write a real value as the int that the translation makes of it (docs/spec/expressions.md#whole-reals), if
+    it does."""
+    if not isinstance(value.value, Expression):
+        return []
+    tree = value.value.tree
+    reals = [node for node in walk(tree) if isinstance(node, Number) and node.is_real]
+    points = [node for node in reals if float(node.value).is_integer()]
+    if not points or points != reals or any(isinstance(n, Name) and n.name.startswith("_") for n in walk(tree)):
+        return []
+    variables = context.typed.variables.get(value.place.chart.scope, {})
+    reprinted, _ = infer(tree, variables.get, reprinted=True)
+    if isinstance(reprinted, Unknown) or not fits(reprinted, wanted):
+        return []
+    return [TextEdit(node.span, str(int(node.value))) for node in points]
+
+
+def _too_long(tree: Expr, wanted: Type, size: int | None) -> Iterator[Finding]:
+    """Literals with more elements than the array can hold; `size` is that of arrays without a bound, if known."""
+    match tree, wanted:
+        case ArrayLiteral(), Array():
+            yield from _longer(tree.span, f"`{wanted}` holds", "elements", len(tree.elements), wanted.bound or size)
+            for element in tree.elements:
+                yield from _too_long(element, wanted.element, size)
+        case ObjectLiteral(), Struct():
+            for member in tree.members:
+                type_ = wanted.member(member.key)
+                if type_ is not None:
+                    yield from _too_long(member.value, type_, size)
+        case String(), _ if is_kind(wanted, "string"):
+            length = len(tree.value.encode("utf-8", "replace"))
+            yield from _longer(tree.span, "a string holds", "bytes", length, size)
+
+
+def _longer(span: Span, holder: str, what: str, length: int, most: int | None) -> Iterator[Finding]:
+    if most is not None and length > most:
+        yield RULE.at(span, f"{holder} {most} {what}; these are {length}")
+
+
+def _what(value: TypedValue) -> str:
+    target = f" `{value.target}`" if value.target else ""
+    match value.use:
+        case Use.FIELD:
+            return f"the field{target}"
+        case Use.OUTPUT:
+            return f"the port{target}"
+        case Use.ARGUMENT | Use.ASSIGNED | Use.LOCATION:
+            return target.strip() or "this"
+        case Use.BOUND:
+            return f"a bound of{target}"
+    return f"the variable{target}"
+
+
+def phrase(type_: Type) -> str:
+    """A type as a noun phrase."""
+    if is_kind(type_, "string"):
+        return "a string"
+    if isinstance(type_, EmptyArray):
+        return "an array"
+    if isinstance(type_, Array):
+        return f"an array (`{type_}`)"
+    if isinstance(type_, Struct):
+        return f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"a {type_.what}"
+    if isinstance(type_, Unknown):
+        return "this"
+    kinds = {"int": "an integer", "real": "a real number", "bool": "a boolean"}
+    name = f" (`{type_}`)" if getattr(type_, "name", "") not in ("", "bool") else ""
+    return kinds.get(getattr(type_, "kind", ""), f"`{type_}`") + name
+
+
+def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type, span: Span) -> Iterator[Fix]:
+    """Write the value otherwise, or give the variable the type of the value."""
+    if not isinstance(value.value, Expression):
+        return
+    whole = span == value.value.span
+    if whole:
+        yield from _other_value(value.value, value.use, given, wanted)
+    if whole and is_number(given) and is_number(wanted) and isinstance(given, Scalar):
+        yield from as_type(context, value, given.name or DEFAULTS[given.kind])
+
+
+def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iterator[Fix]:
+    span, text = value.span, value.text.strip()
+    if isinstance(value.tree, String) and is_number(wanted) | is_kind(wanted, "bool"):
+        written, pattern = value.tree.value, r"-?\d+" if is_kind(wanted, "int") else r"-?\d+(\.\d+)?"
+        if re.fullmatch("true|false" if is_kind(wanted, "bool") else pattern, written):
+            yield Fix(f"Change to `{written}`", (TextEdit(span, written),))
+    if is_kind(given, "real") and is_kind(wanted, "int"):
+        if text.endswith(".0") and text[:-2].isdigit():
+            yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
+        elif use not in (Use.INITIAL, Use.BOUND):
+            edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
+            yield Fix(f"Change to `Math.floor({text})`", edits)
+    elif is_kind(given, "int") and is_kind(wanted, "real") and text.removeprefix("-").isdigit():
+        yield Fix(f"Change to `{text}.0`", (TextEdit(span, f"{text}.0"),))
+    elif is_kind(given, "int") and is_kind(wanted, "bool") and text in ("0", "1"):
+        literal = "true" if text == "1" else "false"
+        yield Fix(f"Change to `{literal}`", (TextEdit(span, literal),))
+
+
+RULE = Rule("type-mismatch", Severity.ERROR, "A value has not the type that is wanted.", machine=check)

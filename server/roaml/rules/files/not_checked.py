@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""not-checked: see not_checked.md."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Finding, Severity
+from roaml.interfaces.registry import NotFound
+from roaml.model.expand import node_at
+from roaml.model.gaps import ANYTHING, RECEIVES, SENDS, VARIABLE, answers
+from roaml.model.globals import global_variables
+from roaml.model.kinds import FileKind
+from roaml.model.ros import InterfaceType
+from roaml.model.system import Fact, System, may_give_variable
+from roaml.rules.interfaces.topic_without_publisher import has_publisher
+from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
+from roaml.rules.support.interfaces import named_by_ports, port_span
+from roaml.text import Span
+
+_PLUGIN = "plugin"
+"""What a file does that may be the plugin of a node."""
+_ANY_PLUGIN: set[Fact] = {(_PLUGIN, None)}
+_ANY_FACT: set[Fact] = {(ANYTHING, None)}
+_MOST = 3
+"""How much of what is not checked a message names."""
+
+
+def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    causes = list(_causes(context, context.system))
+    wants = list(_wants(context.system, context.interface)) if causes else []
+    told: dict[Span, list[str]] = {}
+    for span, facts in causes:
+        answered = told.setdefault(span, [])
+        answered += [want.question for want in wants if want.question not in answered and want.may_be(facts)]
+    for span, questions in told.items():
+        if questions:
+            yield RULE.at(span, f"until this is mended, it is not checked {_listing(questions)}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Want:
+    """Something that is missing in the system as far as it can be read. Without an act, it is a variable."""
+
+    act: str
+    name: str
+    question: str
+
+    def may_be(self, facts: set[Fact]) -> bool:
+        if not self.act:
+            return any(may_give_variable(act, about, self.name) for act, about in facts)
+        return any(answers(act, self.act) and about in (None, self.name) for act, about in facts)
+
+
+def _causes(context: MachineContext | TreeContext | SystemContext, system: System) -> Iterator[tuple[Span, set[Fact]]]:
+    """The places in a file that cannot be read, with all that may be said there."""
+    if isinstance(context, MachineContext):
+        for placed in context.gaps:
+            for automaton in context.automata:
+                yield placed.span, system.facts(placed.gap, automaton)
+        if context.machine.name is None and "behavior_tree" in context.listed_as:
+            yield context.machine.element.name_span, _ANY_PLUGIN
+        return
+    for placed in context.gaps:
+        yield placed.span, system.facts(placed.gap)
+    if isinstance(context, SystemContext):
+        plugins = [f for f in context.files if f.input.section == "behavior_tree" and f.wanted is not FileKind.TREE]
+        yield from ((listed.span, _ANY_PLUGIN) for listed in plugins if not listed.usable)
+        strange = system.ticked_nodes | system.idle_plugins
+        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in strange)
+        return
+    for instance in system.instances:
+        if instance.source.path == context.source.path and system.plugin(instance.plugin)[1] is None:
+            node = node_at(context.file, instance.source)
+            if node is not None and node.plugin is not None:
+                yield node.plugin.span, system.facts_of_unknown(instance)
+    for node, automaton, use in named_by_ports(context):
+        if automaton.interface_name(use) is None:
+            yield port_span(node, use.port), system.facts_of_name(automaton, use)
+
+
+def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Want]:
+    for name in sorted({instance.plugin for instance in system.instances}):
+        if system.plugin(name)[1] is None:
+            yield _Want(_PLUGIN, name, f"whether there is the plugin `{name}`")
+    for topic in system.topics.values():
+        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
+            yield _Want("subscriber", topic.name, f"who subscribes to the topic `{topic.name}`")
+        if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
+            yield _Want("publisher message", topic.name, f"who publishes on the topic `{topic.name}`")
+    for what, channels in (("service", system.services), ("action", system.actions)):
+        for channel in channels.values():
+            if not channel.sources:
+                yield _Want(f"{what}-server", channel.name, f"who serves the {what} `{channel.name}`")
+            elif not channel.users:
+                yield _Want(f"{what}-client", channel.name, f"who uses the {what} `{channel.name}`")
+    for event in system.events.values():
+        if not event.senders:
+            yield _Want(SENDS, event.name, f"who sends the event `{event.name}`")
+        elif not event.receivers and not system.is_observed(event.name):
+            yield _Want(RECEIVES, event.name, f"who has a transition for the event `{event.name}`")
+    for variable, ports in system.blackboard.items():
+        if not any(bound.port.written for bound in ports):
+            yield _Want(VARIABLE, variable, f"who writes the blackboard variable `{variable}`")
+        elif not any(bound.port.read for bound in ports):
+            yield _Want(VARIABLE, variable, f"who reads the blackboard variable `{variable}`")
+    known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
+    for name in sorted(system.observed - known.keys()):
+        yield _Want("", name, f"whether there is the variable `{name}`, which a property names")
+
+
+def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:
+    return None if isinstance(interface, NotFound) else interface
+
+
+def _listing(questions: list[str]) -> str:
+    more = len(questions) - _MOST
+    parts = [*questions[:_MOST], *([f"{more} more such questions"] if more > 0 else [])]
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+RULE = Rule(
+    "not-checked",
+    Severity.INFORMATION,
+    "Something cannot be checked because of a mistake elsewhere.",
+    machine=check,
+    tree=check,
+    system=check,
+)

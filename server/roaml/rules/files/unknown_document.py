@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-document: see unknown_document.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.rules.elements.unknown_element import rename_tag
+from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean
+
+ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS) for root in grammar.roots)
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    """A file that was named, and is none of ours."""
+    if context.grammar is not None or context.document is None:
+        return
+    root = context.document.root
+    if root is None or root.name == "specification":
+        return
+    if root.name in ROOTS:
+        yield RULE.at(root.name_span, f"`<{root.name}>` holds no behavior tree")
+        return
+    close = close_names(root.name, ROOTS)
+    fixes = [rename_tag(root, name, preferred=number == 0) for number, name in enumerate(close)]
+    hint = (
+        did_you_mean(tuple(f"<{name}>" for name in close))
+        or "; the root is `<roaml>`, `<ascxml>`, `<root>` or `<types>`"
+    )
+    yield RULE.at(root.name_span, f"`<{root.name}>` is no root of ours{hint}", *fixes)
+
+
+RULE = Rule("unknown-document", Severity.ERROR, "The file is of none of the languages that are checked.", file=check)

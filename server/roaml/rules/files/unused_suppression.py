@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-suppression: see unused_suppression.md. Found by `roaml.project.checking`, which knows all findings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.rules.rule import Rule, close_names, did_you_mean, listing, replacements
+from roaml.rules.support.elements import removal
+from roaml.text import Span, TextEdit
+
+
+def finding(
+    text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
+) -> Iterator[Finding]:
+    """What is to be said about a comment that keeps `codes` quiet (None for all), of which it needs those `used`; there
+    are rules with the codes `known`."""
+    used, known = frozenset(used), frozenset(known)
+    misspelt = [code for code in codes or () if code not in known]
+    if misspelt:
+        yield from (_misspelt(text, comment, code, known) for code in misspelt)
+        codes = [code for code in codes or () if code in known]
+        if not codes:
+            return
+    kept = [code for code in codes or () if code in used]
+    if codes is None and used:
+        return
+    superfluous = [code for code in codes or () if code not in used]
+    if codes is not None and not superfluous and kept:
+        return
+    tags = (Tag.UNNECESSARY,)
+    if not kept:
+        fix = Fix("Remove the comment", (removal(text, comment),))
+        yield RULE.at(comment, "nothing is found here that this comment keeps quiet", fix, tags=tags)
+    else:
+        fix = Fix(
+            f"Leave out {listing(superfluous)}", (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),)
+        )
+        yield RULE.at(comment, f"{listing(superfluous)} is not found here", fix, tags=tags)
+
+
+def _misspelt(text: str, comment: Span, code: str, known: Iterable[str]) -> Finding:
+    close = close_names(code, sorted(known))
+    word = re.compile(rf"(?<![\w-]){re.escape(code)}(?![\w-])").search(text, text.index("[", comment.start))
+    fixes = replacements(Span(*word.span()), close) if word else ()
+    return RULE.at(comment, f"there is no rule `{code}`{did_you_mean(close)}", *fixes)
+
+
+RULE = Rule("unused-suppression", Severity.INFORMATION, "A comment keeps quiet what is not found.")

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wrong-file-kind: see wrong_file_kind.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import Name
+from roaml.model.system_file import ListedFile
+from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.layout import remove
+from roaml.text import TextEdit
+
+TYPES = {
+    ("behavior_tree", FileKind.TREE): "bt.cpp-xml",
+    ("behavior_tree", FileKind.MACHINE): "bt-plugin-ascxml",
+    ("data_declarations", FileKind.STRUCTS): "xml",
+    ("data_declarations", FileKind.JSON_STRUCTS): "json",
+}
+"""What a file is listed as in the section where it may stand."""
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    for listed in context.files:
+        src = listed.input.src
+        if src is None or listed.problem or listed.wanted is None:
+            continue
+        if listed.usable:
+            yield from _other_machine(context, listed, src)
+            continue
+        found = "" if listed.found is FileKind.UNKNOWN else f", but {_with_article(listed.found)}"
+        message = f"`{src.value}` is not {_with_article(listed.wanted)}{found}"
+        yield RULE.at(src.span, message, *_other_type(listed, context.files))
+
+
+def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
+    """A machine that is listed as a plugin and is none, or the other way round: another file is meant."""
+    system, section = context.system, listed.input.section
+    ticked = section == "node_models" and listed.path in system.ticked_nodes
+    same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")
+    plugins = list(same) if ticked else []
+    reason = ""
+    if plugins:  # else tree-element-in-node tells
+        reason = "a plugin of the behavior tree and is listed as one, so it is no node; name the file of the node"
+    elif section == "behavior_tree" and listed.path in system.idle_plugins:
+        reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"
+    if reason:
+        drop = remove(context.document, listed.input.element)
+        related = [Related(p.input.src.span, "listed as a plugin") for p in plugins if p is not listed and p.input.src]
+        yield RULE.at(src.span, f"`{src.value}` is {reason}", drop, related=related)
+
+
+def _with_article(kind: FileKind) -> str:
+    if kind in (FileKind.STRUCTS, FileKind.JSON_STRUCTS):
+        return f"a file of {kind.value}"
+    return f"{'an' if kind.value[0] in 'aeiou' else 'a'} {kind.value}"
+
+
+def _other_type(listed: ListedFile, files: Iterable[ListedFile]) -> Iterator[Fix]:
+    type_ = TYPES.get((listed.input.section, listed.found))
+    if type_ is not None and listed.input.type is not None:
+        second_tree = listed.found is FileKind.TREE and any(f.usable and f.found is FileKind.TREE for f in files)
+        edits = (TextEdit(listed.input.type.span, type_),)
+        yield Fix(f"Change the type to `{type_}`", edits, preferred=not second_tree)
+
+
+RULE = Rule("wrong-file-kind", Severity.ERROR, "A system lists a file as something that it is not.", system=check)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""duplicate-handle: see duplicate_handle.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.machine import Communicate, Declaration, Handler
+from roaml.model.syntax import Name, PortRead
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule, unused
+from roaml.rules.support.elements import removal
+from roaml.text import Span, TextEdit
+
+CLIENTS = {"service-client": "service", "action-client": "action"}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    handles: dict[str, Declaration] = {}
+    clients: dict[tuple[str, str], Declaration] = {}
+    for declaration in context.machine.declarations:
+        if declaration.handle is None:
+            continue
+        before = handles.setdefault(declaration.handle.value, declaration)
+        if before is not declaration:
+            yield _same_handle(context, declaration, declaration.handle, before)
+        elif declaration.kind in CLIENTS and isinstance(declaration.interface, Name):
+            client = clients.setdefault((declaration.kind, declaration.interface.value), declaration)
+            if client is not declaration:
+                yield _same_client(declaration, declaration.interface, client)
+    yield from _same_threads(context)
+
+
+def _same_handle(context: MachineContext, declaration: Declaration, handle: Name, before: Declaration) -> Finding:
+    assert before.handle is not None
+    related = (Related(before.handle.span, "declared first here"),)
+    if _meaning(declaration) == _meaning(before):
+        message = f"`{handle.value}` is declared twice in the same way"
+        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
+        # Two timers of one name are refused, whatever their rates are (docs/spec/ros.md#timers).
+        severity = Severity.ERROR if declaration.kind == "timer" else Severity.WARNING
+        return RULE.at(handle.span, message, remove, severity=severity, related=related)
+    return RULE.at(
+        handle.span,
+        f"`{handle.value}` is declared twice; give one of them another `name`",
+        _rename(context, declaration, handle),
+        # With two kinds each use still finds its own here; the reference translator takes the first
+        # (docs/spec/ros.md#handles).
+        severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
+        related=related,
+    )
+
+
+def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> Fix:
+    """Another name for a declaration, and for it wherever it is used."""
+    machine = context.machine
+    new = unused(handle.value.strip("/").replace("/", "_"), (d.handle.value for d in machine.declarations if d.handle))
+    users: list[Handler | Communicate] = []
+    for chart in machine.charts:
+        users += [h for state in chart.states for h in state.handlers]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
+    named = [user.handle.span for user in users if user.handle and find_handle(machine, user) is declaration]
+    if declaration.element.get("name") is not None:
+        edit = TextEdit(handle.span, new)
+    else:
+        end = declaration.element.name_span.end
+        edit = TextEdit(Span(end, end), f' name="{new}"')
+    return Fix(f"Rename this one to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
+
+
+def _meaning(declaration: Declaration) -> tuple[str, ...]:
+    values = (declaration.interface, declaration.type, declaration.rate)
+    return (declaration.kind, *(_written(value) for value in values))
+
+
+def _written(value: Name | PortRead | None) -> str:
+    if isinstance(value, PortRead):
+        return f"<{value.key.value if value.key else ''}>"
+    return value.value if value else ""
+
+
+def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
+    """A machine declares each service and action that it uses once (docs/spec/ros.md#services)."""
+    assert before.handle is not None
+    message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
+    return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
+
+
+def _same_threads(context: MachineContext) -> Iterator[Finding]:
+    """Two declarations would make two threads of each number (docs/spec/ros.md#threads)."""
+    known: dict[str, Name] = {}
+    for thread in context.machine.threads:
+        if thread.server is None:
+            continue
+        before = known.setdefault(thread.server.value, thread.server)
+        if before is not thread.server:
+            message = f"the threads of `{thread.server.value}` are declared already; `n_threads` tells their number"
+            yield RULE.at(thread.server.span, message, related=(Related(before.span, "declared first here"),))
+
+
+RULE = Rule("duplicate-handle", Severity.ERROR, "Two declarations have the same name.", machine=check)

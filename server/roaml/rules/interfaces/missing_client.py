@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-client: see missing_client.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.syntax import Name
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.interfaces import declared, name_span, other_kind
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for kind, what, channels in (
+        ("service-server", "service", system.services),
+        ("action-server", "action", system.actions),
+    ):
+        for declaration, _, channel in declared(context, kind):
+            if not channel.users and not system.may(other_kind(kind), channel.name):
+                close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
+                message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
+                fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+                yield RULE.at(name_span(declaration), message, *fixes)
+
+
+RULE = Rule("missing-client", Severity.WARNING, "A service or action is served that nobody uses.", machine=check)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-feedback: see missing_feedback.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.machine import Declaration, Handler
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.interfaces import declared
+from roaml.rules.support.layout import remove
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for declaration, _, action in declared(context, "action-client"):
+        if not action.sources or any("feedback" in server.use.sends for server in action.sources):
+            continue
+        if any(system.may("action-server feedback", action.name, server.automaton) for server in action.sources):
+            continue
+        for handler in _handlers(context, declaration):
+            message = f"the server of `{action.name}` never sends feedback"
+            related = (Related(action.sources[0].symbol, "the server"),)
+            drop = remove(context.document, handler.element)
+            yield RULE.at(handler.element.name_span, message, drop, related=related)
+
+
+def _handlers(context: MachineContext, declaration: Declaration) -> Iterator[Handler]:
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger == "feedback" and find_handle(context.machine, handler) is declaration:
+                    yield handler
+
+
+RULE = Rule("missing-feedback", Severity.INFORMATION, "Feedback is waited for that is never sent.", machine=check)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-server: see missing_server.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.machine import Communicate, Declaration, Handler, Machine
+from roaml.model.system import System
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
+from roaml.rules.support.interfaces import Naming, named_here, other_kind
+from roaml.text import Span, TextEdit
+
+
+def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for kind, what in (("service-client", "service"), ("action-client", "action")):
+        for naming in named_here(context, kind):
+            if not naming.channel.sources and not system.may(other_kind(kind), naming.channel.name):
+                yield _finding(context, system, naming, what)
+
+
+def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, what: str) -> Finding:
+    channels = system.services if what == "service" else system.actions
+    served = [c for c in channels.values() if c.sources]
+    span, channel = naming.span, naming.channel
+    for other in served:
+        if other.name.lstrip("/") == channel.name.lstrip("/"):
+            message = (
+                f"nobody serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference for {what}s"
+            )
+            related = (Related(other.sources[0].symbol, "the server"), *naming.related)
+            return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
+    close = close_names(channel.name, [c.name for c in served])
+    message = f"nobody serves the {what} `{channel.name}`{did_you_mean(close)}"
+    return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
+
+
+def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
+    """Another interface, where its name stands, and where it serves as the handle."""
+    if not naming.literal:
+        return
+    spans = [naming.span]
+    if isinstance(context, MachineContext):
+        declared = [d for d in context.machine.declarations if d.interface and d.interface.span == naming.span]
+        spans += [s for d in declared if d.handle is d.interface for s in _handle_spans(context.machine, d)]
+    for number, name in enumerate(names):
+        edits = tuple(TextEdit(span, name) for span in spans)
+        yield Fix(f"Change to `{name}`", edits, preferred=number == 0)
+
+
+def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
+    """Where the rest of the machine names a declaration."""
+    for chart in machine.charts:
+        users: list[Handler | Communicate] = [h for state in chart.states for h in state.handlers]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
+        for user in users:
+            if user.handle is not None and find_handle(machine, user) is declaration:
+                yield user.handle.span
+
+
+RULE = Rule(
+    "missing-server", Severity.ERROR, "A service or action is used that nobody serves.", machine=check, tree=check
+)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""silent-client: see silent_client.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
+from roaml.model.machine import Communicate, Declaration
+from roaml.model.typing import find_handle
+from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.rules.support.elements import removal
+
+ANSWERS = {
+    "response": ("service-client", "ros_service_send_request"),
+    "goal-response": ("action-client", "ros_action_send_goal"),
+    "feedback": ("action-client", "ros_action_send_goal"),
+    "result": ("action-client", "ros_action_send_goal"),
+    "thread-free": ("action-server", "ros_action_thread_free"),
+    "thread-start": ("action-server", "ros_action_start_thread"),
+}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """A handler waits for an answer to something that this machine never sends; told once for each handle."""
+    sent = set(_sent(context))
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger not in ANSWERS or not handler.effective:
+                    continue
+                kind, element = ANSWERS[handler.trigger]
+                declaration = find_handle(context.machine, handler)
+                if declaration is None or declaration.kind != kind or declaration.handle is None:
+                    continue
+                if not {(declaration, element), (None, element)} & sent:
+                    sent.add((declaration, element))
+                    message = f"this never happens: no `<{element}>` for the `<{KINDS[kind]}>` "
+                    message += f"`{declaration.handle.value}`"
+                    yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
+
+
+def _without(context: MachineContext, declaration: Declaration, sender: str) -> Fix:
+    """Take away all that waits for an answer to `sender`."""
+    waiting = [
+        handler.element
+        for chart in context.machine.charts
+        for state in chart.states
+        for handler in state.handlers
+        if handler.trigger in ANSWERS and ANSWERS[handler.trigger][1] == sender
+        if find_handle(context.machine, handler) is declaration
+    ]
+    edits = tuple(removal(context.source.text, element.span) for element in waiting)
+    return Fix("Remove what waits for it", edits, preferred=False)
+
+
+def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
+    """The elements that send something, with their declaration; None if it may be any, because one cannot be read."""
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, Communicate):
+                yield find_handle(context.machine, statement), statement.element.name
+    read = {statement.element for chart in context.machine.charts for statement in chart.statements}
+    unread = [element for element in context.machine.element.walk() if element not in read]
+    unknown = [element for element in unread if element.name not in HL_SCXML.elements]
+    for name in dict.fromkeys(name for _, name in ANSWERS.values()):
+        if any(element.name == name for element in unread) or misspelled.among(unknown, name, HL_SCXML):
+            yield None, name
+
+
+RULE = Rule("silent-client", Severity.ERROR, "An answer is waited for to something that is never sent.", machine=check)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""silent-server: see silent_server.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.types import leaves
+from roaml.expr.zero import zero_text
+from roaml.model.machine import Declaration
+from roaml.model.ros import InterfaceType
+from roaml.model.system import Automaton, Channel, Endpoint, System
+from roaml.model.typing import find_handle
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.interfaces import declared, find_use, name_span
+from roaml.rules.support.layout import last_in
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    for declaration, automaton, channel in declared(context, "service-server"):
+        clients = [c for c in channel.users if "request" in c.use.sends]
+        if clients and not _may_do_more(context.system, automaton, "service-server", channel):
+            yield from _service(context, declaration, automaton, channel, clients)
+    for declaration, automaton, channel in declared(context, "action-server"):
+        clients = [c for c in channel.users if "goal" in c.use.sends]
+        if clients and not _may_do_more(context.system, automaton, "action-server", channel):
+            yield from _action(declaration, automaton, channel, clients)
+
+
+def _may_do_more(system: System, automaton: Automaton, kind: str, channel: Channel) -> bool:
+    """Whether a server may answer where its machine cannot be read."""
+    return any(system.may(f"{kind} {part}", channel.name, automaton) for part in _PARTS)
+
+
+_PARTS = ("request", "response", "goal", "goal-accepted", "goal-rejected", "result")
+
+
+def _service(
+    context: MachineContext, declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+) -> Iterator[Finding]:
+    related = [Related(clients[0].symbol, "a client")]
+    what = f"the service `{channel.name}` is called but"
+    if not sends(automaton, declaration, "response"):
+        message = f"{what} never answers: `<ros_service_send_response>` is missing"
+        yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
+    elif not receives(automaton, declaration, "request"):
+        message = f"{what} takes no requests: `<ros_service_handle_request>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+
+
+def _action(
+    declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+) -> Iterator[Finding]:
+    related = [Related(clients[0].symbol, "a client")]
+    if not sends(automaton, declaration, "goal-accepted"):
+        rejects = sends(automaton, declaration, "goal-rejected")
+        what = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
+        message = f"the action `{channel.name}` {what}: `<ros_action_accept_goal>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+    elif not receives(automaton, declaration, "goal"):
+        message = f"the action `{channel.name}` takes no goals: `<ros_action_handle_goal>` is missing"
+        yield RULE.at(name_span(declaration), message, related=related)
+    waiting = [c for c in clients if "result" in c.use.receives]
+    if waiting and not sends(automaton, declaration, "result"):
+        message = (
+            f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
+        )
+        yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
+
+
+def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
+    """Answer each request at the end of its handler, with zeros."""
+    assert declaration.handle is not None
+    interface = context.interface("srv", declaration.type.value) if declaration.type else None
+    handlers = [h for chart in context.machine.charts for state in chart.states for h in state.handlers]
+    places = [
+        target.element or handler.element
+        for handler in handlers
+        if handler.trigger == "request" and find_handle(context.machine, handler) is declaration
+        for target in handler.targets
+    ]
+    if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
+        return
+    lines = response(declaration, interface)
+    edits = tuple(last_in(context.document, place, *lines) for place in places)
+    yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
+
+
+def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
+    """The lines that answer a request with 0, or what is like it, in each field."""
+    assert declaration.handle is not None
+    types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
+    fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
+    tag = f'<ros_service_send_response name="{declaration.handle.value}"'
+    return (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
+
+
+def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+    use = find_use(automaton, declaration)
+    return use is not None and part in use.sends
+
+
+def receives(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+    use = find_use(automaton, declaration)
+    return use is not None and part in use.receives
+
+
+RULE = Rule("silent-server", Severity.ERROR, "A server never answers.", machine=check)

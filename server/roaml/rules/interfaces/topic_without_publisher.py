@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""topic-without-publisher: see topic_without_publisher.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.system import CLOCK_TOPIC, Channel, System
+from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
+from roaml.rules.support.interfaces import named_here
+
+
+def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for naming in named_here(context, "subscriber"):
+        topic = naming.channel
+        if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
+            continue
+        # A topic that is declared on both sides is hardly misspelled.
+        others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]
+        close = close_names(topic.name, others)
+        silent = " (declared, but nothing is ever published)" if topic.sources else ""
+        message = f"nobody publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
+        fixes = replacements(naming.span, close if naming.literal else ())
+        # A node that always has something else to do may well have inputs that nobody gives in this system.
+        needed = bool(close or topic.sources or naming.use.awaited)
+        severity = Severity.ERROR if needed else Severity.WARNING
+        yield RULE.at(naming.span, message, *fixes, severity=severity, related=naming.related)
+
+
+def has_publisher(system: System, topic: Channel) -> bool:
+    if topic.name == CLOCK_TOPIC and system.has_timer:
+        return True
+    return any("message" in endpoint.use.sends for endpoint in topic.sources)
+
+
+RULE = Rule(
+    "topic-without-publisher",
+    Severity.ERROR,
+    "A topic is subscribed to that nobody publishes.",
+    machine=check,
+    tree=check,
+)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""topic-without-subscriber: see topic_without_subscriber.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.syntax import Name
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.interfaces import declared, name_span
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    system = context.system
+    if system is None:
+        return
+    for declaration, _, topic in declared(context, "publisher"):
+        observed = system.is_observed(f"topic_{topic.name}_msg")
+        if not topic.users and not observed and not system.may("subscriber", topic.name):
+            close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
+            message = f"nobody subscribes to the topic `{topic.name}`{did_you_mean(close)}"
+            fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+            yield RULE.at(name_span(declaration), message, *fixes)
+
+
+RULE = Rule("topic-without-subscriber", Severity.HINT, "A topic is published that nobody subscribes to.", machine=check)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""undeclared-handle: see undeclared_handle.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.language import HL_SCXML
+from roaml.model.build_machine import INTERFACE_ATTRIBUTES
+from roaml.model.machine import Communicate, Declaration, Handler, Machine
+from roaml.model.syntax import Name
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support import misspelled
+from roaml.rules.support.interfaces import other_kind
+from roaml.rules.support.layout import after, first_in
+from roaml.text import Span, TextEdit
+from roaml.xml import Element
+
+KINDS = {
+    "publisher": "ros_topic_publisher",
+    "subscriber": "ros_topic_subscriber",
+    "service-client": "ros_service_client",
+    "service-server": "ros_service_server",
+    "action-client": "ros_action_client",
+    "action-server": "ros_action_server",
+    "timer": "ros_time_rate",
+}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    machine = context.machine
+    for element, handle, kinds in _uses(machine):
+        right = [d.handle.value for d in machine.declarations if d.handle and d.kind in kinds]
+        if handle is None:
+            yield from _without_name(element, kinds, right)
+        elif handle.value not in right and not _may_be_declared(machine, handle.value, kinds):
+            yield _undeclared(context, element, handle, kinds, right)
+
+
+def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) -> Iterator[Finding]:
+    attribute = element.get("name")
+    if misspelled.attribute(element, "name", HL_SCXML.elements[element.name].attributes) or (
+        attribute is not None and not attribute.has_value
+    ):
+        return
+    tags = " or ".join(f"`<{KINDS[kind]}>`" for kind in kinds)
+    message = f"`<{element.name}>` needs `name`, the name of a {tags}"
+    span = attribute.span if attribute else Span(element.name_span.end, element.name_span.end)
+    new = "" if attribute else " "
+    fixes = [
+        Fix(f'Write `name="{name}"`', (TextEdit(span, f'{new}name="{name}"'),), preferred=len(right) == 1)
+        for name in right[:3]
+    ]
+    yield RULE.at(element.name_span, message, *fixes)
+
+
+def _undeclared(
+    context: MachineContext, element: Element, handle: Name, kinds: tuple[str, ...], right: list[str]
+) -> Finding:
+    machine = context.machine
+    wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
+    if wrong is None or wrong.handle is None:
+        close = close_names(handle.value, right)
+        message = f"there is no `<{KINDS[kinds[0]]}>` called `{handle.value}`{did_you_mean(close)}"
+        declare = _declare(context, handle.value, kinds[0], preferred=not close)
+        return RULE.at(handle.span, message, *replacements(handle.span, close), *declare)
+    message = f"`{handle.value}` is a `<{KINDS[wrong.kind]}>`; `<{element.name}>` needs a `<{KINDS[kinds[0]]}>`"
+    meant = tuple(right) if len(right) == 1 else _same_interface(machine, wrong, kinds)
+    related = (Related(wrong.handle.span, "declared here"),)
+    return RULE.at(handle.span, message + did_you_mean(meant), *replacements(handle.span, meant), related=related)
+
+
+def _declare(context: MachineContext, name: str, kind: str, *, preferred: bool) -> Iterator[Fix]:
+    """Declare a timer, or the topic, service or action of this name that other machines of the system have."""
+    document, root = context.document, context.machine.element
+    if kind == "timer":
+        text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False
+    else:
+        found = _elsewhere(context, name, kind)
+        if found is None:
+            return
+        interface, type_ = found
+        attribute = next(a for a in INTERFACE_ATTRIBUTES if a in HL_SCXML.elements[KINDS[kind]].attributes)
+        text = f'<{KINDS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
+    siblings = [d.element for d in context.machine.declarations if d.element in root.elements]
+    edit = after(document, siblings[-1], text) if siblings else first_in(document, root, text)
+    yield Fix(f"Declare it as `<{KINDS[kind]}>`", (edit,), preferred)
+
+
+def _elsewhere(context: MachineContext, name: str, kind: str) -> tuple[str, str] | None:
+    """How another machine names a topic, service or action called `name`, and its type."""
+    for automaton in context.system.automata if context.system else ():
+        for use in automaton.outline.interfaces:
+            written = automaton.interface_name(use)
+            alike = use.kind in (kind, other_kind(kind)) and automaton not in context.automata
+            if written is not None and alike and name.strip("/") in (written.strip("/"), use.handle) and use.type:
+                return written, use.type
+    return None
+
+
+def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """The handles of the right kind for the topic, service or action that a wrong one stands for."""
+    return tuple(
+        d.handle.value
+        for d in machine.declarations
+        if d.handle and d.kind in kinds and isinstance(d.interface, Name) and isinstance(wrong.interface, Name)
+        if d.interface.value.lstrip("/") == wrong.interface.value.lstrip("/")
+    )
+
+
+def _may_be_declared(machine: Machine, name: str, kinds: tuple[str, ...]) -> bool:
+    """Whether a declaration without a name, or an element that is only misspelled, may be what is meant."""
+    if any(d.kind in kinds and d.handle is None for d in machine.declarations):
+        return True
+    named = [e for e in machine.element.elements if any(a.value == name for a in e.attributes)]
+    return any(misspelled.among(named, KINDS[kind], HL_SCXML) for kind in kinds)
+
+
+def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[str, ...]]]:
+    """Every element that refers to a declaration, the name it uses, and the kinds of declaration it wants."""
+    users: list[Handler | Communicate] = []
+    for chart in machine.charts:
+        users += [h for state in chart.states for h in state.handlers if h.effective]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
+    for user in users:
+        attribute = user.type.attributes.get("name")
+        if attribute is not None and attribute.refers:
+            yield user.element, user.handle, attribute.refers
+    for thread in machine.threads:
+        yield thread.element, thread.server, HL_SCXML.elements["ros_action_thread"].attributes["name"].refers
+
+
+RULE = Rule(
+    "undeclared-handle", Severity.ERROR, "A ROS interface or timer is used that is not declared.", machine=check
+)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-field: see unknown_field.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.infer import UnknownMember
+from roaml.expr.types import Struct, Unknown, leaves, unwrap
+from roaml.model.machine import Communicate, Param
+from roaml.model.ros import InterfaceType
+from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.expressions.unknown_member import is_ros
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.layout import remove
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, UnknownMember):
+                inner, _ = unwrap(problem.owner)
+                if isinstance(inner, Struct) and is_ros(inner):
+                    close = close_names(problem.name, [name for name, _ in inner.members])
+                    message = f"`{inner}` has no field `{problem.name}`{did_you_mean(close)}"
+                    yield RULE.at(problem.span, message, *replacements(problem.span, close))
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, Communicate):
+                yield from _fields(context, statement)
+
+
+def _fields(context: MachineContext, statement: Communicate) -> Iterator[Finding]:
+    part = sent_part(context, statement)
+    if part is None:
+        return
+    paths = [".".join(path) for path, _ in leaves(part)]
+    for field in statement.fields:
+        if field.name is not None and field.name.value not in paths and not inside_unknown(part, field.name.value):
+            yield _unknown(context, field, part, paths)
+
+
+def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
+    """The fields that a sending element may set; None if its type is not known."""
+    declaration = find_handle(context.machine, statement)
+    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+        return None
+    found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    if not isinstance(found, InterfaceType):
+        return None
+    part = dict(found.parts).get(SECTIONS.get(statement.type.sends, statement.type.sends))
+    # Some elements send no fields at all: goal answers, and results that are no success.
+    return part if "field" in statement.type.children else Struct(found.name, ())
+
+
+def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[str]) -> Finding:
+    assert field.name is not None
+    name = field.name.value
+    inside = [path for path in paths if path.startswith(f"{name}.")]
+    if inside:
+        message = f"`{name}` is a message of its own; set its fields, such as `{inside[0]}`"
+        return RULE.at(field.name.span, message, *replacements(field.name.span, inside[:1]))
+    close = close_names(name, paths) or close_names(name.rpartition(".")[2], paths)
+    if not close:
+        close = tuple(path for path in paths if path.rpartition(".")[2] == name)
+    known = "" if close or not paths else f"; it has {', '.join(f'`{p}`' for p in paths[:6])}"
+    known = known if paths else "; it has no fields"
+    message = f"`{part}` has no field `{name}`{did_you_mean(close)}{known}"
+    drop = [] if close else [remove(context.document, field.element)]
+    return RULE.at(field.name.span, message, *replacements(field.name.span, close), *drop)
+
+
+def inside_unknown(part: Struct, name: str) -> bool:
+    """Whether a field lies in one whose type is not known, so that nothing can be said of it."""
+    unknown = (".".join(path) for path, type_ in leaves(part) if isinstance(unwrap(type_)[0], Unknown))
+    return any(name.startswith(f"{path}.") for path in unknown)
+
+
+RULE = Rule("unknown-field", Severity.ERROR, "A field is named that the ROS type does not have.", machine=check)

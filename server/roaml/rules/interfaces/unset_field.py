@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unset-field: see unset_field.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.tree import Member, access_path, walk
+from roaml.model.machine import Handler
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Expression
+from roaml.model.system import Channel
+from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.events.event_data_unavailable import known_here
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.interfaces import declared, other_kind
+
+PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapped_result": 2}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Fields that the reference translator leaves out need not be set; reading one that nobody sets gives nothing."""
+    if context.system is None:
+        return
+    for value in context.typed.values:
+        handler = value.place.handler
+        if handler is None or not isinstance(value.value, Expression):
+            continue
+        prefixes = PREFIXES.keys() & known_here(value.place)
+        for node in walk(value.value.tree) if prefixes else ():
+            path = access_path(node) if isinstance(node, Member) else None
+            if isinstance(node, Member) and path is not None and path[0] in prefixes:
+                yield from _check(context, handler, node, ".".join(path[PREFIXES[path[0]] :]))
+
+
+def _check(context: MachineContext, handler: Handler, node: Member, field: str) -> Iterator[Finding]:
+    declaration = find_handle(context.machine, handler)
+    if (
+        context.system is None
+        or declaration is None
+        or declaration.type is None
+        or declaration.kind not in INTERFACE_KINDS
+    ):
+        return
+    interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    part = SECTIONS.get(handler.trigger, handler.trigger)
+    if not isinstance(interface, InterfaceType) or field not in dict(interface.optional).get(part, frozenset()):
+        return
+    for found, _, channel in declared(context, declaration.kind):
+        if found is not declaration:
+            continue
+        unread = context.system.may(f"{other_kind(declaration.kind)} {part} field", channel.name)
+        if not unread and not any(field in sent for sent in _sent(channel, part)):
+            yield RULE.at(node.name_span, f"nobody sets the field `{field}` of `{channel.name}`: it is always empty")
+            return
+
+
+def _sent(channel: Channel, part: str) -> Iterator[set[str]]:
+    for endpoint in channel.endpoints:
+        yield {field.name for field in dict(endpoint.use.fields).get(part, ())}
+
+
+RULE = Rule("unset-field", Severity.WARNING, "A field is read that nobody sets.", machine=check)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-handle: see unused_handle.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity, Tag
+from roaml.model.machine import Communicate, Handler
+from roaml.model.typing import find_handle
+from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.layout import remove
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    machine = context.machine
+    users: list[Handler | Communicate] = []
+    for chart in machine.charts:
+        users += [h for state in chart.states for h in state.handlers]
+        users += [s for s in chart.statements if isinstance(s, Communicate)]
+    used = [find_handle(machine, user) for user in users if "name" in user.type.attributes]
+    with_threads = [thread.server.value for thread in machine.threads if thread.server]
+    for declaration in machine.declarations:
+        if declaration.handle is not None and not any(u is declaration for u in used):
+            if declaration.kind == "action-server" and declaration.handle.value in with_threads:
+                continue
+            what = "timer" if declaration.kind == "timer" else f"`<{KINDS[declaration.kind]}>`"
+            message = f"the {what} `{declaration.handle.value}` is never used"
+            drop = remove(context.document, declaration.element, "Remove the declaration", preferred=True)
+            yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))
+
+
+RULE = Rule("unused-handle", Severity.HINT, "A ROS interface or timer is declared and never used.", machine=check)

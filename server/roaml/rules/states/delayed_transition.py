@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""delayed-transition: see delayed_transition.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.system_file import NANOSECONDS, duration
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.elements import removal
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                after = handler.element.get("after")
+                if after is None or handler.element.name != "transition":
+                    continue
+                timer = f'<ros_time_rate name="…" rate_hz="{_rate(after.value)}" />'
+                message = (
+                    f"a transition does not wait: `after` has no effect; declare the timer `{timer}` and count its"
+                )
+                message += " ticks in a `<ros_rate_callback>`"
+                remove = Fix("Remove the attribute", (removal(context.source.text, after.span),), preferred=False)
+                severity = Severity.HINT if context.older else Severity.WARNING
+                yield RULE.at(after.span, message, remove, severity=severity)
+
+
+def _rate(text: str) -> str:
+    """The rate in Hz of a timer whose period is a text such as `5s`; `…` if it is no time."""
+    period = duration(text)
+    return "…" if period is None else f"{NANOSECONDS['s'] / period:.6g}"
+
+
+RULE = Rule("delayed-transition", Severity.WARNING, "A transition is meant to wait for a time.", machine=check)

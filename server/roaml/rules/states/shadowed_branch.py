@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""shadowed-branch: see shadowed_branch.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.behavior.explore import condition_facts
+from roaml.model.machine import If
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.conditions import covered
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """The first branch whose condition holds is executed (spec/01 §6.3)."""
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if not isinstance(statement, If) or len(statement.branches) < 2:
+                continue
+            branches = statement.branches
+            for found in covered(condition_facts(chart), [branch.cond for branch in branches]):
+                earlier = [branches[n] for n in found.by or range(found.number)]
+                if found.same:
+                    why = "an earlier branch has the same condition"
+                elif found.by:
+                    why = "whenever its condition holds, that of an earlier branch holds, too"
+                else:
+                    why = "whenever its condition holds, that of one of the earlier branches holds, too"
+                message = f"this branch is never executed: {why}; change one of the conditions"
+                related = [Related(branch.element.name_span, "tried first") for branch in earlier]
+                yield RULE.at(branches[found.number].element.name_span, message, related=related)
+
+
+RULE = Rule(
+    "shadowed-branch",
+    Severity.WARNING,
+    "A branch of an `<if>` can never be executed because an earlier one always is.",
+    machine=check,
+)

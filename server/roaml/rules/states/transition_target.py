@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""transition-target: see transition_target.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.language import HL_SCXML
+from roaml.language.validate import is_foreign
+from roaml.model.machine import Handler
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support import misspelled
+from roaml.text import Span, TextEdit
+from roaml.xml import Element
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    namespaces = dict(context.document.namespaces)
+    for chart in context.machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger != "goal-response" and handler.effective:
+                    here = state.id.value if state.id else ""
+                    children = [child for child in handler.element.elements if not is_foreign(namespaces, child)]
+                    yield from _check(handler, children, here)
+
+
+def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Finding]:
+    element = handler.element
+    attribute = element.get("target")
+    targets = [child for child in children if child.name == "target"]
+    if attribute is not None and targets:
+        related = (Related(attribute.name_span, "the attribute"),)
+        yield RULE.at(targets[0].name_span, "the target is given twice: as attribute and as child", related=related)
+    elif attribute is None and not targets:
+        if not misspelled.attribute(element, "target", handler.type.attributes):
+            at = element.name_span.end
+            fixes = [Fix(f"Stay in `{here}`", (TextEdit(Span(at, at), f' target="{here}"'),))] if here else []
+            message = f"`<{element.name}>` needs a target; to stay in the state, name the state itself"
+            yield RULE.at(element.name_span, message, *fixes)
+    elif targets:
+        beside = next((child for child in children if child.name in HL_SCXML.groups["Executable"]), None)
+        if beside is not None:
+            message = "beside `<target>` nothing else may stand: move it into each `<target>` that needs it"
+            yield RULE.at(beside.name_span, message)
+
+
+RULE = Rule("transition-target", Severity.ERROR, "A transition has no target, or two.", machine=check)

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the rules about answers share: the graphs of a machine, where a plugin stands in the tree, and where a mistake
+on a path is shown: at the handler that takes the step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Related
+from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
+from roaml.model.behavior.explore import Behavior, Duty, Step, explore
+from roaml.model.machine import Communicate, Handler, Machine, State, Statement
+from roaml.model.system import Automaton, System
+from roaml.model.typing import find_handle
+from roaml.rules.events import removed_bt_event
+from roaml.rules.rule import MachineContext
+from roaml.rules.states.shadowed_transition import has_shadowed
+from roaml.rules.support import misspelled
+from roaml.text import Span
+
+SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
+"""What answers a duty; a goal is accepted or rejected."""
+ELEMENTS = {
+    "bt-status": ("bt_return_status",),
+    "bt-halted": ("bt_return_halted",),
+    "response": ("ros_service_send_response",),
+    "goal": ("ros_action_accept_goal", "ros_action_reject_goal"),
+    "result": ("ros_action_succeed", "ros_action_aborted", "ros_action_canceled"),
+}
+
+
+def behaviors(context: MachineContext) -> Iterator[Behavior]:
+    """The graphs of the machine and its threads; those that are too large are left out.
+
+    Where something seems to be wrong, values are followed in them.
+    """
+    for chart in context.machine.charts:
+        behavior = explore(context.machine, chart)
+        if behavior is not None and is_suspicious(behavior):
+            behavior = explore(context.machine, chart, fine=True)
+        if behavior is not None:
+            yield behavior
+
+
+def plugins(context: MachineContext) -> list[Automaton]:
+    """What the machine is in the tree; nothing if it talks to the tree as was once done."""
+    if removed_bt_event.is_used(context.machine):
+        return []
+    return [automaton for automaton in context.automata if automaton.instance is not None]
+
+
+def is_spelled(context: MachineContext, duty: Duty) -> bool:
+    """Whether no element of the machine seems to be a misspelled answer to a duty."""
+    names = ELEMENTS[SENT.get(duty.kind, duty.kind)]
+    elements = list(context.machine.element.walk())
+    return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
+
+
+def answered_in(machine: Machine, duty: Duty) -> set[str]:
+    """The scopes of the charts that send answers to a duty."""
+    names = ELEMENTS[SENT.get(duty.kind, duty.kind)]
+    found = set()
+    for chart in machine.charts:
+        for statement in chart.executed:
+            if statement.element.name in names:
+                declaration = find_handle(machine, statement) if isinstance(statement, Communicate) else None
+                if not duty.handle or (declaration and declaration.handle and declaration.handle.value == duty.handle):
+                    found.add(chart.scope)
+    return found
+
+
+def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
+    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it.
+
+    Left out is what another report explains: an element that cannot be read might be the answer, and of two conditions
+    one of which is never decisive (shadowed-transition) one was meant to be another.
+    """
+    steps: dict[Handler, list[Step]] = {}
+    for step in dead_ends(behavior, duty):
+        wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
+        if not wrong and (step.certain or not behavior.approximate):
+            steps.setdefault(step.handler, []).append(step)
+    for handler, found in steps.items():
+        if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
+            continue
+        told = [step for step in found if not _may_be_unread(behavior, duty, step)]
+        if told:
+            certain = [step for step in told if step.certain and not step.ignored]
+            yield (certain or told)[0], bool(certain)
+
+
+def place(handler: Handler, statement: Statement | None = None) -> Span:
+    """Where a mistake in a step is shown: at the handler, or at what is executed outside it when a state is entered or
+    left."""
+    if statement is not None and not _within(statement.element.span, handler.element.span):
+        return statement.element.name_span
+    return handler.element.name_span
+
+
+def _within(inner: Span, outer: Span) -> bool:
+    return outer.start <= inner.start and inner.end <= outer.end
+
+
+def target_of(step: Step) -> Iterator[Related]:
+    """The one of several targets that a step leads to."""
+    if step.handler.is_probabilistic and not step.ignored:
+        element = step.handler.targets[step.choice].element
+        if element is not None:
+            yield Related(element.name_span, "on this way")
+
+
+def _may_be_unread(behavior: Behavior, duty: Duty, step: Step) -> bool:
+    """Whether an element that is not known might be the answer that is missed behind a step, or take what leads to it:
+    it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
+    states = {state.id.value: state.element for state in behavior.chart.states if state.id}
+    source = behavior.configurations[step.source]
+    names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
+    if step.ignored or source.owes(duty):
+        names.add(source.state)
+    elements = [step.handler.element, *(states[name] for name in names if name in states)]
+    return any(not e.prefix and HL_SCXML.find(e.name) is None for element in elements for e in element.walk())
+
+
+# ------------------------------------------------------------ place in the tree
+
+_SWITCHES = frozenset(f"Switch{cases}" for cases in range(2, 7))
+_ASKS_ONCE = _SWITCHES | {
+    *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
+    *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
+}
+"""They do not tick a child again that has ended, before they have ended themselves (docs/spec/nodes.md)."""
+_PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
+"""They halt their child only when they are halted."""
+_INTERRUPTS = _SWITCHES | {
+    *("ReactiveSequence", "ReactiveFallback", "Parallel", "WhileDoElse", "Timeout", "BlackboardCheckInt")
+}
+"""They halt children that are running of their own accord."""
+
+
+def is_ticked_again(system: System, automaton: Automaton) -> bool:
+    """Whether a node may be ticked again after it has ended."""
+    if system.parameters.tick_if_not_running:
+        return True
+    return any(above.path or above.outline.name not in _ASKS_ONCE for above in ancestors(system, automaton))
+
+
+def is_halted(system: System, automaton: Automaton, *, running: bool) -> bool:
+    """Whether a node may be halted while it is running, or while it is not."""
+    for parent in ancestors(system, automaton):
+        if parent.path:  # a node of the user's
+            return parent.outline.plugin.halts_children
+        if parent.outline.name in _INTERRUPTS or (not running and parent.outline.name not in _PASSES_HALTS):
+            return True
+    return False
+
+
+def ancestors(system: System, automaton: Automaton) -> Iterator[Automaton]:
+    """The nodes above a node, the nearest first."""
+    number = automaton.instance.parent if automaton.instance else None
+    while number is not None and (above := system.by_instance.get(number)) is not None:
+        yield above
+        number = above.instance.parent if above.instance else None
+
+
+def deaf_states(
+    context: MachineContext, behavior: Behavior, automaton: Automaton, duty: Duty, possible: Possible = always
+) -> Iterator[tuple[State, str]]:
+    """The states in which a tick or halt may come and is not taken, with how the node stands there: "" (it has not been
+    ticked yet), "running" or "ended"."""
+    assert context.system is not None
+    takes, tag = f"bt-{duty.kind}", f"bt_{duty.kind}"
+    deaf = [state for state in behavior.chart.states if not any(h.trigger == takes for h in state.handlers)]
+    if not deaf:
+        return
+    may_come = _coming(context.system, automaton, duty)
+    found: dict[str, str] = {}
+    for number in untaken(behavior, duty, possible):
+        configuration = behavior.configurations[number]
+        if configuration.tree in may_come:
+            found.setdefault(configuration.state, configuration.tree)
+    for state in behavior.chart.states:
+        if state.id is None or state.id.value not in found or _is_for_errors(behavior, state):
+            continue
+        if not misspelled.among(state.element.walk(), tag, HL_SCXML):
+            yield state, found.pop(state.id.value)
+
+
+def _is_for_errors(behavior: Behavior, state: State) -> bool:
+    """Whether a state without any transition is entered only where a condition holds: a plugin that checks its ports
+    ends there on purpose."""
+    if any(handler.effective for handler in state.handlers):
+        return False
+    entering = [
+        step
+        for step in behavior.steps
+        if state.id is not None and behavior.configurations[step.target].state == state.id.value
+    ]
+    return bool(entering) and all(step.handler.cond is not None or not step.certain for step in entering)
+
+
+def _coming(system: System, automaton: Automaton, duty: Duty) -> frozenset[str]:
+    """How a node may stand when a tick or halt comes."""
+    if duty.kind == "tick":
+        again = is_ticked_again(system, automaton)
+        return frozenset(("", "running", "ended") if again else ("", "running"))
+    at_rest = ("", "ended") if is_halted(system, automaton, running=False) else ()
+    return frozenset((*at_rest, *(("running",) if is_halted(system, automaton, running=True) else ())))

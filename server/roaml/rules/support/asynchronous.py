@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A plugin that waits within its tick, written so that it answers RUNNING and its status at a later tick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Fix
+from roaml.model.machine import Handler, ReturnStatus, State, statements
+from roaml.model.typing import STATUSES
+from roaml.rules.rule import MachineContext, unused
+from roaml.rules.support.layout import after, first_in, last_in
+from roaml.text import TextEdit
+
+RUNNING = '<bt_return_status status="RUNNING" />'
+
+
+def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
+    """The change, where it is mechanical: the tick only starts something, and all that ends it answers in handlers that
+    lead to one and the same state."""
+    chart, document = context.machine.chart, context.document
+    states = {state.id.value: state for state in chart.states if state.id}
+    if tick.trigger != "bt-tick" or _answers(tick) or not _is_tidy(tick):
+        return
+    region = _region(tick, states)
+    if region is None:
+        return
+    answering = [h for state in region for h in state.handlers if h.effective and _answers(h)]
+    goals = {t.state.value for h in answering for t in h.targets if t.state}
+    if len(goals) != 1 or not all(map(_is_tidy, answering)):
+        return
+    (goal,) = goals
+    if goal not in states or states[goal].entry is not None or states[goal] in region:
+        return
+    variable = _fresh("answer", {d.id.value for d in chart.data if d.id})
+    last = region[-1]
+    assert last.id is not None
+    done = _fresh(f"{last.id.value}_done", set(states))
+    edits = [last_in(document, tick.element, RUNNING), _declared(context, variable)]
+    edits += (edit for handler in answering for edit in _stored(handler, variable, done))
+    for state in region:
+        at_once = any(h.effective and h.trigger == "" and h.cond is None for h in state.handlers)
+        if state.id is not None and not at_once:
+            edits.append(last_in(document, state.element, *_asked(state.id.value, RUNNING)))
+    answered = _asked(goal, f'<bt_return_status status="{variable}" />')
+    lines = (f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>")
+    edits.append(after(document, last.element, *lines))
+    yield Fix("Answer RUNNING, and the status at a later tick", tuple(edits))
+
+
+def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
+    """The states in which the answer is waited for; None if one of them is more than that."""
+    found: list[State] = []
+    waiting = [target.state for target in tick.targets]
+    while waiting:
+        name = waiting.pop(0)
+        state = states.get(name.value) if name else None
+        if state is None or state.entry or state.exit or not state.element.complete:
+            return None
+        if state in found:
+            continue
+        found.append(state)
+        for handler in state.handlers:
+            if handler.trigger in ("bt-tick", "bt-halt"):
+                return None
+            if handler.effective and not _answers(handler):
+                waiting += [target.state for target in handler.targets]
+    return found
+
+
+def _fresh(name: str, names: set[str]) -> str:
+    return unused(name, names) if name in names else name
+
+
+def _asked(state: str, answer: str) -> tuple[str, ...]:
+    """What a state does on a tick, and on a halt."""
+    return (
+        f'<bt_tick target="{state}">',
+        f"    {answer}",
+        "</bt_tick>",
+        f'<bt_halt target="{state}">',
+        "    <bt_return_halted />",
+        "</bt_halt>",
+    )
+
+
+def _answers(handler: Handler) -> bool:
+    return any(isinstance(s, ReturnStatus) for t in handler.targets for s in statements(t.body))
+
+
+def _is_tidy(handler: Handler) -> bool:
+    """Whether its one target is an attribute."""
+    return len(handler.targets) == 1 and handler.element.get("target") is not None and handler.element.complete
+
+
+def _declared(context: MachineContext, variable: str) -> TextEdit:
+    data = f'<data id="{variable}" type="int8" expr="{STATUSES["RUNNING"]}" />'
+    root = context.machine.element
+    model = root.find("datamodel")
+    if model is not None and model.complete:
+        return last_in(context.document, model, data)
+    return first_in(context.document, root, "<datamodel>", f"    {data}", "</datamodel>")
+
+
+def _stored(handler: Handler, variable: str, done: str) -> Iterator[TextEdit]:
+    """Store the status in place of answering with it, and lead to the state that answers."""
+    target = handler.element.get("target")
+    assert target is not None
+    yield TextEdit(target.value_span, done)
+    for statement in statements(handler.targets[0].body):
+        if isinstance(statement, ReturnStatus) and statement.status is not None:
+            word = statement.status.value
+            value = str(STATUSES[word]) if word in STATUSES else word
+            yield TextEdit(statement.element.span, f'<assign location="{variable}" expr="{value}" />')

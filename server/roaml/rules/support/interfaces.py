@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What rules about topics, services and actions share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Related
+from roaml.model.gaps import OTHER_SIDE
+from roaml.model.machine import Declaration
+from roaml.model.outline import InterfaceUse
+from roaml.model.syntax import Name
+from roaml.model.system import Automaton, Channel
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import MachineContext, TreeContext
+from roaml.rules.support.instances import instances
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """A place where an automaton says which topic, service or action it means.
+
+    Attributes:
+        span: of the name, or of what stands for it: see `name_span` and `port_span`.
+        literal: the name itself stands there.
+        related: for the port of a node, the declaration in its plugin.
+    """
+
+    span: Span
+    literal: bool
+    use: InterfaceUse
+    channel: Channel
+    related: tuple[Related, ...] = ()
+
+
+def named_here(context: MachineContext | TreeContext, kind: str) -> Iterator[Naming]:
+    """Where a file names topics, services or actions of a kind: in declarations, or as constants for ports."""
+    if context.system is None:
+        return
+    if isinstance(context, MachineContext):
+        for declaration, automaton, channel in declared(context, kind):
+            use = find_use(automaton, declaration)
+            if use is not None and isinstance(declaration.interface, Name):
+                yield Naming(declaration.interface.span, True, use, channel)
+        return
+    for node, automaton, use in named_by_ports(context):
+        channel_meant = context.system.channel(automaton, use)
+        if use.kind == kind and channel_meant is not None:
+            setting = next((setting for setting in node.ports if setting.key.value == use.port), None)
+            literal = setting is not None and setting.variable is None
+            related = (Related(automaton.symbol(use), "it is used here"),)
+            yield Naming(port_span(node, use.port), literal, use, channel_meant, related)
+
+
+def other_kind(kind: str) -> str:
+    """The other side of a declaration kind."""
+    return OTHER_SIDE[kind]
+
+
+def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, Automaton, Channel]]:
+    """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
+    if context.system is None:
+        return
+    for automaton in context.automata:
+        for declaration in context.machine.declarations:
+            if declaration.kind != kind or declaration.handle is None:
+                continue
+            use = find_use(automaton, declaration)
+            channel = context.system.channel(automaton, use) if use else None
+            if channel is not None:
+                yield declaration, automaton, channel
+
+
+def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton, InterfaceUse]]:
+    """The nodes of a file whose ports name topics, services or actions, with what they are in the executed tree."""
+    for node, automaton in instances(context):
+        for use in automaton.outline.interfaces:
+            if use.port:
+                yield node, automaton, use
+
+
+def port_span(node: TreeNode, key: str) -> Span:
+    """Where a node says what its port holds; its name if that stands elsewhere, as a default does."""
+    setting = next((setting for setting in node.ports if setting.key.value == key), None)
+    if setting is not None:
+        return setting.value.span
+    return node.plugin.span if node.plugin else node.element.name_span
+
+
+def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
+    """The outline of a declaration."""
+    handle = declaration.handle.value if declaration.handle else ""
+    for use in automaton.outline.interfaces:
+        if use.kind == declaration.kind and use.handle == handle:
+            return use
+    return None
+
+
+def name_span(declaration: Declaration) -> Span:
+    """Where the topic, service or action is named; the handle if it comes from a port."""
+    if isinstance(declaration.interface, Name):
+        return declaration.interface.span
+    return declaration.handle.span if declaration.handle else declaration.element.name_span

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where fixes put new elements: on lines of their own, indented like what stands around them.
+
+New lines are given with four spaces for each level that they are nested; they get what the file has for it.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from roaml.diagnostics import Fix
+from roaml.rules.support.elements import removal
+from roaml.text import Span, TextEdit
+from roaml.xml import Document, Element
+
+_LEVEL = "    "
+
+
+def indent_of(text: str, element: Element) -> str:
+    """The white space with which the line of an element begins."""
+    start = max(text.rfind("\n", 0, element.span.start), text.rfind("\r", 0, element.span.start)) + 1
+    line = text[start : element.span.start]
+    return line[: len(line) - len(line.lstrip())]
+
+
+@lru_cache(maxsize=16)
+def level_of(document: Document) -> str:
+    """The white space of one level, as the first nested element has it."""
+    text = document.text
+    for parent in document.root.walk() if document.root else ():
+        for child in parent.elements:
+            if not text[max(text.rfind("\n", 0, child.span.start), 0) : child.span.start].strip():
+                outer, inner = indent_of(text, parent), indent_of(text, child)
+                if inner.startswith(outer) and inner != outer:
+                    return inner.removeprefix(outer)
+    return _LEVEL
+
+
+def after(document: Document, element: Element, *lines: str) -> TextEdit:
+    """Put lines behind an element, as its next sibling."""
+    at = element.span.end
+    return TextEdit(Span(at, at), _block(document, indent_of(document.text, element), lines))
+
+
+def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
+    """Put lines into an element, before all that it holds."""
+    if parent.self_closing or not parent.elements:
+        return last_in(document, parent, *lines)
+    at = parent.open_span.end
+    return TextEdit(Span(at, at), _block(document, _inside(document, parent), lines))
+
+
+def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
+    """Put lines into an element, behind all elements that it holds."""
+    text, outer = document.text, indent_of(document.text, parent)
+    if parent.elements:
+        at = parent.elements[-1].span.end
+        return TextEdit(Span(at, at), _block(document, _inside(document, parent), lines))
+    new = _block(document, outer + level_of(document), lines)
+    if parent.self_closing:
+        slash = parent.open_span.end - 2
+        while text[slash - 1].isspace():
+            slash -= 1
+        return TextEdit(Span(slash, parent.open_span.end), f">{new}\n{outer}</{text[slice(*parent.name_span)]}>")
+    inside = parent.content_span
+    if parent.close_span is not None and not text[inside.start : inside.end].strip():
+        return TextEdit(inside, f"{new}\n{outer}")
+    return TextEdit(Span(inside.start, inside.start), new)
+
+
+def remove(
+    document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
+) -> Fix:
+    """Take an element away."""
+    edit = removal(document.text, element.span)
+    return Fix(title or f"Remove this `<{element.name}>`", (edit,), preferred or safe, safe)
+
+
+def _inside(document: Document, parent: Element) -> str:
+    """The indentation of what an element with children holds."""
+    child = parent.elements[-1]
+    text = document.text
+    own_line = not text[max(text.rfind("\n", 0, child.span.start), 0) : child.span.start].strip()
+    return indent_of(text, child) if own_line else indent_of(text, parent) + level_of(document)
+
+
+def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
+    level = level_of(document)
+    new = []
+    for line in lines:
+        depth = (len(line) - len(line.lstrip(" "))) // len(_LEVEL)
+        new.append(f"\n{indent}{level * depth}{line.lstrip(' ')}" if line else "\n")
+    return "".join(new)

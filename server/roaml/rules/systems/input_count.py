@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""input-count: see input_count.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.kinds import FileKind
+from roaml.model.system_file import ListedFile
+from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.layout import remove
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    trees = [f for f in context.files if f.wanted is FileKind.TREE]
+    for extra in trees[1:]:
+        related = (Related(trees[0].input.element.name_span, "the first one"),)
+        message = "a system has one file of trees; it may include others"
+        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
+    section = context.file.element.find("behavior_tree")
+    wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
+    # An input of no known type, or a misspelled one, may be meant as the tree; other rules say that.
+    unread = "behavior_tree" in context.file.unread
+    if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
+        yield RULE.at(section.name_span, "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing")
+    properties = [f for f in context.files if f.input.section == "properties"]
+    for extra in properties[1:]:
+        related = (Related(properties[0].input.element.name_span, "the first one"),)
+        message = "a system has one property file"
+        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
+
+
+def _remove(context: SystemContext, listed: ListedFile) -> Fix:
+    return remove(context.document, listed.input.element, "Remove this `<input>`")
+
+
+RULE = Rule("input-count", Severity.ERROR, "A system lists too many or too few files of a kind.", system=check)

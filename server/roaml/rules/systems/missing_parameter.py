@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""missing-parameter: see missing_parameter.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import SYSTEM
+from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support import misspelled
+from roaml.rules.support.layout import first_in
+from roaml.xml import Element
+
+MAX_TIME = '<max_time value="100" unit="s" />'
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    root = context.file.element
+    section = root.find("parameters") or root.find("mc_parameters")
+    if section is None:
+        if not misspelled.among(root.elements, "parameters", SYSTEM):
+            fix = _insert(context, root, "<parameters>", f"    {MAX_TIME}", "</parameters>")
+            yield RULE.at(root.name_span, "the system has no `<parameters>`: `<max_time>` must be given", *fix)
+    elif section.find("max_time") is None and not misspelled.among(section.elements, "max_time", SYSTEM):
+        fix = _insert(context, section, MAX_TIME)
+        yield RULE.at(section.name_span, "`<max_time>` must be given: how long the clock runs", *fix)
+
+
+def _insert(context: SystemContext, parent: Element, *lines: str) -> Iterator[Fix]:
+    if parent.complete:
+        name = lines[0].partition(">")[0].partition(" ")[0]
+        yield Fix(f"Add `{name}>`", (first_in(context.document, parent, *lines),))
+
+
+RULE = Rule("missing-parameter", Severity.ERROR, "A parameter that the translation needs is missing.", system=check)

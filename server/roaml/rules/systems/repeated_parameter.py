@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""repeated-parameter: see repeated_parameter.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.elements import removal
+from roaml.xml import Element
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    root = context.file.element
+    newer, older = root.find("parameters"), root.find("mc_parameters")
+    section = newer or older
+    if newer is not None and older is not None:
+        related = (Related(newer.name_span, "this one counts"),)
+        fix = Fix("Remove `<mc_parameters>`", (removal(context.source.text, older.span),), safe=True)
+        yield RULE.at(older.name_span, "`<mc_parameters>` is not read beside `<parameters>`", fix, related=related)
+    last: dict[str, Element] = {}
+    for element in reversed(section.elements if section else []):
+        if last.setdefault(element.name, element) is not element:
+            related = (Related(last[element.name].name_span, "this one counts"),)
+            remove = Fix("Remove this one", (removal(context.source.text, element.span),), safe=True)
+            yield RULE.at(element.name_span, f"`<{element.name}>` is given again below", remove, related=related)
+
+
+RULE = Rule("repeated-parameter", Severity.WARNING, "A parameter is given twice.", system=check)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blackboard-never-read: see blackboard_never_read.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import VARIABLE
+from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
+from roaml.rules.support.blackboard import described, places, renamings
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """What nobody writes either is no business of this rule. Properties read, too."""
+    system = context.system
+    if system is None:
+        return
+    board = system.blackboard
+    read = [name for name, ports in board.items() if any(bound.port.read for bound in ports)]
+    unwritten = [name for name in read if not any(bound.port.written for bound in board[name])]
+    for variable, ports in board.items():
+        if variable in read or not any(bound.port.written for bound in ports):
+            continue
+        if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(VARIABLE, variable):
+            continue
+        close = close_names(variable, unwritten)
+        for bound, span, written in places(context, variable, ports):
+            if bound.port.direction == "in":
+                message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
+                yield RULE.at(span, message)
+            else:
+                message = f"nobody reads {described(variable, written)}{did_you_mean(close)}"
+                yield RULE.at(span, message, *renamings(span, written, variable, close))
+
+
+RULE = Rule(
+    "blackboard-never-read", Severity.WARNING, "A blackboard variable is written that nobody reads.", tree=check
+)

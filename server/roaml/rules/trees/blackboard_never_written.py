@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blackboard-never-written: see blackboard_never_written.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import VARIABLE
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
+from roaml.rules.support.blackboard import described, places, renamings
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    board = context.system.blackboard
+    set_ = [name for name, ports in board.items() if any(bound.port.written for bound in ports)]
+    for variable, ports in board.items():
+        if variable in set_ or context.system.may(VARIABLE, variable):
+            continue
+        close = close_names(variable, set_)
+        for bound, span, written in places(context, variable, ports):
+            if bound.port.direction == "out":
+                yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
+            else:
+                message = f"nobody writes {described(variable, written)}{did_you_mean(close)}"
+                yield RULE.at(span, message, *renamings(span, written, variable, close))
+
+
+RULE = Rule("blackboard-never-written", Severity.ERROR, "A blackboard variable is read that nobody writes.", tree=check)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blackboard-read: see blackboard_read.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.tree import Name, walk
+from roaml.model.expand import Reference
+from roaml.model.machine import Declaration
+from roaml.model.syntax import Expression, PortRead
+from roaml.model.typing import TypedValue, Use
+from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.rules.rule import MachineContext, Rule
+
+CONSTANT = (Use.INITIAL, Use.BOUND)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Places in which a port can only hold a constant, while the tree binds it to the blackboard
+    (docs/spec/plugins.md#get-input)."""
+    bound = _bound(context)
+    if not bound:
+        return
+    for value in context.typed.values:
+        if isinstance(value.value, PortRead) and value.value.key and value.value.key.value in bound:
+            reason = _reason(context, value)
+            if reason:
+                where = bound[value.value.key.value]
+                yield RULE.at(value.value.span, f"{reason}; `{where}` in the tree binds the port to the blackboard")
+    for declaration in context.machine.declarations:
+        for read in (declaration.interface, declaration.rate):
+            if isinstance(read, PortRead) and read.key and read.key.value in bound:
+                what = _what(declaration)
+                where = bound[read.key.value]
+                yield RULE.at(
+                    read.span, f"{what} must be constant; `{where}` in the tree binds the port to the blackboard"
+                )
+
+
+def _bound(context: MachineContext) -> dict[str, str]:
+    """The ports that some node of the tree binds to the blackboard, with the variable written there."""
+    found: dict[str, str] = {}
+    for automaton in context.automata:
+        for port in automaton.outline.ports:
+            value = automaton.port(port.key)
+            if isinstance(value, Reference):
+                found.setdefault(port.key, f'{port.key}="{{{value.variable}}}"')
+    return found
+
+
+def _what(declaration: Declaration) -> str:
+    return "the rate of a timer" if declaration.kind == "timer" else "the name of a topic, service or action"
+
+
+def _reason(context: MachineContext, value: TypedValue) -> str:
+    handler = value.place.handler
+    if value.use in CONSTANT:
+        return "an initial value must be constant"
+    if handler is None:
+        return f"the blackboard cannot be read in `<{value.place.part}>`: read it in the body of a transition"
+    if handler.is_probabilistic:
+        return "the blackboard cannot be read in a transition with several targets: read it in the transition before"
+    names = {
+        node.name
+        for other in context.typed.values
+        if other.place.handler is handler and other.place.part == "body" and isinstance(other.value, Expression)
+        for node in walk(other.value.tree)
+        if isinstance(node, Name)
+    }
+    mixed = sorted(names & EVENT_VARIABLES.keys())
+    if mixed:
+        return f"the blackboard is read before this body runs, and then `{mixed[0]}` is no longer known"
+    return ""
+
+
+RULE = Rule("blackboard-read", Severity.ERROR, "The blackboard is read where that is not possible.", machine=check)

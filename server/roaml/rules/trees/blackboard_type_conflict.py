@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""blackboard-type-conflict: see blackboard_type_conflict.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.model.system import BoundPort
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.blackboard import places
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """All ports bound to one variable have one type, to the letter (docs/spec/trees.md#blackboard)."""
+    if context.system is None:
+        return
+    for variable, ports in context.system.blackboard.items():
+        typed = [bound for bound in ports if bound.port.type != "any"]
+        if len({bound.port.type for bound in typed}) < 2:
+            continue
+        for bound, span, _ in places(context, variable, ports):
+            other = next((o for o in typed if o.port.type != bound.port.type), None)
+            if other is not None and bound.port.type != "any":
+                yield RULE.at(
+                    span,
+                    f"`{variable}` is `{bound.port.type}` at the port `{bound.port.key}` and `{other.port.type}` at "
+                    f"`{other.port.key}` of `{other.automaton.outline.name}`",
+                    related=_related(bound, other),
+                )
+
+
+def _related(*ports: BoundPort) -> list[Related]:
+    return [
+        Related(Symbol(bound.automaton.path, "port", bound.port.key), f"declared as `{bound.port.type}`")
+        for bound in ports
+        if bound.automaton.path
+    ]
+
+
+RULE = Rule(
+    "blackboard-type-conflict",
+    Severity.ERROR,
+    "A blackboard variable is used with different types.",
+    tree=check,
+)

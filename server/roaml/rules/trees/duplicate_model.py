@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""duplicate-model: see duplicate_model.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.model.globals import global_variables
+from roaml.model.kinds import FileKind
+from roaml.model.system import System, sanitise
+from roaml.model.system_file import ListedFile
+from roaml.model.translated import is_generated
+from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.elements import removal
+
+
+def check(context: SystemContext) -> Iterator[Finding]:
+    """Automata, and plugins among each other, need names of their own."""
+    outlines = dict((*context.system.nodes, *context.system.plugins))
+    first: dict[tuple[str, str], ListedFile] = {}
+    generated = _generated(context.system)
+    for listed in context.files:
+        outline = outlines.get(listed.path) if listed.wanted is FileKind.MACHINE else None
+        if outline is None or listed.input.src is None or not outline.name:
+            continue
+        before = first.setdefault((listed.input.section, outline.name), listed)
+        if before is not listed:
+            yield _finding(context, listed, before, outline.name)
+        elif listed.input.section == "node_models" and (reason := _taken(outline.name, generated)):
+            named = Related(Symbol(listed.path, "machine", outline.name), "named here")
+            message = f"the node `{outline.name}` is called like {reason}; give it another name"
+            yield RULE.at(listed.input.src.span, message, related=[named])
+
+
+def _generated(system: System) -> dict[str, str]:
+    """The names of automata that the translation adds, and what they are: each event is one, and each thread."""
+    events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
+    found = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
+    for automaton in system.automata:
+        for thread in automaton.outline.threads:
+            servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
+            for name in filter(None, map(automaton.interface_name, servers)):
+                words = f"a thread of the action `{name}`"
+                found.update({f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MOST_THREADS))})
+    return found
+
+
+MOST_THREADS = 1000
+"""More are hardly there, and `model-too-large` tells."""
+
+
+def _taken(name: str, generated: Mapping[str, str]) -> str:
+    if is_generated(name):
+        return "what the translation makes for services, actions, the tree and the clock"
+    return generated.get(name, "")
+
+
+def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, name: str) -> Finding:
+    src, earlier = listed.input.src, before.input.src
+    assert src is not None
+    assert earlier is not None
+    first = Related(earlier.span, "the first one")
+    what = "node" if listed.input.section == "node_models" else "plugin"
+    if before.path == listed.path:
+        # Of a plugin that is listed twice there is still only one; of a node there would be two.
+        same = f": there would be two nodes `{name}`" if what == "node" else ""
+        remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
+        severity = Severity.ERROR if what == "node" else Severity.WARNING
+        message = f"`{src.value}` is listed twice{same}"
+        return RULE.at(src.span, message, remove, severity=severity, related=[first])
+    named = Related(Symbol(listed.path, "machine", name), "named here")
+    return RULE.at(src.span, f"there are two {what}s `{name}`, here and in `{earlier.value}`", related=[first, named])
+
+
+RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""invalid-port: see invalid_port.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.types import BASE_TYPES
+from roaml.model.machine import Port
+from roaml.model.syntax import Name, TypeRef
+from roaml.model.system import CHILDREN_COUNT
+from roaml.rules.elements.unknown_element import rename_tag
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.layout import remove
+from roaml.rules.variables.unknown_type import SPELLINGS
+
+ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
+"""Ports are attributes in the tree."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    first: dict[str, Name] = {}
+    for port in context.machine.ports:
+        if port.key is not None:
+            before = first.setdefault(port.key.value, port.key)
+            if before is not port.key:
+                related = (Related(before.span, "the first one"),)
+                fix = remove(context.document, port.element, "Remove this one")
+                yield RULE.at(port.key.span, f"there are two ports `{port.key.value}`", fix, related=related)
+            yield from _key(port, port.key)
+        written = port.element.get("type")
+        if port.type is not None:
+            yield from _type(context, port.type)
+        elif written is not None:
+            yield RULE.at(written.span, "the port has no type: `type` is empty")
+
+
+def _key(port: Port, key: Name) -> Iterator[Finding]:
+    if not ATTRIBUTE.match(key.value):
+        yield RULE.at(key.span, f"a tree cannot set `{key.value}`: it is not the name of an attribute")
+    elif key.value == CHILDREN_COUNT:
+        if port.direction == "out":
+            to_input = rename_tag(port.element, "bt_declare_port_in")
+            yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is given to a plugin: it is an input port", to_input)
+        elif port.type is not None and port.type.text in BASE_TYPES and BASE_TYPES[port.type.text].kind != "int":
+            fixes = replacements(port.type.span, ["int32"])
+            yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` is an int, not `{port.type.text}`", *fixes)
+
+
+def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
+    if type_.text in BASE_TYPES:
+        return
+    base = type_.name.base if type_.name else type_.text
+    if base in BASE_TYPES or base in context.struct_names:
+        yield RULE.at(type_.span, "a port holds a single value: arrays and structs cannot be ports")
+        return
+    # A name like `Point` is meant as a struct, not as a misspelled base type.
+    is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in SPELLINGS
+    candidates = close_names(base, () if is_struct else BASE_TYPES)
+    close = (SPELLINGS[base],) if base in SPELLINGS else candidates
+    hint = did_you_mean(close) or "; a port is a `bool`, a `string`, or of an int or float type"
+    yield RULE.at(type_.span, f"there is no type `{type_.text}`{hint}", *replacements(type_.span, close))
+
+
+RULE = Rule(
+    "invalid-port", Severity.ERROR, "A port is declared twice or with a type that it cannot have.", machine=check
+)

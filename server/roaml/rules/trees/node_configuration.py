@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""node-configuration: see node_configuration.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import constant
+from roaml.expr.parse import parse
+from roaml.model.expand import Constant, Reference
+from roaml.model.tree import PortSetting, TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext, replacements
+from roaml.rules.support.elements import removal
+from roaml.rules.support.instances import instances
+from roaml.text import Decoded
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """Settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
+    yield from _set_twice(context)
+    for node, key, text in _settings(context):
+        number = _number(text)
+        problem = _problem(node, key, number) if number is not None else None
+        if problem is not None:
+            yield _finding(node, key, *problem)
+    for node, automaton in instances(context):
+        for attribute in node.type.ports if node.type else ():
+            value = automaton.port(attribute.name)
+            if attribute.port and attribute.port.constant and isinstance(value, Reference):
+                reason = f"`{attribute.name}` is read once, at the start: it is a constant, no blackboard variable"
+                yield _finding(node, attribute.name, reason)
+
+
+def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
+    """`instead` is the nearest setting that would do."""
+    setting = next((each.value for each in node.ports if each.key.value == key), None)
+    assert node.plugin is not None
+    if setting is None:
+        return RULE.at(node.plugin.span, reason)
+    fixes = [] if instead is None or _number(setting.value) is None else replacements(setting.span, [str(instead)])
+    return RULE.at(setting.span, reason, *fixes)
+
+
+def _set_twice(context: TreeContext) -> Iterator[Finding]:
+    """Ports that are set under two names."""
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            settings: dict[str, PortSetting] = {}
+            for setting in node.ports:
+                first = settings.setdefault(setting.key.value, setting)
+                written, other = setting.attribute.name, first.attribute.name
+                if written != other:
+                    message = f"`{written}` and `{other}` are two names of one port, which can be set once"
+                    drop = Fix(f"Remove `{written}`", (removal(context.source.text, setting.attribute.span),))
+                    yield RULE.at(setting.key.span, message, drop)
+
+
+def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
+    """Every constant setting of a node: its own ones, and what subtrees and defaults of the tree model give it."""
+    executed: set[TreeNode] = set()
+    for node, automaton in instances(context):
+        executed.add(node)
+        for port in automaton.outline.ports:
+            value = automaton.port(port.key)
+            if isinstance(value, Constant):
+                yield node, port.key, value.text
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if node not in executed:
+                for setting in node.ports:
+                    yield node, setting.key.value, setting.value.value
+
+
+def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | None:
+    """What is wrong with a setting, and the nearest one that would do."""
+    count = len(node.children)
+    match node.plugin.value if node.plugin and node.type is not None else "", key:
+        case ("Parallel", "success_count" | "failure_count") if number > count > 0:
+            return f"`{key}` is at most the number of children, here {count}; this is {number}", count
+        case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
+            return f"`{key}` is -1 (for ever), 0 or more; this is {number}", -1
+        case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):
+            return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}", None
+        case ("ParallelAll", "max_failures") if number > count > 0:
+            return f"`max_failures` is at most the number of children, here {count}; this is {number}", count
+    return None
+
+
+def _number(text: str) -> int | None:
+    """The integer that a constant stands for, if it is one."""
+    tree, findings = parse(Decoded(text.strip(), 0))
+    value = None if findings else constant(tree)
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else None
+    return value
+
+
+RULE = Rule("node-configuration", Severity.ERROR, "A node is set up so that it can never answer.", tree=check)

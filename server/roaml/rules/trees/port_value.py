@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: Apache-2.0
+"""port-value: see port_value.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.expr.infer import IntegerDivision, constant, infer
+from roaml.expr.parse import parse
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
+from roaml.model.expand import Constant, Reference
+from roaml.model.outline import MachineOutline, PortOutline
+from roaml.model.syntax import Name
+from roaml.model.system import ANY_TYPE
+from roaml.model.tree import (
+    RESERVED,
+    PortModel,
+    TreeNode,
+    blackboard_variable,
+    is_variable_name,
+    looks_like_reference,
+    nodes,
+)
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
+from roaml.rules.support.instances import instances
+from roaml.text import Decoded, Span, TextEdit
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """In a system only: for BehaviorTree.CPP itself a port may be any text."""
+    if context.system is None:
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            for setting in node.ports:
+                yield from _name(setting.value, is_subtree=node.is_subtree)
+            if not node.is_subtree and node.plugin is not None:
+                path, plugin = context.system.plugin(node.plugin.value)
+                if plugin is not None:
+                    yield from _values(node, plugin, path)
+    for model in context.file.models:
+        path, plugin = context.system.plugin(model.id.value) if model.id else ("", None)
+        for port in model.ports:
+            if plugin is not None and model.kind != "SubTree":
+                yield from _default(port, plugin, path)
+    yield from _given_by_subtrees(context)
+    yield from _of_any_type(context)
+
+
+def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
+    """A reference `{name}` needs a name that is one."""
+    variable = blackboard_variable(value.value)
+    if variable is None:
+        if looks_like_reference(value.value):
+            message = f"`{value.value}` is neither a variable nor a constant: a variable stands alone, as `{{name}}`"
+            yield RULE.at(value.span, message)
+    elif not variable:
+        yield RULE.at(value.span, "the variable in the braces has no name")
+    elif RESERVED.match(variable):
+        yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
+    elif not is_variable_name(variable) and not (is_subtree and variable == "="):
+        rule = "letters, digits, `_` and `$`, not beginning with a digit"
+        message = f"`{variable}` cannot name a blackboard variable: {rule}"
+        yield RULE.at(value.span, message)
+    elif (plain := f"{{{variable}}}") != value.value.strip():
+        # What is meant is clear here, but for BehaviorTree.CPP and the reference the spaces belong to the name.
+        yield RULE.at(
+            value.span,
+            f"a variable stands in its braces without spaces: `{plain}`",
+            *replacements(value.span, (plain,)),
+        )
+
+
+def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
+    for setting in node.ports:
+        port = plugin.port(setting.key.value)
+        if port is not None and setting.variable is None and not looks_like_reference(setting.value.value):
+            yield from _constant(setting.value.value, setting.value.span, port, path)
+
+
+def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
+    """A default of `<TreeNodesModel>` is the value of every node that does not set the port."""
+    port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
+    if port is not None and default is not None:
+        yield from _name(Name(default.value, default.value_span))
+        if not looks_like_reference(default.value):
+            yield from _constant(default.value, default.value_span, port, path)
+
+
+def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
+    related = [Related(Symbol(path, "port", port.key), "declared here")] if path else []
+    if port.direction == "out":
+        name = text.strip()
+        fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []
+        message = f"`{port.key}` is an output port: it is bound to a blackboard variable, `{{name}}`"
+        yield RULE.at(span, message, *fixes, related=related)
+        return
+    problem = problem_of(text.strip(), port)
+    if problem is not None:
+        new = problem.replacement
+        fixes = [Fix(f"Change to `{new}`", (TextEdit(span, new),))] if new else []
+        yield RULE.at(span, problem.message, *fixes, severity=problem.severity, related=related)
+
+
+def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
+    """A constant that a `<SubTree>` gives for a variable ends in the ports bound to that variable."""
+    for node, automaton in instances(context):
+        for setting in node.ports:
+            port, value = automaton.outline.port(setting.key.value), automaton.port(setting.key.value)
+            if setting.variable is None or port is None or port.direction == "out" or not isinstance(value, Constant):
+                continue
+            problem = problem_of(value.text.strip(), port)
+            if problem is not None:
+                message = f"the subtree is given `{value.text}` for `{setting.variable}`, but {problem.message}"
+                yield RULE.at(setting.value.span, message, severity=problem.severity)
+
+
+def _of_any_type(context: TreeContext) -> Iterator[Finding]:
+    """What a `Switch` compares is of one type, that of the first variable in it: string or int
+    (docs/spec/nodes.md#control)."""
+    for node, automaton in instances(context):
+        assert context.system is not None
+        wanted = context.system.any_type(automaton)
+        values = [(p, v) for p in automaton.outline.ports if p.type == ANY_TYPE and (v := automaton.port(p.key))]
+        variables = [(port, value) for port, value in values if isinstance(value, Reference)]
+        if wanted != "string" and wanted not in INTEGER_RANGES:
+            port, reference = variables[0]
+            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{wanted}`")
+            continue
+        if values and not variables:
+            yield from _literal_choice(node)
+        for port, value in values:
+            if isinstance(value, Constant):
+                problem = problem_of(value.text.strip(), replace(port, type=wanted))
+                if problem is not None and not looks_like_reference(value.text):
+                    yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
+                continue
+            given = context.system.variable_type(value.variable)
+            if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
+                message = f"`{port.key}` is compared with values of type `{wanted}`; `{value.variable}` is `{given}`"
+                yield RULE.at(_place(node, port), message)
+
+
+def _literal_choice(node: TreeNode) -> Iterator[Finding]:
+    """Where a `Switch` names no variable, its texts are strings; what is a float or bool elsewhere is hardly meant so.
+
+    A text that a `<SubTree>` hands down may be meant for a string, such as a version.
+    """
+    setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
+    if setting is not None:
+        tree, findings = parse(Decoded(setting.value.strip(), 0))
+        given, problems = infer(tree, lambda _: None)
+        if not findings and not problems and given in (BOOL, REAL):
+            yield RULE.at(setting.span, f"{_COMPARED}; `{setting.value}` is `{given}`")
+
+
+_COMPARED = "a switch compares strings or ints"
+
+
+def _place(node: TreeNode, port: PortOutline) -> Span:
+    """Where a node sets a port; a default of `<TreeNodesModel>` is told at the name of the node."""
+    setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
+    assert setting is not None
+    return setting.span
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Why a port cannot hold a constant; `replacement` is what was probably meant."""
+
+    message: str
+    severity: Severity = Severity.ERROR
+    replacement: str = ""
+
+
+def problem_of(text: str, port: PortOutline) -> Problem | None:
+    """What keeps an input port from holding a constant: a text, or an expression of the port's type."""
+    wanted = BASE_TYPES.get(port.type)
+    if wanted is None or is_kind(wanted, "string"):
+        return None
+    if not text:
+        return Problem(f"the port `{port.key}` has no value; it is `{port.type}`")
+    tree, findings = parse(Decoded(text, 0))
+    given, problems = infer(tree, lambda _: None)
+    sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
+    if wanted == BOOL:
+        if sound and given == BOOL:
+            return None
+        close = {"1": "true", "0": "false"}.get(text, text.lower())
+        known = (close,) if close in ("true", "false") else ()
+        message = f"the port `{port.key}` is `true` or `false`, not `{text}`{did_you_mean(known)}"
+        return Problem(message, replacement="".join(known))
+    if not sound or not is_number(given):
+        return Problem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+    value = constant(tree)
+    if not fits(given, wanted):
+        if value is None or not float(value).is_integer():
+            return Problem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+        new = str(int(value))
+        return Problem(f"the port `{port.key}` is `{port.type}`: write `{new}` for `{text}`", Severity.WARNING, new)
+    low, high = INTEGER_RANGES.get(port.type, (None, None))
+    if value is not None and low is not None and high is not None and not low <= value <= high:
+        message = f"{text} does not fit into the port `{port.key}`: `{port.type}` holds {low} to {high}"
+        return Problem(message, Severity.WARNING)
+    return None
+
+
+RULE = Rule("port-value", Severity.ERROR, "A port is set to a value that it cannot have.", tree=check)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""subtree-constant-written: see subtree_constant_written.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.expand import Constant
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.instances import instances
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """A subtree writes a variable for which its `<SubTree>` gives a constant (docs/spec/trees.md#subtrees)."""
+    for node, automaton in instances(context):
+        for setting in node.ports:
+            port = automaton.outline.port(setting.key.value)
+            if port is None or port.direction == "in" or setting.variable is None:
+                continue
+            value = automaton.port(port.key)
+            if isinstance(value, Constant):
+                message = f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written"
+                yield RULE.at(setting.value.span, message)
+
+
+RULE = Rule("subtree-constant-written", Severity.ERROR, "A subtree writes what it was given as a constant.", tree=check)

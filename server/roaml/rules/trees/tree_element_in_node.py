@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tree-element-in-node: see tree_element_in_node.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.elements import own_elements
+from roaml.rules.support.layout import remove
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    if "node_models" not in context.listed_as or "behavior_tree" in context.listed_as:
+        return
+    for element in own_elements(context.document):
+        if not element.name.startswith("bt_"):
+            continue
+        if element.name.startswith("bt_declare_port"):
+            message = "a node has no ports: this has no effect; list the file in `<behavior_tree>` if it is a plugin"
+            drop = remove(context.document, element)
+            yield RULE.at(element.name_span, message, drop, severity=Severity.WARNING)
+        else:
+            message = f"`<{element.name}>` belongs into a plugin of the behavior tree; this file is listed as a node"
+            yield RULE.at(element.name_span, message)
+
+
+RULE = Rule("tree-element-in-node", Severity.ERROR, "A node uses an element of behavior tree plugins.", machine=check)

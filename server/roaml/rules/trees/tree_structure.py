@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tree-structure: see tree_structure.md."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.language import BEHAVIOR_TREE
+from roaml.model.expand import NodeOutline, TreeOutline, main_tree
+from roaml.model.syntax import Name
+from roaml.model.tree import Tree, nodes
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
+from roaml.rules.support import misspelled
+from roaml.text import Span, TextEdit
+
+MAIN = "MainTree"
+"""What the executed tree is called by custom."""
+
+MOST = 5
+"""So many trees are offered to be executed."""
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    known: dict[str, list[TreeOutline]] = {}
+    for outline in (tree for file in context.files for tree in file.trees):
+        if outline.id:
+            known.setdefault(outline.id, []).append(outline)
+    uses = {name: dict.fromkeys(_subtrees(trees[-1].root)) for name, trees in known.items()}
+    circular = _circular(uses)
+    for tree in context.file.trees:
+        yield from _id(context, tree, known)
+        for node in nodes(tree):
+            if node.is_subtree and node.plugin is not None:
+                yield from _subtree(context, tree, node.plugin, uses, circular)
+    if context.files and context.files[0].path == context.source.path:
+        yield from _main(context)
+
+
+def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutline]]) -> Iterator[Finding]:
+    count = sum(len(file.trees) for file in context.files)
+    if tree.id is None:
+        if count > 1:
+            name = unused("Tree", known)
+            at = tree.element.name_span.end
+            edits = (TextEdit(Span(at, at), f' ID="{name}"'),)
+            fix = Fix(f'Add `ID="{name}"`', edits, preferred=False)
+            yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`", fix)
+        return
+    same = known.get(tree.id.value, ()) or [t for f in context.files for t in f.trees if t.id == tree.id.value]
+    if len(same) > 1:
+        here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
+        elsewhere = [Symbol(t.path, "tree", t.id) for t in same if t.path != context.source.path]
+        related = [Related(span, "another one") for span in here]
+        related += [Related(symbol, "another one") for symbol in elsewhere]
+        name = unused(tree.id.value, known)
+        rename = Fix(f"Rename this one to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
+        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
+
+
+def _subtree(
+    context: TreeContext, tree: Tree, name: Name, uses: Mapping[str, Iterable[str]], circular: Set[str]
+) -> Iterator[Finding]:
+    own = tree.id.value if tree.id else ""
+    if name.value not in uses:
+        around = _around(own, uses)
+        yield from _no_tree(context, name, [other for other in uses if other not in around])
+    elif name.value in circular and own in circular:
+        cycle = _cycle(own, name.value, uses)
+        if cycle:
+            yield RULE.at(name.span, f"a tree cannot contain itself: {' → '.join(cycle)}")
+
+
+def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
+    """Without a system, or if an include cannot be read, the tree may stand in a file that is not known here.
+
+    A `<BehaviorTree>` that is misspelled may be the one.
+    """
+    if context.missing_includes or _has_misspelled_tree(context):
+        return
+    close = close_names(name.value, known)
+    message = f"there is no tree `{name.value}`{did_you_mean(close)}"
+    if context.system is not None:
+        yield RULE.at(name.span, message, *replacements(name.span, close))
+    elif close:
+        yield RULE.at(name.span, message, *replacements(name.span, close), severity=Severity.WARNING)
+
+
+def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
+    """The names of all trees that contain themselves, and of some between such trees."""
+    left = {name: {inner for inner in inners if inner in uses} for name, inners in uses.items()}
+    for _ in range(2):
+        users: dict[str, set[str]] = {name: set() for name in left}
+        for name, inners in left.items():
+            for inner in inners:
+                users[inner].add(name)
+        ended = [name for name, inners in left.items() if not inners]
+        while ended:
+            name = ended.pop()
+            del left[name]
+            for user in users.pop(name):
+                left[user].discard(name)
+                if not left[user]:
+                    ended.append(user)
+        left = {name: users[name] for name in left}  # once more, from the other end
+    return left.keys()
+
+
+def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
+    """The trees that the tree `own` is a part of, itself included."""
+    users: dict[str, list[str]] = {}
+    for name, inners in uses.items():
+        for inner in inners:
+            users.setdefault(inner, []).append(name)
+    found = {own}
+    pending = [own]
+    while pending:
+        for user in users.get(pending.pop(), ()):
+            if user not in found:
+                found.add(user)
+                pending.append(user)
+    return found
+
+
+def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
+    """The names from `start` over `first` back to `start`, or none."""
+    came_from = {first: start}
+    stack = [first]
+    while stack:
+        name = stack.pop()
+        if name == start:
+            return [start, first] if first == start else _back(start, came_from[start], came_from)
+        for inner in uses.get(name, ()):
+            if inner not in came_from:
+                came_from[inner] = name
+                stack.append(inner)
+    return []
+
+
+def _back(start: str, last: str, came_from: Mapping[str, str]) -> list[str]:
+    path = [start]
+    while last != start:
+        path.append(last)
+        last = came_from[last]
+    return [start, *path[::-1]]
+
+
+def _subtrees(node: NodeOutline | None) -> Iterator[str]:
+    if node is not None:
+        if node.is_subtree:
+            yield node.plugin
+        for child in node.children:
+            yield from _subtrees(child)
+
+
+def _main(context: TreeContext) -> Iterator[Finding]:
+    found, main = main_tree(context.files), context.file.main
+    if not isinstance(found, tuple):
+        if main is not None and found.id and found.id != main.value:
+            yield from _another(context, main, found.id)
+    elif main is not None and found:
+        yield from _no_tree(context, main, found)
+    elif context.system is not None and not context.missing_includes:
+        if found:
+            yield from _ambiguous(context, found)
+        elif not _has_misspelled_tree(context):
+            yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that could be executed")
+
+
+def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Finding]:
+    """Only if it is clear which trees no other refers to: a missing, repeated or unknown name is enough to be told, and
+    so is a tree that contains itself where no tree is left."""
+    trees = [tree for file in context.files for tree in file.trees]
+    names = {tree.id for tree in trees}
+    used = {name for tree in trees for name in _subtrees(tree.root)}
+    if "" in names or len(names) < len(trees) or not used <= names or names == used:
+        return
+    root = context.file.element.name_span
+    fixes = (
+        Fix(
+            f"Execute `{name}`",
+            (TextEdit(Span(root.end, root.end), f' main_tree_to_execute="{name}"'),),
+            preferred=name == MAIN,
+        )
+        for name in candidates
+        if context.file.element.get("main_tree_to_execute") is None
+    )
+    message = f"which tree is executed? Name one of {listing(candidates)} in `main_tree_to_execute`"
+    yield RULE.at(root, message, *itertools.islice(fixes, MOST))
+
+
+def _has_misspelled_tree(context: TreeContext) -> bool:
+    return misspelled.among(context.file.element.elements, "BehaviorTree", BEHAVIOR_TREE)
+
+
+def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
+    """The only tree is executed whatever it is called (docs/spec/trees.md#main-tree), but hardly on purpose. See
+    `_no_tree`."""
+    known = context.system is not None or close_names(wanted.value, [executed])
+    if known and not context.missing_includes:
+        message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"
+        yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
+
+
+RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-port: see unknown_port.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.model.outline import MachineOutline
+from roaml.model.system import CHILDREN_COUNT
+from roaml.model.tree import TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
+from roaml.rules.support.elements import removal
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.system is None:
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            if not node.is_subtree and node.plugin is not None:
+                path, plugin = context.system.plugin(node.plugin.value)
+                if plugin is not None:
+                    yield from _check(context, node, plugin, path)
+
+
+def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
+    keys = [port.key for port in plugin.ports]
+    related = [Related(Symbol(path, "machine", plugin.name), "the plugin")] if path else []
+    for setting in node.ports:
+        key = setting.key
+        edit = removal(context.source.text, setting.attribute.span)
+        if key.value == CHILDREN_COUNT:
+            if CHILDREN_COUNT not in keys and path:
+                continue  # without the port it is not read; nodes of BehaviorTree.CPP have it
+            message = f"`{CHILDREN_COUNT}` is filled in by itself and cannot be set"
+            yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
+        elif key.value not in keys and plugin.all_ports:
+            given = {other.key.value for other in node.ports}
+            free = [k for k in keys if k not in given]
+            close = close_names(key.value, free)
+            # What is only misspelled would be missing then.
+            drop = [] if close else [Fix(f"Remove `{key.value}`", (edit,), preferred=False)]
+            known = f"; it has {listing(keys)}" if keys else "; it has no ports"
+            hint = did_you_mean(close) or known
+            message = f"`{plugin.name}` has no port `{key.value}`{hint}"
+            yield RULE.at(key.span, message, *replacements(key.span, close), *drop, related=related)
+
+
+RULE = Rule("unknown-port", Severity.ERROR, "A node sets a port that its plugin does not have.", tree=check)

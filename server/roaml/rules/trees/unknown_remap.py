@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-remap: see unknown_remap.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.expand import node_at, stray_remaps
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
+from roaml.rules.support.elements import removal
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.missing_includes:
+        return
+    for stray in stray_remaps(context.files):
+        node = node_at(context.file, stray.source) if stray.source.path == context.source.path else None
+        setting = next((s for s in node.ports if s.key.value == stray.key), None) if node else None
+        if node is None or node.plugin is None or setting is None:
+            continue
+        known = f"; it has {listing(stray.names[:6])}" if stray.names else ""
+        message = f"the subtree `{node.plugin.value}` has no variable `{stray.key}`{did_you_mean(stray.meant) or known}"
+        drop = (
+            []
+            if stray.meant
+            else [Fix(f"Remove `{stray.key}`", (removal(context.source.text, setting.attribute.span),), False)]
+        )
+        fixes = replacements(setting.key.span, stray.meant)
+        severity = Severity.ERROR if stray.meant else Severity.WARNING
+        yield RULE.at(setting.key.span, message, *fixes, *drop, severity=severity)
+
+
+RULE = Rule("unknown-remap", Severity.ERROR, "A subtree is given a variable that it does not have.", tree=check)

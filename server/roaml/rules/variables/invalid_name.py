@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""invalid-name: see invalid_name.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.expand import Constant
+from roaml.model.gaps import is_interface_name
+from roaml.model.machine import Declaration, Send
+from roaml.model.syntax import Name
+from roaml.model.typing import STATUSES
+from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.rules.rule import MachineContext, Rule, TreeContext
+from roaml.rules.support.interfaces import named_by_ports, port_span
+
+VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
+RESERVED = re.compile(
+    r"(await|break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|finally|for"
+    r"|function|if|import|in|instanceof|let|new|null|return|super|switch|this|throw|try|typeof|var|void|while|with"
+    r"|yield)\Z"
+)
+"""Words of ECMAScript that cannot name anything in an expression."""
+KINDS = {"publisher": "topic", "subscriber": "topic", "service-client": "service", "service-server": "service"}
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for data in chart.data:
+            if data.id is not None:
+                yield from _variable(data.id)
+        for statement in chart.statements:
+            if isinstance(statement, Send):
+                if statement.event and not EVENT.match(statement.event.value):
+                    yield RULE.at(
+                        statement.event.span,
+                        f"`{statement.event.value}` cannot name an event: it begins with a letter or `_` and holds "
+                        "letters, digits, `.`, `-` and `_`",
+                    )
+                for param in statement.params:
+                    if param.name:
+                        yield from _parameter(param.name)
+    for declaration in context.machine.declarations:
+        yield from _interface(declaration)
+
+
+def _variable(name: Name) -> Iterator[Finding]:
+    if reason := variable_problem(name.value):
+        yield RULE.at(name.span, reason)
+    elif name.value in EVENT_VARIABLES:
+        message = f"`{name.value}` is also what received data are called: where these are known, the variable is not"
+        yield RULE.at(name.span, message, severity=Severity.WARNING)
+
+
+def _parameter(name: Name) -> Iterator[Finding]:
+    if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
+        message = f"`{name.value}` cannot name a parameter: letters, digits and `_`, the last no `_`"
+        yield RULE.at(name.span, message)
+
+
+def _interface(declaration: Declaration) -> Iterator[Finding]:
+    """Names that become parts of event names."""
+    what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
+    name = declaration.handle if declaration.kind == "timer" else declaration.interface
+    if isinstance(name, Name) and not is_interface_name(name.value):
+        yield RULE.at(name.span, _with_spaces(name.value, what))
+
+
+def check_tree(context: TreeContext) -> Iterator[Finding]:
+    """Ports give such names, too. An error in a node of several instances is one error."""
+    found: dict[Finding, None] = {}
+    for node, automaton, use in named_by_ports(context):
+        value = automaton.port(use.port)
+        text = value.text.strip() if isinstance(value, Constant) else None
+        if text is not None and not is_interface_name(text):
+            what = KINDS.get(use.kind, "action")
+            empty = f"`{use.port}` names {_a(what)} and cannot be empty"
+            message = _with_spaces(text, what) if text else empty
+            related = (Related(automaton.symbol(use), "it is used here"),)
+            found[RULE.at(port_span(node, use.port), message, related=related)] = None
+    yield from found
+
+
+def _with_spaces(name: str, what: str) -> str:
+    return f"`{name}` cannot name {_a(what)}: it has spaces"
+
+
+def _a(what: str) -> str:
+    return f"{'an' if what == 'action' else 'a'} {what}"
+
+
+def variable_problem(name: str) -> str:
+    """Why `name` cannot name a variable, or ""."""
+    if name in STATUSES:
+        return f"`{name}` is the answer of a tree node and cannot name a variable"
+    if name in ("length", "Math", "true", "false"):
+        return f"`{name}` has a meaning of its own and cannot name a variable"
+    if RESERVED.match(name):
+        return f"`{name}` is a word of ECMAScript and cannot name a variable"
+    if not VARIABLE.match(name):
+        return f"`{name}` cannot name a variable: it begins with a letter and holds letters, digits and `_`"
+    if name.endswith("_"):
+        return f"`{name}` ends in `_`, and such a variable cannot be used"
+    return ""
+
+
+RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check, tree=check_tree)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""struct-declaration: see struct_declaration.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.types import BASE_TYPES
+from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS, Extent
+from roaml.model.structs import StructDeclaration, struct_cycles, struct_extents
+from roaml.model.syntax import Name
+from roaml.rules.rule import Rule, StructsContext
+from roaml.rules.variables.invalid_name import VARIABLE
+
+
+def check(context: StructsContext) -> Iterator[Finding]:
+    first: dict[str, Name] = {}
+    outlines = {outline.name: outline for outline in context.outlines}
+    cycles = struct_cycles(outlines)
+    sizes = struct_extents(outlines)
+    for declaration in context.declarations:
+        name = declaration.name
+        if name is None:
+            continue
+        if name.value in BASE_TYPES:
+            yield RULE.at(name.span, f"`{name.value}` is a base type and cannot name a struct")
+        elif not VARIABLE.match(name.value):
+            yield RULE.at(name.span, f"`{name.value}` cannot name a struct: letters, digits and `_`")
+        else:
+            yield from _other(context, declaration, first.setdefault(name.value, name))
+        if outlines.get(name.value) == declaration.outline:
+            yield from _cycles(declaration, name.value, cycles)
+        yield from _members(declaration)
+        if name.value in sizes and sizes[name.value].is_too_large:
+            yield from _too_large(declaration, sizes)
+
+
+def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
+    """Another declaration of the struct, in this file or elsewhere in the system, that says something else."""
+    name, outline = declaration.name, declaration.outline
+    assert name is not None
+    same = [other for other in context.outlines if other.name == name.value]
+    here = [d for d in context.declarations if d.name and d.name.value == name.value]
+    if first is not name:
+        message = f"there are two structs `{name.value}`; the last one counts"
+        yield RULE.at(name.span, message, severity=Severity.WARNING, related=(Related(first.span, "the first one"),))
+    elif len(same) > len(here) and any(other != outline for other in same):
+        which = "this" if outline == same[-1] else "the last"
+        message = f"there is another struct `{name.value}` in the system, with other members; {which} one counts"
+        yield RULE.at(name.span, message, severity=Severity.WARNING)
+
+
+def _cycles(
+    declaration: StructDeclaration, name: str, cycles: Mapping[tuple[str, str], tuple[str, ...]]
+) -> Iterator[Finding]:
+    """Once for each cycle, at the member that closes it."""
+    for member in declaration.members:
+        cycle = cycles.get((name, member.name.value)) if member.name else None
+        if cycle is not None and member.type is not None:
+            yield RULE.at(member.type.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
+
+
+def _too_large(declaration: StructDeclaration, sizes: Mapping[str, Extent]) -> Iterator[Finding]:
+    """At the member that makes it so large, in the innermost struct that is."""
+    assert declaration.name is not None
+    types = (m.type for m in declaration.members if m.type and m.type.name)
+    inner = [(sizes[type_.name.base], type_) for type_ in types if type_.name and type_.name.base in sizes]
+    if any(extent.is_too_large for extent, _ in inner):
+        return
+    extent = sizes[declaration.name.value]
+    largest = max(inner, key=lambda each: (each[0].depth, each[0].fields), default=None)
+    what = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"structs in each other {extent.depth:,} deep"
+    most = f"{MAX_FIELDS:,}" if extent.fields > MAX_FIELDS else f"{MAX_DEPTH}"
+    message = f"with all that is in its members, `{declaration.name.value}` has {what}; at most {most} are read"
+    yield RULE.at(largest[1].span if largest else declaration.name.span, message)
+
+
+def _members(declaration: StructDeclaration) -> Iterator[Finding]:
+    first: dict[str, Name] = {}
+    for member in declaration.members:
+        name, type_ = member.name, member.type
+        if name is not None:
+            if name.value == "length":
+                yield RULE.at(name.span, "`length` has a meaning of its own and cannot name a member")
+            elif not VARIABLE.match(name.value) or name.value.endswith("_"):
+                yield RULE.at(
+                    name.span, f"`{name.value}` cannot name a member: letters, digits and `_`, the last no `_`"
+                )
+            elif first.setdefault(name.value, name) is not name:
+                related = (Related(first[name.value].span, "the first one"),)
+                yield RULE.at(name.span, f"there are two members `{name.value}`", related=related)
+        if type_ is not None and type_.name is not None:
+            several = len(type_.name.dimensions) > 1
+            if several and type_.name.base not in BASE_TYPES:
+                yield RULE.at(
+                    type_.span, "an array of structs has one dimension: put a struct with an array in between"
+                )
+
+
+RULE = Rule("struct-declaration", Severity.ERROR, "A struct is declared in a way that cannot be used.", structs=check)

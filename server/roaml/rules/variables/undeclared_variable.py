@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""undeclared-variable: see undeclared_variable.md."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import UnknownName, infer
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Binary, Conditional, Expr, Name, Unary
+from roaml.expr.types import BOOL, Scalar, Type
+from roaml.expr.zero import zero_text
+from roaml.model.machine import Chart
+from roaml.model.syntax import Expression
+from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support import misspelled
+from roaml.rules.support.layout import first_in, last_in
+from roaml.rules.variables.missing_type import DEFAULTS
+
+LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
+NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, UnknownName) and not problem.name.startswith("_"):
+                finding = _finding(context, value, problem)
+                if finding is not None:
+                    yield finding
+
+
+def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -> Finding | None:
+    name = problem.name
+    if name in LITERALS:
+        literal = LITERALS[name]
+        return RULE.at(problem.span, f"write `{literal}` for `{name}`", *replacements(problem.span, (literal,)))
+    if name in NO_VALUES:
+        return RULE.at(problem.span, f"there is no `{name}`: every variable always holds a value of its type")
+    variables = context.typed.variables.get(value.place.chart.scope, {})
+    if value.use in (Use.INITIAL, Use.BOUND):
+        what = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
+        return RULE.at(problem.span, f"an initial value is constant: it cannot use {what}")
+    if name in STATUSES:
+        number = str(STATUSES[name])
+        message = f"`{name}` is known only in the condition of `<bt_child_status>`; write `{number}`"
+        return RULE.at(problem.span, message, *replacements(problem.span, (number,)))
+    if misspelled.declaration(context.machine, "data", name):
+        return None
+    close = close_names(name, [*variables, *_answers(value)])
+    message = f"there is no variable `{name}`{did_you_mean(close)}"
+    if not close and any(name in known for known in context.typed.variables.values()):
+        message = f"`{name}` is not known here: the machine and each of its threads have variables of their own"
+    return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(context, value, name))
+
+
+def _answers(value: TypedValue) -> Iterable[str]:
+    """The words for answers of a child, where they are known."""
+    handler = value.place.handler
+    is_known = value.use is Use.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
+    return STATUSES if is_known else ()
+
+
+def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[Fix]:
+    """Declare the variable, if its type can be told from where it is used."""
+    type_ = inferred_type(context, value, name)
+    if type_ is not None:
+        yield declaration(context, value.place.chart, name, str(type_), zero_text(type_))
+
+
+def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scalar | None:
+    """The base type that a name has if what it is used for makes sense: of what is assigned to it, of what it is
+    assigned to, or of what stands beside it."""
+    if not isinstance(value.value, Expression):
+        return None
+    tree = value.value.tree
+    if isinstance(tree, Name) and tree.name == name:
+        if value.use is not Use.LOCATION:
+            return _named(value.wanted)
+        assigned = (v for v in context.typed.values if v.use is Use.ASSIGNED and v.element is value.element)
+        return next((_named(v.type) for v in assigned), None)
+    variables = context.typed.variables.get(value.place.chart.scope, {})
+    return _beside(tree, name, variables.get, BOOL if value.use in (Use.CONDITION, Use.BRANCH) else value.wanted)
+
+
+def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], wanted: Type | None) -> Scalar | None:
+    """The type of a name inside an expression that should have the type `wanted`."""
+    match tree:
+        case Name(name=found) if found == name:
+            return _named(wanted)
+        case Unary(operator=operator, operand=operand):
+            is_not = operator is UnaryOperator.NOT
+            return _beside(operand, name, variables, BOOL if is_not else wanted)
+        case Binary(operator=Operator.AND | Operator.OR, left=left, right=right):
+            return _beside(left, name, variables, BOOL) or _beside(right, name, variables, BOOL)
+        case Binary(operator=operator, left=left, right=right):
+            whole = wanted if operator.kind == "arithmetic" else None
+            types = (_closer(infer(side, variables)[0], whole) for side in (right, left))
+            found_types = (
+                _beside(side, name, variables, type_) for side, type_ in zip((left, right), types, strict=True)
+            )
+            return next((type_ for type_ in found_types if type_), None)
+        case Conditional(test=test, then=then, otherwise=otherwise):
+            return _beside(test, name, variables, BOOL) or next(
+                (type_ for side in (then, otherwise) if (type_ := _beside(side, name, variables, wanted))), None
+            )
+    return None
+
+
+def _closer(beside: Type, whole: Type | None) -> Type:
+    """What is known better: the type of the other operand, or that of the result where the other is a literal."""
+    if isinstance(beside, Scalar) and not beside.name and isinstance(whole, Scalar) and whole.kind == beside.kind:
+        return whole
+    return beside
+
+
+def _named(type_: Type | None) -> Scalar | None:
+    """A base type under a name that can be declared."""
+    if not isinstance(type_, Scalar):
+        return None
+    return type_ if type_.name else Scalar(type_.kind, DEFAULTS[type_.kind])
+
+
+def declaration(context: MachineContext, chart: Chart, name: str, type_: str, value: str) -> Fix:
+    """A fix that adds a `<data>` to the datamodel of a chart, which is made if there is none."""
+    data = f'<data id="{name}" type="{type_}" expr="{value}" />'
+    model = chart.element.find("datamodel")
+    if model is None:
+        edit = first_in(context.document, chart.element, "<datamodel>", f"    {data}", "</datamodel>")
+    else:
+        edit = last_in(context.document, model, data)
+    return Fix(f"Declare `{name}` as {type_}", (edit,), preferred=False)
+
+
+RULE = Rule("undeclared-variable", Severity.ERROR, "A variable is used that is not declared.", machine=check)

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""document-type: see document_type.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.parser_rules import parser_findings
+from roaml.rules.rule import FileContext, Rule
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    """A declaration without declarations of its own, `<!DOCTYPE ascxml>`, is superfluous, but no more."""
+    for finding in parser_findings("document-type", context):
+        declares = "[" in context.source.text[finding.span.start : finding.span.end]
+        yield finding if declares else replace(finding, severity=Severity.INFORMATION)
+
+
+RULE = Rule(
+    "document-type",
+    Severity.ERROR,
+    "The file has a document type declaration; entities in it are not expanded.",
+    file=check,
+)

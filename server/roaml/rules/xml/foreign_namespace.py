@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""foreign-namespace: see foreign_namespace.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML, PLAIN_SCXML
+from roaml.language.validate import SCXML_NAMESPACE
+from roaml.rules.rule import FileContext, Rule
+from roaml.rules.support.elements import removal
+from roaml.text import TextEdit
+
+
+def check(context: FileContext) -> Iterator[Finding]:
+    if context.document is None or context.document.root is None or context.grammar is None:
+        return
+    root = context.document.root
+    declared = root.get(f"xmlns:{root.prefix}" if root.prefix else "xmlns")
+    if declared is None or not declared.value.strip():
+        return
+    if context.grammar in (HL_SCXML, PLAIN_SCXML):
+        if declared.value != SCXML_NAMESPACE:
+            fix = Fix("Write the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),), safe=True)
+            yield RULE.at(declared.span, f"the namespace of SCXML is `{SCXML_NAMESPACE}`", fix)
+    else:
+        fix = Fix("Remove the attribute", (removal(context.source.text, declared.span),), safe=True)
+        fixes = [] if root.prefix else [fix]
+        yield RULE.at(declared.span, "this kind of file has no namespace; other tools may not read it", *fixes)
+
+
+RULE = Rule("foreign-namespace", Severity.HINT, "The root is in a namespace that is not its own.", file=check)
