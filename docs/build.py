@@ -8,6 +8,7 @@ a page differs from what would be written.
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import re
 import sys
@@ -21,9 +22,10 @@ from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
 from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
-from roaml.rules import RULES, document, in_reference
+from roaml.rules import GROUPS, RULES, document, document_file, in_reference
 
 HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
 REFERENCE = HERE / "reference"
 NOTICE = "<!-- Written by docs/build.py. Change the schemas or rule documents instead. -->\n"
 
@@ -168,33 +170,48 @@ def properties() -> str:
 
 
 def rules() -> str:
-    index = "\n".join(f"| [{rule.code}](#{rule.code}) | {rule.severity.label} | {rule.summary} |" for rule in RULES)
-    texts = "\n".join(demoted(in_reference(document(rule.code))) for rule in RULES)
-    return f"""# Rules
+    """An index of the documents of the rules, by subject."""
+    parts = [RULES_TEXT]
+    for group in GROUPS:
+        purpose = importlib.import_module(f"roaml.rules.{group}").__doc__ or ""
+        parts += [
+            f"\n## {group.capitalize()}\n\n{purpose}\n",
+            "| code | severity | what is wrong |",
+            "| --- | --- | --- |",
+        ]
+        for rule in RULES:
+            file = document_file(rule.code)
+            if file.parent.name == group:
+                link = f"../../{file.relative_to(ROOT).as_posix()}"
+                parts.append(f"| [{rule.code}]({link}) | {rule.severity.label} | {rule.summary} |")
+    return "\n".join(parts) + "\n"
 
-Each finding has a code. `as2fm-lsp --explain CODE` prints what stands here. A comment `<!-- as2fm: ignore[code] -->`
-keeps a rule quiet: on the line it stands on or, alone on its line, in the element that follows.
 
-A fix is a change that an editor offers. Some are *safe*: they take away nothing that has an effect and guess nothing.
-`as2fm-lsp --check PATH --fix` makes all safe fixes and reports what is left; in an editor, the code action
-`source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes are for somebody who looks at
-them: an editor makes the obvious one with its key for fixes, and all obvious ones of a rule with *Fix all ... in this
-file*. A safe fix is not made where, alone or with others, it would bring an error.
+def all_rules() -> str:
+    """The documents of all rules on one page, for those who print or search it."""
+    return "# Rules\n\n" + "\n".join(demoted(in_reference(document(rule.code))) for rule in RULES)
 
-Besides, an editor offers these refactorings:
+
+RULES_TEXT = """# Rules
+
+Each finding has a code. `as2fm-lsp --explain CODE` prints the document of a rule, which the code links to here. A
+comment `<!-- as2fm: ignore[code] -->` suppresses a rule: on the line of the comment or, if it is alone on its line, in
+the element that follows. `python docs/build.py --rules FILE` writes all documents to one page.
+
+A fix is a change that an editor offers. Some fixes are *safe*: they remove nothing that has an effect and guess
+nothing. `as2fm-lsp --check PATH --fix` makes all safe fixes and reports what is left; in an editor, the code action
+`source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes need somebody who looks at
+them: an editor makes the preferred one with its key for fixes, and all preferred ones of a rule with *Fix all ... in
+this file*. A safe fix is not made where, alone or with others, it would cause an error.
+
+An editor also offers these refactorings:
 
 - *Create the plugin*: a file for a node of the tree that has no plugin, with the ports that the node sets, listed in
   the system;
 - *Handle all results* of an action, in a state of a machine that sends goals;
 - *Add `<bt_halt>`* to a state that takes ticks, or to all of them;
 - *Write the node in its compact form*, `<X/>`, or in its explicit form, `<Action ID="X"/>`; or all nodes of a file;
-- *Convert the system to the current dialect*, as `as2fm-lsp migrate` does.
-
-| code | severity | what is wrong |
-| --- | --- | --- |
-{index}
-
-{texts}"""
+- *Convert the system to the current dialect*, as `as2fm-lsp migrate` does."""
 
 
 def demoted(text: str) -> str:
@@ -255,8 +272,13 @@ def drifted() -> Iterator[Path]:
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--check", action="store_true", help="write nothing; exit with 1 if a page has drifted")
+    arguments.add_argument("--rules", metavar="FILE", type=Path, help="write the documents of all rules to a file")
+    options_given = arguments.parse_args()
+    if options_given.rules:
+        options_given.rules.write_text(all_rules(), encoding="utf-8")
+        return 0
     stale = list(drifted())
-    if arguments.parse_args().check:
+    if options_given.check:
         for path in stale:
             print(f"{path.relative_to(HERE.parent)} is not what docs/build.py writes", file=sys.stderr)
         return 1 if stale else 0

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 
 from lsprotocol import types
 from pygls import uris
 
 from as2fm_lsp.buffer import MARK, Units
 from roaml.diagnostics import Diagnostic, Severity, Tag
+from roaml.rules import document_file
 from roaml.text import Location, SourceFile, Span, TextEdit
 
 SOURCE = "as2fm"

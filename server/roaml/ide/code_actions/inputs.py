@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
+from roaml.edit.elements import after, first_in, last_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.model.system_file import SECTIONS, ListedFile
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
-from roaml.rules.support.elements import removal
-from roaml.rules.support.layout import after, first_in, last_in
 from roaml.text import TextEdit
 
 

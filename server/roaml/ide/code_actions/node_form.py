@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from roaml.edit.elements import removal
 from roaml.ide.code_actions.action import REWRITE, Action, Change, known
 from roaml.model.tree import EXPLICIT, SUBTREES, TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
-from roaml.rules.support.elements import removal
 from roaml.text import Span, TextEdit
 
 

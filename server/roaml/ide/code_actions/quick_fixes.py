@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from roaml.diagnostics import Diagnostic
+from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import QUICK_FIX, Action, Change, known
 from roaml.ide.code_actions.inputs import add_input, move_input
@@ -27,8 +28,6 @@ from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
 from roaml.rules.rule import close_names
-from roaml.rules.support.elements import removal
-from roaml.rules.support.layout import after, first_in
 from roaml.text import SourceFile, Span, TextEdit
 
 _MOST = 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from roaml.edit.elements import after, halts, last_in
 from roaml.ide.code_actions import migrate, new_plugin, node_form
 from roaml.ide.code_actions.action import EXTRACT, REWRITE, Action, Change, known
 from roaml.language import HL_SCXML
@@ -14,8 +15,6 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
-from roaml.rules.answers.unanswered_halt import halts
-from roaml.rules.support.layout import after, last_in
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
 

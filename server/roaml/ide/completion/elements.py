@@ -17,9 +17,7 @@ from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
-from roaml.rules.interfaces.thread_element_outside_thread import INSIDE as INSIDE_THREADS
-from roaml.rules.interfaces.thread_element_outside_thread import OUTSIDE as OUTSIDE_THREADS
-from roaml.rules.interfaces.thread_element_outside_thread import UNUSUAL as UNUSUAL_IN_THREADS
+from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
 from roaml.xml import Element
 
 _MOST_CHOICES = 20

@@ -18,12 +18,12 @@ from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.machine import Declaration, Machine
+from roaml.model.name_forms import EVENT, RESERVED, VARIABLE, variable_problem
 from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
 from roaml.model.typing import STATUSES
+from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
-from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
-from roaml.rules.variables.invalid_name import EVENT, RESERVED, VARIABLE, variable_problem
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)

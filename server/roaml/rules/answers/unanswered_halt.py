@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import halts, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, Step
@@ -23,9 +24,7 @@ from roaml.rules.support.answers import (
     plugins,
     target_of,
 )
-from roaml.rules.support.layout import after, last_in
-from roaml.text import TextEdit
-from roaml.xml import Document, Element
+from roaml.xml import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -111,18 +110,6 @@ def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
     if initial is not None and state.element.complete:
         lines = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
         yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
-
-
-def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
-    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
-    initial = root.get("initial")
-    edits = []
-    for state in states:
-        ticks = [child for child in state.elements if child.name == "bt_tick"]
-        if state.name == "state" and ticks and initial and state.find("bt_halt") is None:
-            halt = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
-            edits.append(after(document, ticks[-1], *halt))
-    return tuple(edits)
 
 
 def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:

@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import last_in
 from roaml.model.behavior.explore import Behavior, Duty, Step
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.typing import find_handle
-from roaml.rules.interfaces.silent_server import response
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
-from roaml.rules.support.layout import last_in
+from roaml.rules.support.interfaces import response
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
@@ -22,7 +23,6 @@ from roaml.rules.support.answers import (
     plugins,
     target_of,
 )
-from roaml.rules.support.layout import after, last_in
 
 ANSWER = '<bt_return_status status="SUCCESS" />'
 

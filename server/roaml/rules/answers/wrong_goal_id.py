@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import first_in
 from roaml.expr.infer import constant
 from roaml.expr.tree import access_path
 from roaml.model.behavior.explore import Behavior, Duty, Fault, Step
@@ -17,7 +18,6 @@ from roaml.model.typing import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, is_spelled, place
 from roaml.rules.support.interfaces import declared
-from roaml.rules.support.layout import first_in
 from roaml.text import TextEdit
 
 _WHY = {

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.vocabulary import BRANCH_MARKERS
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import own_elements
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
-
-MARKERS = ("else", "elseif")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -23,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if child.name == "elseif" and closed:
                 message = "an `<elseif>` must stand before the `<else/>`: here it is never reached"
                 yield RULE.at(child.name_span, message)
-            if child.name in MARKERS and child.elements:
+            if child.name in BRANCH_MARKERS and child.elements:
                 message = f"`<{child.name}/>` is an empty element: what belongs to it follows it"
                 yield RULE.at(child.name_span, message, *_unwrapped(child))
             closed = closed or child.name == "else"

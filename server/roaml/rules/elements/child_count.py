@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.language.grammar import UNBOUNDED, ElementType
+from roaml.edit.elements import removal
+from roaml.language.grammar import UNBOUNDED
 from roaml.model.gaps import ANYTHING, TREE
 from roaml.model.outline import MachineOutline
 from roaml.model.system import builtin_plugins
-from roaml.model.tree import SUBTREES, TreeNode, nodes
+from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.elements import removal
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -28,11 +28,6 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 _, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
                     yield from _own(context, node, plugin)
-
-
-def tells(type_: ElementType) -> bool:
-    """Whether this rule says what is wrong with the children of an element, so that others keep quiet."""
-    return bool(type_.node) and (type_.name in builtin_plugins() or type_.name in SUBTREES)
 
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:

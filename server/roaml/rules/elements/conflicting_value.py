@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import known_elements, removal
+from roaml.rules.support.elements import known_elements
 from roaml.xml import Attribute, Element, children_text
 
 VALUE_ELEMENTS = ("expr", "lower_bound_incl", "upper_bound_incl", "topic", "service_name", "action_name", "rate_hz")

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import removal, rename_tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
 from roaml.language.grammar import ElementType
-from roaml.rules.elements.unknown_element import rename_tag
 from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext
-from roaml.rules.support.elements import known_elements, removal
+from roaml.rules.support.elements import known_elements
 from roaml.text import Span, TextEdit
 from roaml.xml import Attribute, Element
 

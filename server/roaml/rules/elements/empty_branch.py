@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.language.validate import is_foreign
 from roaml.model.machine import If
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal, stands_alone
+from roaml.rules.support.elements import stands_alone
 from roaml.xml import Element
 
 MARKERS = ("elseif", "else")

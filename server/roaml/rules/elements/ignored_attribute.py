@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import removal
 from roaml.language import AttributeType
 from roaml.rules.rule import FileContext, Rule
-from roaml.rules.support.elements import known_elements, removal
+from roaml.rules.support.elements import known_elements
 from roaml.text import TextEdit
 from roaml.xml import Attribute, Element
 

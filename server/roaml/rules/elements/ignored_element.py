@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import removal
 from roaml.model.machine import NoEffect
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal, stands_alone
+from roaml.rules.support.elements import stands_alone
 from roaml.xml import Element
 
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import rename_tag
 from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
 from roaml.language.validate import MisplacedElement
-from roaml.rules.elements import child_count
-from roaml.rules.elements.branch_order import MARKERS
-from roaml.rules.elements.unknown_element import rename_tag
+from roaml.model.vocabulary import BRANCH_MARKERS
 from roaml.rules.rule import FileContext, Rule, listing
+from roaml.rules.support.children import has_counted_children
 
 SAME_PARTS = {"param": "field", "field": "param"}
 """Elements that do the same in different parents."""
@@ -22,9 +22,9 @@ def check(context: FileContext) -> Iterator[Finding]:
         if isinstance(violation, MisplacedElement):
             name, parent = violation.element.name, violation.parent.name
             assert context.grammar is not None
-            if parent in MARKERS and context.grammar in (HL_SCXML, PLAIN_SCXML):
+            if parent in BRANCH_MARKERS and context.grammar in (HL_SCXML, PLAIN_SCXML):
                 continue  # branch-order says more
-            if child_count.tells(violation.parent):
+            if has_counted_children(violation.parent):
                 continue
             message = f"`<{name}>` may not stand in `<{parent}>`{_where(context, name, parent)}"
             yield RULE.at(violation.element.name_span, message, *_fixes(violation))

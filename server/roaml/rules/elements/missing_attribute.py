@@ -11,7 +11,7 @@ from roaml.language.validate import MissingAttribute
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Declaration
 from roaml.model.syntax import PortRead
-from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
@@ -25,7 +25,7 @@ def check(context: FileContext) -> Iterator[Finding]:
         if not isinstance(violation, MissingAttribute):
             continue
         element, attribute = violation.element, violation.attribute
-        if attribute.name == "name" and set(attribute.refers) & KINDS.keys():
+        if attribute.name == "name" and set(attribute.refers) & DECLARING_ELEMENTS.keys():
             continue  # undeclared-handle says more
         if not misspelled.attribute(element, attribute.name, violation.type.attributes):
             choices = [choice.value for choice in attribute.simple.choices if not choice.use]

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import first_in, last_in, remove
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
 from roaml.model.machine import Chart, Thread
-from roaml.rules.elements import child_count
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
-from roaml.rules.support.layout import first_in, last_in, remove
+from roaml.rules.support.children import has_counted_children
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
 
@@ -27,7 +27,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
                 message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
                 yield RULE.at(element.name_span, message, *_leave_out(context, element))
-        elif not child_count.tells(violation.type):
+        elif not has_counted_children(violation.type):
             children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import remove
 from roaml.language import BEHAVIOR_TREE
 from roaml.language.validate import TooManyElements, is_foreign
-from roaml.rules.elements import child_count
 from roaml.rules.rule import FileContext, MachineContext, Rule
+from roaml.rules.support.children import has_counted_children
 from roaml.rules.support.elements import own_elements
-from roaml.rules.support.layout import remove
 from roaml.xml import Document, Element
 
 ONCE: dict[str, tuple[str, ...]] = {
@@ -28,7 +28,7 @@ ONCE: dict[str, tuple[str, ...]] = {
 
 def check(context: FileContext) -> Iterator[Finding]:
     for violation in context.violations:
-        if isinstance(violation, TooManyElements) and not child_count.tells(violation.parent):
+        if isinstance(violation, TooManyElements) and not has_counted_children(violation.parent):
             name, parent = violation.element.name, violation.parent.name
             message = f"`<{parent}>` has only one `<{name}>`"
             if context.grammar is BEHAVIOR_TREE:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.language.validate import UnknownAttribute
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.elements import removal
 
 WITHOUT_CONDITION = (
     "ros_action_handle_success_result",

@@ -5,13 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Fix, Severity
+from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import rename_tag
 from roaml.language import HL_SCXML, PLAIN_SCXML
 from roaml.language.validate import UnknownElement
-from roaml.rules.elements import child_count
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean
-from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.rules.support.children import has_counted_children
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -22,19 +21,13 @@ def check(context: FileContext) -> Iterator[Finding]:
         assert context.grammar is not None
         if context.grammar is HL_SCXML and element.name in PLAIN_SCXML.elements:
             continue  # unsupported-scxml-element says more
-        if child_count.tells(parent):
+        if has_counted_children(parent):
             continue
         close = close_names(element.name, parent.children) or close_names(element.name, context.grammar.elements)
         fits = [name for name in close if name in parent.children]
         fixes = [rename_tag(element, name, preferred=name in fits[:1]) for name in close]
         hint = did_you_mean(tuple(f"<{name}>" for name in close))
         yield RULE.at(element.name_span, f"there is no element `<{element.name}>`{hint}", *fixes)
-
-
-def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
-    """Change the name of an element in its start tag and its end tag."""
-    spans: list[Span] = [element.name_span, *([element.close_name_span] if element.close_name_span else [])]
-    return Fix(f"Change to `<{name}>`", tuple(TextEdit(span, name) for span in spans), preferred)
 
 
 RULE = Rule("unknown-element", Severity.ERROR, "The language has no such element.", file=check)

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import rename_tag
 from roaml.language import HL_SCXML, PLAIN_SCXML
 from roaml.language.validate import UnknownElement
-from roaml.rules.elements.unknown_element import rename_tag
 from roaml.rules.rule import FileContext, Rule
 
 ADVICE = {

@@ -7,15 +7,13 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownName
-from roaml.language import HL_SCXML
 from roaml.model.syntax import Expression
-from roaml.model.typing import Place, TypedValue, Use, bound_in
+from roaml.model.typing import Place, TypedValue, Use
+from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
+from roaml.rules.support.event_data import known_here
 from roaml.text import Span, TextEdit
 
-EVENT_VARIABLES = {
-    binding.name: element.name for element in HL_SCXML.elements.values() for binding in reversed(element.binds)
-}
 SCXML_VARIABLES = ("_name", "_sessionid", "_ioprocessors", "_x")
 DATA = {"_event": "_event.data", "_wrapped_result": "_wrapped_result.result"}
 """Event variables whose fields stand one level deeper."""
@@ -77,13 +75,6 @@ def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> I
     if len(names) == 1 and problem.name != "_action" and context.source.text.startswith(f"{old}.", start):
         new = DATA.get(names[0], names[0])
         yield Fix(f"Change to `{new}`", (TextEdit(Span(start, start + len(old)), new),))
-
-
-def known_here(place: Place) -> list[str]:
-    """The event variables that are known at a place."""
-    if place.handler is None:
-        return []
-    return [binding.name for binding in bound_in(place.handler, place.part)]
 
 
 def place_tag(place: Place) -> str:

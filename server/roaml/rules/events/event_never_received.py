@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import RECEIVES
 from roaml.model.machine import Send
-from roaml.rules.events.removed_bt_event import REMOVED
+from roaml.model.name_forms import EVENT
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.variables.invalid_name import EVENT
+from roaml.rules.support.removed_events import REMOVED_EVENTS
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if system is None:
         return
     awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
-    known = () if context.listed_as == {"node_models"} else REMOVED  # of these, removed-bt-event tells
+    known = () if context.listed_as == {"node_models"} else REMOVED_EVENTS  # of these, removed-bt-event tells
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value not in known:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import remove
 from roaml.interfaces.registry import NotFound
 from roaml.model.gaps import SENDS
 from roaml.model.globals import global_variables
@@ -15,7 +16,6 @@ from roaml.model.syntax import Name
 from roaml.model.system import System
 from roaml.model.translated import TIMER_PREFIX
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.layout import remove
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
 """Events by which plugins were called once: of these, removed-bt-event tells."""

@@ -12,9 +12,9 @@ from roaml.model.machine import Communicate, Declaration, Param, Send
 from roaml.model.outline import SentField
 from roaml.model.system import Event
 from roaml.model.typing import TypedValue, Use, find_handle
-from roaml.rules.expressions.type_mismatch import phrase
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
+from roaml.rules.support.types import phrase
 
 ROUND = "; a number like `2.0` becomes an integer when it is sent: store it in a variable of a float type"
 

@@ -12,8 +12,8 @@ from roaml.model.behavior.instants import comes_again
 from roaml.model.machine import CallChild, Communicate, Handler, Send, Statement, statements
 from roaml.model.syntax import Expression
 from roaml.model.typing import Place, TypedValue, Use, find_handle
-from roaml.rules.events.event_data_unavailable import known_here
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.event_data import known_here
 
 _ANSWERS = {
     "request": ("response",),

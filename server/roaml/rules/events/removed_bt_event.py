@@ -6,49 +6,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.machine import Handler, Machine, Send
+from roaml.edit.elements import removal
+from roaml.model.machine import Handler, Send
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
+from roaml.rules.support.removed_events import REMOVED_EVENTS, removed_handlers, removed_sends
 from roaml.text import TextEdit
-
-REMOVED = {
-    "bt_success": '<bt_return_status status="SUCCESS"/>',
-    "bt_failure": '<bt_return_status status="FAILURE"/>',
-    "bt_running": '<bt_return_status status="RUNNING"/>',
-    "bt_halted": "<bt_return_halted/>",
-}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.listed_as == {"node_models"}:
         return  # to a node these are events like any other
-    yield from (_handler(handler, context.source.text) for handler in _handlers(context.machine))
-    yield from map(_send, _sends(context.machine))
-
-
-def is_used(machine: Machine) -> bool:
-    """Whether a plugin talks to the tree by events, so that it cannot be said what else is wrong with its answers."""
-    return any(_handlers(machine)) or any(_sends(machine))
-
-
-def _handlers(machine: Machine) -> Iterator[Handler]:
-    for chart in machine.charts:
-        for state in chart.states:
-            for handler in state.handlers:
-                if handler.event is not None and handler.event.value in ("bt_tick", "bt_halt"):
-                    yield handler
-
-
-def _sends(machine: Machine) -> Iterator[Send]:
-    for chart in machine.charts:
-        for statement in chart.statements:
-            if isinstance(statement, Send) and statement.event and statement.event.value in REMOVED:
-                yield statement
+    yield from (_handler(handler, context.source.text) for handler in removed_handlers(context.machine))
+    yield from map(_send, removed_sends(context.machine))
 
 
 def _send(send: Send) -> Finding:
     assert send.event is not None
-    new = REMOVED[send.event.value]
+    new = REMOVED_EVENTS[send.event.value]
     fix = Fix(f"Change to `{new}`", (TextEdit(send.element.span, new.replace("/>", " />")),))
     return RULE.at(send.event.span, f"the tree is no longer answered by events: write `{new}`", fix)
 

@@ -6,10 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import indent_of, removal
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, listing
-from roaml.rules.support.elements import removal
-from roaml.rules.support.layout import indent_of
 from roaml.text import TextEdit
 from roaml.xml import Attribute, Element
 

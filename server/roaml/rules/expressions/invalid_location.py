@@ -10,7 +10,7 @@ from roaml.expr.tree import Index, Member, Name, access_path
 from roaml.expr.types import Type
 from roaml.model.syntax import Expression
 from roaml.model.typing import TypedValue, Use
-from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
 from roaml.expr.types import Array, Struct, is_kind, is_number, unwrap
-from roaml.rules.expressions.type_mismatch import phrase
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
 
 

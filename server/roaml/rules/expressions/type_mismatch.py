@@ -9,13 +9,14 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import infer
 from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, String, walk
-from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
+from roaml.expr.types import Array, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.typing import TypedValue, Use
+from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type
-from roaml.rules.variables.missing_type import DEFAULTS
+from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
 
 CHECKED = (Use.ASSIGNED, Use.FIELD, Use.ARGUMENT, Use.OUTPUT)
@@ -112,23 +113,6 @@ def _what(value: TypedValue) -> str:
     return f"the variable{target}"
 
 
-def phrase(type_: Type) -> str:
-    """A type as a noun phrase."""
-    if is_kind(type_, "string"):
-        return "a string"
-    if isinstance(type_, EmptyArray):
-        return "an array"
-    if isinstance(type_, Array):
-        return f"an array (`{type_}`)"
-    if isinstance(type_, Struct):
-        return f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"a {type_.what}"
-    if isinstance(type_, Unknown):
-        return "this"
-    kinds = {"int": "an integer", "real": "a real number", "bool": "a boolean"}
-    name = f" (`{type_}`)" if getattr(type_, "name", "") not in ("", "bool") else ""
-    return kinds.get(getattr(type_, "kind", ""), f"`{type_}`") + name
-
-
 def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type, span: Span) -> Iterator[Fix]:
     """Write the value otherwise, or give the variable the type of the value."""
     if not isinstance(value.value, Expression):
@@ -137,7 +121,7 @@ def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type
     if whole:
         yield from _other_value(value.value, value.use, given, wanted)
     if whole and is_number(given) and is_number(wanted) and isinstance(given, Scalar):
-        yield from as_type(context, value, given.name or DEFAULTS[given.kind])
+        yield from as_type(context, value, given.name or DEFAULT_TYPES[given.kind])
 
 
 def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iterator[Fix]:

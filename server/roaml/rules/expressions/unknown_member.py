@@ -13,10 +13,10 @@ from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.typing import TypedValue
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
+from roaml.rules.support.fields import is_ros
 from roaml.text import Span, TextEdit
 
 QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
-ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -87,11 +87,6 @@ def _unknown(problem: UnknownMember) -> Finding | None:
     owner = f"`{inner}`" if inner.name else f"the {inner.what}"
     message = f"{owner} has no member `{problem.name}`{did_you_mean(close)}"
     return RULE.at(problem.span, message, *replacements(problem.span, close))
-
-
-def is_ros(struct: Struct) -> bool:
-    """Whether a struct is a ROS message or a part of a service or action."""
-    return struct.what.partition(" ")[0] in ROS_PARTS
 
 
 RULE = Rule("unknown-member", Severity.ERROR, "A member is named that its struct does not have.", machine=check)

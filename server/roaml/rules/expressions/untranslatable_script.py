@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.model.tree import nodes
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.elements import removal
 from roaml.xml import Attribute
 
 

@@ -14,9 +14,8 @@ from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
-from roaml.rules.interfaces.topic_without_publisher import has_publisher
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
-from roaml.rules.support.interfaces import named_by_ports, port_span
+from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
 from roaml.text import Span
 
 _PLUGIN = "plugin"

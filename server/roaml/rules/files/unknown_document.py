@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import rename_tag
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
-from roaml.rules.elements.unknown_element import rename_tag
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean
 
 ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS) for root in grammar.roots)

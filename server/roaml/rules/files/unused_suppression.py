@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import removal
 from roaml.rules.rule import Rule, close_names, did_you_mean, listing, replacements
-from roaml.rules.support.elements import removal
 from roaml.text import Span, TextEdit
 
 

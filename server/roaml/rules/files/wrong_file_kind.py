@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import remove
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import Name
 from roaml.model.system_file import ListedFile
 from roaml.rules.rule import Rule, SystemContext
-from roaml.rules.support.layout import remove
 from roaml.text import TextEdit
 
 TYPES = {

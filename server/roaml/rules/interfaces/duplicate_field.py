@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import removal
 from roaml.model.machine import Communicate, Param, Send
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

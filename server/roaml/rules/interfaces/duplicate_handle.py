@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import removal
 from roaml.model.machine import Communicate, Declaration, Handler
 from roaml.model.syntax import Name, PortRead
 from roaml.model.typing import find_handle
 from roaml.rules.rule import MachineContext, Rule, unused
-from roaml.rules.support.elements import removal
 from roaml.text import Span, TextEdit
 
 CLIENTS = {"service-client": "service", "action-client": "action"}

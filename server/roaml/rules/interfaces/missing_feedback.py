@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import remove
 from roaml.model.machine import Declaration, Handler
 from roaml.model.typing import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
-from roaml.rules.support.layout import remove
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import last_in
 from roaml.expr.types import Struct, Type, leaves
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Communicate
-from roaml.rules.interfaces.unknown_field import sent_part
 from roaml.rules.rule import MachineContext, Rule, close_names, listing
-from roaml.rules.support.layout import last_in
+from roaml.rules.support.fields import sent_part
 
 SHOWN = 6
 

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
 from roaml.model.machine import Communicate, Declaration
 from roaml.model.typing import find_handle
-from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
-from roaml.rules.support.elements import removal
 
 ANSWERS = {
     "response": ("service-client", "ros_service_send_request"),
@@ -38,7 +38,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     continue
                 if not {(declaration, element), (None, element)} & sent:
                     sent.add((declaration, element))
-                    message = f"this never happens: no `<{element}>` for the `<{KINDS[kind]}>` "
+                    message = f"this never happens: no `<{element}>` for the `<{DECLARING_ELEMENTS[kind]}>` "
                     message += f"`{declaration.handle.value}`"
                     yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
 

@@ -6,15 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.expr.types import leaves
-from roaml.expr.zero import zero_text
+from roaml.edit.elements import last_in
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.model.typing import find_handle
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.interfaces import declared, find_use, name_span
-from roaml.rules.support.layout import last_in
+from roaml.rules.support.interfaces import declared, find_use, name_span, response
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -87,15 +85,6 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     lines = response(declaration, interface)
     edits = tuple(last_in(context.document, place, *lines) for place in places)
     yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
-
-
-def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
-    """The lines that answer a request with 0, or what is like it, in each field."""
-    assert declaration.handle is not None
-    types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
-    fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
-    tag = f'<ros_service_send_response name="{declaration.handle.value}"'
-    return (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)
 
 
 def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:

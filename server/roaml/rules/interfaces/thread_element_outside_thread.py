@@ -7,11 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Communicate
+from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
 from roaml.rules.rule import MachineContext, Rule
-
-INSIDE = ("ros_action_handle_thread_start", "ros_action_thread_free")
-OUTSIDE = ("ros_action_start_thread", "ros_action_handle_thread_free")
-UNUSUAL = ("ros_action_handle_goal",)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -19,11 +16,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         elements = [h.element for state in chart.states for h in state.handlers]
         elements += [s.element for s in chart.statements if isinstance(s, Communicate)]
         for element in elements:
-            if not chart.scope and element.name in INSIDE:
+            if not chart.scope and element.name in INSIDE_THREADS:
                 yield RULE.at(element.name_span, f"`<{element.name}>` belongs into a `<ros_action_thread>`")
-            elif chart.scope and element.name in OUTSIDE:
+            elif chart.scope and element.name in OUTSIDE_THREADS:
                 yield RULE.at(element.name_span, f"`<{element.name}>` belongs into the server, not into its threads")
-            elif chart.scope and element.name in UNUSUAL:
+            elif chart.scope and element.name in UNUSUAL_IN_THREADS:
                 message = f"`<{element.name}>` in a thread: every goal waits until the server and all threads take it"
                 yield RULE.at(element.name_span, message, severity=Severity.WARNING)
 

@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.system import CLOCK_TOPIC, Channel, System
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
-from roaml.rules.support.interfaces import named_here
+from roaml.rules.support.interfaces import has_publisher, named_here
 
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
@@ -29,12 +28,6 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         needed = bool(close or topic.sources or naming.use.awaited)
         severity = Severity.ERROR if needed else Severity.WARNING
         yield RULE.at(naming.span, message, *fixes, severity=severity, related=naming.related)
-
-
-def has_publisher(system: System, topic: Channel) -> bool:
-    if topic.name == CLOCK_TOPIC and system.has_timer:
-        return True
-    return any("message" in endpoint.use.sends for endpoint in topic.sources)
 
 
 RULE = Rule(

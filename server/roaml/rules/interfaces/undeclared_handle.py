@@ -6,26 +6,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import after, first_in
 from roaml.language import HL_SCXML
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.syntax import Name
+from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.interfaces import other_kind
-from roaml.rules.support.layout import after, first_in
 from roaml.text import Span, TextEdit
 from roaml.xml import Element
-
-KINDS = {
-    "publisher": "ros_topic_publisher",
-    "subscriber": "ros_topic_subscriber",
-    "service-client": "ros_service_client",
-    "service-server": "ros_service_server",
-    "action-client": "ros_action_client",
-    "action-server": "ros_action_server",
-    "timer": "ros_time_rate",
-}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -44,7 +35,7 @@ def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) ->
         attribute is not None and not attribute.has_value
     ):
         return
-    tags = " or ".join(f"`<{KINDS[kind]}>`" for kind in kinds)
+    tags = " or ".join(f"`<{DECLARING_ELEMENTS[kind]}>`" for kind in kinds)
     message = f"`<{element.name}>` needs `name`, the name of a {tags}"
     span = attribute.span if attribute else Span(element.name_span.end, element.name_span.end)
     new = "" if attribute else " "
@@ -62,10 +53,11 @@ def _undeclared(
     wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
     if wrong is None or wrong.handle is None:
         close = close_names(handle.value, right)
-        message = f"there is no `<{KINDS[kinds[0]]}>` called `{handle.value}`{did_you_mean(close)}"
+        message = f"there is no `<{DECLARING_ELEMENTS[kinds[0]]}>` called `{handle.value}`{did_you_mean(close)}"
         declare = _declare(context, handle.value, kinds[0], preferred=not close)
         return RULE.at(handle.span, message, *replacements(handle.span, close), *declare)
-    message = f"`{handle.value}` is a `<{KINDS[wrong.kind]}>`; `<{element.name}>` needs a `<{KINDS[kinds[0]]}>`"
+    is_tag, needed_tag = DECLARING_ELEMENTS[wrong.kind], DECLARING_ELEMENTS[kinds[0]]
+    message = f"`{handle.value}` is a `<{is_tag}>`; `<{element.name}>` needs a `<{needed_tag}>`"
     meant = tuple(right) if len(right) == 1 else _same_interface(machine, wrong, kinds)
     related = (Related(wrong.handle.span, "declared here"),)
     return RULE.at(handle.span, message + did_you_mean(meant), *replacements(handle.span, meant), related=related)
@@ -81,11 +73,11 @@ def _declare(context: MachineContext, name: str, kind: str, *, preferred: bool) 
         if found is None:
             return
         interface, type_ = found
-        attribute = next(a for a in INTERFACE_ATTRIBUTES if a in HL_SCXML.elements[KINDS[kind]].attributes)
-        text = f'<{KINDS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
+        attribute = next(a for a in INTERFACE_ATTRIBUTES if a in HL_SCXML.elements[DECLARING_ELEMENTS[kind]].attributes)
+        text = f'<{DECLARING_ELEMENTS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
     siblings = [d.element for d in context.machine.declarations if d.element in root.elements]
     edit = after(document, siblings[-1], text) if siblings else first_in(document, root, text)
-    yield Fix(f"Declare it as `<{KINDS[kind]}>`", (edit,), preferred)
+    yield Fix(f"Declare it as `<{DECLARING_ELEMENTS[kind]}>`", (edit,), preferred)
 
 
 def _elsewhere(context: MachineContext, name: str, kind: str) -> tuple[str, str] | None:
@@ -114,7 +106,7 @@ def _may_be_declared(machine: Machine, name: str, kinds: tuple[str, ...]) -> boo
     if any(d.kind in kinds and d.handle is None for d in machine.declarations):
         return True
     named = [e for e in machine.element.elements if any(a.value == name for a in e.attributes)]
-    return any(misspelled.among(named, KINDS[kind], HL_SCXML) for kind in kinds)
+    return any(misspelled.among(named, DECLARING_ELEMENTS[kind], HL_SCXML) for kind in kinds)
 
 
 def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[str, ...]]]:

@@ -6,14 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import remove
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct, Unknown, leaves, unwrap
 from roaml.model.machine import Communicate, Param
-from roaml.model.ros import InterfaceType
-from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
-from roaml.rules.expressions.unknown_member import is_ros
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.layout import remove
+from roaml.rules.support.fields import is_ros, sent_part
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -39,19 +37,6 @@ def _fields(context: MachineContext, statement: Communicate) -> Iterator[Finding
     for field in statement.fields:
         if field.name is not None and field.name.value not in paths and not inside_unknown(part, field.name.value):
             yield _unknown(context, field, part, paths)
-
-
-def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
-    """The fields that a sending element may set; None if its type is not known."""
-    declaration = find_handle(context.machine, statement)
-    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
-        return None
-    found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-    if not isinstance(found, InterfaceType):
-        return None
-    part = dict(found.parts).get(SECTIONS.get(statement.type.sends, statement.type.sends))
-    # Some elements send no fields at all: goal answers, and results that are no success.
-    return part if "field" in statement.type.children else Struct(found.name, ())
 
 
 def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[str]) -> Finding:

@@ -12,8 +12,8 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel
 from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
-from roaml.rules.events.event_data_unavailable import known_here
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.event_data import known_here
 from roaml.rules.support.interfaces import declared, other_kind
 
 PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapped_result": 2}

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
+from roaml.edit.elements import remove
 from roaml.model.machine import Communicate, Handler
 from roaml.model.typing import find_handle
-from roaml.rules.interfaces.undeclared_handle import KINDS
+from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.layout import remove
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -25,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if declaration.handle is not None and not any(u is declaration for u in used):
             if declaration.kind == "action-server" and declaration.handle.value in with_threads:
                 continue
-            what = "timer" if declaration.kind == "timer" else f"`<{KINDS[declaration.kind]}>`"
+            what = "timer" if declaration.kind == "timer" else f"`<{DECLARING_ELEMENTS[declaration.kind]}>`"
             message = f"the {what} `{declaration.handle.value}` is never used"
             drop = remove(context.document, declaration.element, "Remove the declaration", preferred=True)
             yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.model.system_file import NANOSECONDS, duration
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from decimal import Decimal, InvalidOperation
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.model.machine import Handler, Target
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
 from roaml.text import Span
 
 TOLERANCE = Decimal("0.001")

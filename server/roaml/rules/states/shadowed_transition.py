@@ -6,19 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import indent_of, removal, remove
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import Facts
-from roaml.model.machine import Chart, Handler, Machine, State
-from roaml.model.syntax import Name
-from roaml.model.system import sanitise
-from roaml.model.typing import find_handle
+from roaml.model.machine import Chart, Handler, State
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.conditions import covered
-from roaml.rules.support.elements import removal
-from roaml.rules.support.layout import indent_of, remove
+from roaml.rules.support.triggers import chooses, conditional, trigger
 from roaml.text import Span, TextEdit
-
-TOPIC = "message"
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -51,29 +46,8 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
 
 def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
     """Transitions whose conditions never hold where those of the earlier ones do not."""
-    for handlers in _conditional(context.machine, state):
+    for handlers in conditional(context.machine, state):
         yield from _in_order(context, condition_facts(chart), handlers)
-
-
-def _conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
-    """The handlers of a state with conditions, in groups with the same trigger."""
-    groups: dict[tuple[str, str, int], list[Handler]] = {}
-    for handler in state.handlers:
-        key = trigger(machine, handler)
-        if key is not None and handler.effective and handler.cond is not None and not chooses(handler):
-            groups.setdefault(key, []).append(handler)
-    return (handlers for handlers in groups.values() if len(handlers) > 1)
-
-
-def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
-    """Whether a handler for the same trigger as `handler`, in its state, has a condition that never decides."""
-    state = next((state for state in chart.states if handler in state.handlers), None)
-    groups = _conditional(machine, state) if state is not None else ()
-    return any(
-        any(covered(condition_facts(chart), [each.cond for each in handlers]))
-        for handlers in groups
-        if handler in handlers
-    )
 
 
 def _in_order(context: MachineContext, facts: Facts, handlers: list[Handler]) -> Iterator[Finding]:
@@ -102,29 +76,6 @@ def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Itera
         edits = (TextEdit(Span(at, at), f"{text}\n{indent}"), removal(document.text, element.span))
         yield Fix("Move it before the transition without a condition", edits)
     yield remove(document, element, "Remove this transition")
-
-
-def trigger(machine: Machine, handler: Handler) -> tuple[str, str, int] | None:
-    """What a handler waits for, comparable within its state; None if that is not written out.
-
-    Two handles of one topic wait for the same message, results of different codes are different triggers.
-    """
-    attributes, code = handler.type.attributes, handler.type.code
-    if "name" in attributes:
-        declaration = find_handle(machine, handler)
-        if handler.trigger == TOPIC and declaration is not None and isinstance(declaration.interface, Name):
-            return (handler.trigger, sanitise(declaration.interface.value), code)
-        return (handler.trigger, handler.handle.value, code) if handler.handle else None
-    if handler.trigger == "event":
-        return (handler.trigger, handler.event.value, code) if handler.event else None
-    if "id" in attributes:
-        return (handler.trigger, handler.child.value, code) if handler.child else None
-    return (handler.trigger, "", code)
-
-
-def chooses(handler: Handler) -> bool:
-    """Whether the trigger itself selects: a child index in a variable stands for one condition per child."""
-    return handler.child is not None and not handler.child.value.isdigit()
 
 
 RULE = Rule(

@@ -7,11 +7,11 @@ import re
 from collections.abc import Collection, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import after
 from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
-from roaml.rules.support.layout import after
 from roaml.xml import Document, Element
 
 STATES = ("state", "parallel", "final", "history")

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import remove
 from roaml.model.machine import Chart, State
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.layout import remove
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -13,10 +13,10 @@ from roaml.model.behavior.explore import Behavior, Duty, Step, explore
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
 from roaml.model.typing import find_handle
-from roaml.rules.events import removed_bt_event
 from roaml.rules.rule import MachineContext
-from roaml.rules.states.shadowed_transition import has_shadowed
 from roaml.rules.support import misspelled
+from roaml.rules.support.removed_events import uses_removed_events
+from roaml.rules.support.triggers import has_shadowed
 from roaml.text import Span
 
 SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
@@ -45,7 +45,7 @@ def behaviors(context: MachineContext) -> Iterator[Behavior]:
 
 def plugins(context: MachineContext) -> list[Automaton]:
     """What the machine is in the tree; nothing if it talks to the tree as was once done."""
-    if removed_bt_event.is_used(context.machine):
+    if uses_removed_events(context.machine):
         return []
     return [automaton for automaton in context.automata if automaton.instance is not None]
 

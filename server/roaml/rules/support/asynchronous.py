@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Fix
+from roaml.edit.elements import after, first_in, last_in
 from roaml.model.machine import Handler, ReturnStatus, State, statements
 from roaml.model.typing import STATUSES
 from roaml.rules.rule import MachineContext, unused
-from roaml.rules.support.layout import after, first_in, last_in
 from roaml.text import TextEdit
 
 RUNNING = '<bt_return_status status="RUNNING" />'

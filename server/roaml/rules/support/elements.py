@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from roaml.language import Grammar
 from roaml.language.grammar import ElementType
 from roaml.language.validate import is_foreign
-from roaml.text import Span, TextEdit
 from roaml.xml import Document, Element
 
 
@@ -35,16 +34,6 @@ def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Eleme
             child_type = grammar.child(type_, child.name)
             if child_type is not None and not is_foreign(namespaces, child):
                 stack.append((child, child_type, element))
-
-
-def removal(text: str, span: Span) -> TextEdit:
-    """Takes away what stands at `span`, with the blanks before it and the line break before these."""
-    start = span.start
-    while start > 0 and text[start - 1] in " \t":
-        start -= 1
-    if text[start - 1 : start] == "\n":
-        start -= 2 if text[start - 2 : start - 1] == "\r" else 1
-    return TextEdit(Span(start, span.end), "")
 
 
 def stands_alone(document: Document, element: Element) -> bool:

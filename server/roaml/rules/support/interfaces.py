@@ -7,11 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Related
+from roaml.expr.types import leaves
+from roaml.expr.zero import zero_text
 from roaml.model.gaps import OTHER_SIDE
 from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
+from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import Automaton, Channel
+from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, System
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
@@ -103,3 +106,18 @@ def name_span(declaration: Declaration) -> Span:
     if isinstance(declaration.interface, Name):
         return declaration.interface.span
     return declaration.handle.span if declaration.handle else declaration.element.name_span
+
+
+def has_publisher(system: System, topic: Channel) -> bool:
+    if topic.name == CLOCK_TOPIC and system.has_timer:
+        return True
+    return any("message" in endpoint.use.sends for endpoint in topic.sources)
+
+
+def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
+    """The lines that answer a request with 0, or what is like it, in each field."""
+    assert declaration.handle is not None
+    types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
+    fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]
+    tag = f'<ros_service_send_response name="{declaration.handle.value}"'
+    return (f"{tag}>", *fields, "</ros_service_send_response>") if fields else (f"{tag} />",)

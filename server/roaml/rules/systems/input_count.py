@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import remove
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import ListedFile
 from roaml.rules.rule import Rule, SystemContext
-from roaml.rules.support.layout import remove
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

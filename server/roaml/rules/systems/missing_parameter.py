@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import first_in
 from roaml.language import SYSTEM
 from roaml.rules.rule import Rule, SystemContext
 from roaml.rules.support import misspelled
-from roaml.rules.support.layout import first_in
 from roaml.xml import Element
 
 MAX_TIME = '<max_time value="100" unit="s" />'

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import removal
 from roaml.rules.rule import Rule, SystemContext
-from roaml.rules.support.elements import removal
 from roaml.xml import Element
 
 

@@ -11,7 +11,7 @@ from roaml.model.expand import Reference
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.typing import TypedValue, Use
-from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
 
 CONSTANT = (Use.INITIAL, Use.BOUND)

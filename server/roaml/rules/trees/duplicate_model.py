@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.edit.elements import removal
 from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
 from roaml.model.translated import is_generated
 from roaml.rules.rule import Rule, SystemContext
-from roaml.rules.support.elements import removal
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

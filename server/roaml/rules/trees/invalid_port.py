@@ -7,14 +7,13 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import remove, rename_tag
 from roaml.expr.types import BASE_TYPES
 from roaml.model.machine import Port
 from roaml.model.syntax import Name, TypeRef
 from roaml.model.system import CHILDREN_COUNT
-from roaml.rules.elements.unknown_element import rename_tag
+from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.layout import remove
-from roaml.rules.variables.unknown_type import SPELLINGS
 
 ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
 """Ports are attributes in the tree."""
@@ -57,9 +56,9 @@ def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
         yield RULE.at(type_.span, "a port holds a single value: arrays and structs cannot be ports")
         return
     # A name like `Point` is meant as a struct, not as a misspelled base type.
-    is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in SPELLINGS
+    is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in FOREIGN_TYPES
     candidates = close_names(base, () if is_struct else BASE_TYPES)
-    close = (SPELLINGS[base],) if base in SPELLINGS else candidates
+    close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else candidates
     hint = did_you_mean(close) or "; a port is a `bool`, a `string`, or of an int or float type"
     yield RULE.at(type_.span, f"there is no type `{type_.text}`{hint}", *replacements(type_.span, close))
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.expr.infer import constant
 from roaml.expr.parse import parse
 from roaml.model.expand import Constant, Reference
 from roaml.model.tree import PortSetting, TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, replacements
-from roaml.rules.support.elements import removal
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import remove
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import own_elements
-from roaml.rules.support.layout import remove
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

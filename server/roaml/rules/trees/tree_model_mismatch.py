@@ -6,11 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.edit.elements import remove, rename_tag
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import NodeModel
-from roaml.rules.elements.unknown_element import rename_tag
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
-from roaml.rules.support.layout import remove
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

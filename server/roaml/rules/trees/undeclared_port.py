@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import after, first_in
 from roaml.expr.types import Scalar
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
-from roaml.model.typing import TypedMachine
+from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
-from roaml.rules.support.layout import after, first_in
-from roaml.rules.variables.missing_type import DEFAULTS
+from roaml.rules.support.ports import reads, writes
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -56,28 +56,9 @@ def _type_of(context: MachineContext, key: Name) -> str | None:
         for statement in chart.statements:
             if isinstance(statement, SetOutput) and statement.key is key:
                 types = [v.type for v in context.typed.values if v.value is statement.value]
-                return next((t.name or DEFAULTS[t.kind] for t in types if isinstance(t, Scalar)), None)
+                return next((t.name or DEFAULT_TYPES[t.kind] for t in types if isinstance(t, Scalar)), None)
     declared = [d for d in context.machine.declarations for read in (d.interface,) if isinstance(read, PortRead)]
     return "string" if any(isinstance(d.interface, PortRead) and d.interface.key is key for d in declared) else None
-
-
-def reads(machine: Machine, typed: TypedMachine) -> Iterator[Name]:
-    """The ports that a machine reads."""
-    for value in typed.values:
-        if isinstance(value.value, PortRead) and value.value.key is not None:
-            yield value.value.key
-    for declaration in machine.declarations:
-        for read in (declaration.interface, declaration.rate):
-            if isinstance(read, PortRead) and read.key is not None:
-                yield read.key
-
-
-def writes(machine: Machine) -> Iterator[Name]:
-    """The ports that a machine writes."""
-    for chart in machine.charts:
-        for statement in chart.statements:
-            if isinstance(statement, SetOutput) and statement.key is not None:
-                yield statement.key
 
 
 def _is_misspelled_declaration(machine: Machine, key: str) -> bool:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import rename_tag
 from roaml.model.system import builtin_plugins
 from roaml.model.tree import TreeNode, nodes
-from roaml.rules.elements.unknown_element import rename_tag
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.text import Span, TextEdit
 

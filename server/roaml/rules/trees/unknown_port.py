@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.edit.elements import removal
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
-from roaml.rules.support.elements import removal
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.model.expand import node_at, stray_remaps
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
-from roaml.rules.support.elements import removal
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

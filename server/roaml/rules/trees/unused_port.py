@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
+from roaml.edit.elements import remove
 from roaml.model.system import CHILDREN_COUNT
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.layout import remove
-from roaml.rules.trees.undeclared_port import reads, writes
+from roaml.rules.support.ports import reads, writes
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import remove
 from roaml.expr.types import leaves
 from roaml.model.machine import Data
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.layout import remove
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import removal
 from roaml.expr.infer import constant
 from roaml.expr.types import is_number
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression, Value
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
 from roaml.text import TextEdit
 
 BOUNDS = ("lower_bound_incl", "upper_bound_incl")

@@ -3,27 +3,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.expand import Constant
 from roaml.model.gaps import is_interface_name
 from roaml.model.machine import Declaration, Send
+from roaml.model.name_forms import EVENT, VARIABLE, variable_problem
 from roaml.model.syntax import Name
-from roaml.model.typing import STATUSES
-from roaml.rules.events.event_data_unavailable import EVENT_VARIABLES
+from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.interfaces import named_by_ports, port_span
 
-VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
-EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
-RESERVED = re.compile(
-    r"(await|break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|finally|for"
-    r"|function|if|import|in|instanceof|let|new|null|return|super|switch|this|throw|try|typeof|var|void|while|with"
-    r"|yield)\Z"
-)
-"""Words of ECMAScript that cannot name anything in an expression."""
 KINDS = {"publisher": "topic", "subscriber": "topic", "service-client": "service", "service-server": "service"}
 
 
@@ -90,21 +81,6 @@ def _with_spaces(name: str, what: str) -> str:
 
 def _a(what: str) -> str:
     return f"{'an' if what == 'action' else 'a'} {what}"
-
-
-def variable_problem(name: str) -> str:
-    """Why `name` cannot name a variable, or ""."""
-    if name in STATUSES:
-        return f"`{name}` is the answer of a tree node and cannot name a variable"
-    if name in ("length", "Math", "true", "false"):
-        return f"`{name}` has a meaning of its own and cannot name a variable"
-    if RESERVED.match(name):
-        return f"`{name}` is a word of ECMAScript and cannot name a variable"
-    if not VARIABLE.match(name):
-        return f"`{name}` cannot name a variable: it begins with a letter and holds letters, digits and `_`"
-    if name.endswith("_"):
-        return f"`{name}` ends in `_`, and such a variable cannot be used"
-    return ""
 
 
 RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check, tree=check_tree)

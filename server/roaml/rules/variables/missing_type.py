@@ -11,11 +11,11 @@ from roaml.expr.types import Scalar, unwrap
 from roaml.language import HL_SCXML
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression
+from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
 
-DEFAULTS = {"int": "int32", "real": "float64", "bool": "bool", "string": "string"}
 KNOWN = HL_SCXML.elements["data"].attributes
 
 
@@ -44,7 +44,7 @@ def _type_of_value(data: Data) -> str | None:
     if not isinstance(data.value, Expression) or data.value.broken:
         return None
     element, bounds = unwrap(infer(data.value.tree, lambda _: None)[0])
-    return DEFAULTS[element.kind] + "[]" * len(bounds) if isinstance(element, Scalar) else None
+    return DEFAULT_TYPES[element.kind] + "[]" * len(bounds) if isinstance(element, Scalar) else None
 
 
 RULE = Rule("missing-type", Severity.ERROR, "A variable has no type.", machine=check)

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.types import BASE_TYPES
+from roaml.model.name_forms import VARIABLE
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS, Extent
 from roaml.model.structs import StructDeclaration, struct_cycles, struct_extents
 from roaml.model.syntax import Name
 from roaml.rules.rule import Rule, StructsContext
-from roaml.rules.variables.invalid_name import VARIABLE
 
 
 def check(context: StructsContext) -> Iterator[Finding]:

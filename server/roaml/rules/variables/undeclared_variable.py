@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import first_in, last_in
 from roaml.expr.infer import UnknownName, infer
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Binary, Conditional, Expr, Name, Unary
@@ -14,10 +15,9 @@ from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
 from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
-from roaml.rules.support.layout import first_in, last_in
-from roaml.rules.variables.missing_type import DEFAULTS
 
 LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
 NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
@@ -120,7 +120,7 @@ def _named(type_: Type | None) -> Scalar | None:
     """A base type under a name that can be declared."""
     if not isinstance(type_, Scalar):
         return None
-    return type_ if type_.name else Scalar(type_.kind, DEFAULTS[type_.kind])
+    return type_ if type_.name else Scalar(type_.kind, DEFAULT_TYPES[type_.kind])
 
 
 def declaration(context: MachineContext, chart: Chart, name: str, type_: str, value: str) -> Fix:

@@ -9,14 +9,8 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import BASE_TYPES, parse_type
 from roaml.model.syntax import TypeRef
+from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.rules.rule import MachineContext, Rule, StructsContext, close_names, did_you_mean, replacements
-
-SPELLINGS = {
-    "int": "int32", "integer": "int32", "uint": "uint32", "long": "int64", "short": "int16", "byte": "uint8",
-    "char": "uint8", "float": "float32", "double": "float64", "real": "float64", "number": "float64",
-    "boolean": "bool", "str": "string", "String": "string", "integer8": "int8", "integer16": "int16",
-    "integer32": "int32", "integer64": "int64",
-}  # fmt: skip
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -43,8 +37,8 @@ def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bo
         return
     known = [*BASE_TYPES, *structs]
     base = type_.name.base
-    if base not in known and (complete or base in SPELLINGS):
-        close = (SPELLINGS[base],) if base in SPELLINGS else close_names(base, known)
+    if base not in known and (complete or base in FOREIGN_TYPES):
+        close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else close_names(base, known)
         brackets = type_.text[len(base) :]
         fixes = replacements(type_.span, [name + brackets for name in close])
         if alone and not close:

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.edit.elements import removal, remove
 from roaml.expr.tree import Name, walk
 from roaml.model.machine import CallChild, Chart, Data, ReturnStatus
 from roaml.model.syntax import Expression, Value
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.elements import removal
-from roaml.rules.support.layout import remove
 from roaml.text import Span
 
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
 from roaml.language import HL_SCXML, PLAIN_SCXML
 from roaml.language.validate import SCXML_NAMESPACE
 from roaml.rules.rule import FileContext, Rule
-from roaml.rules.support.elements import removal
 from roaml.text import TextEdit
 
 

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where fixes put new elements: on lines of their own, indented like what stands around them.
+"""Elements that edits add, rename and remove.
 
-New lines are given with four spaces for each level that they are nested; they get what the file has for it.
+New ones are on lines of their own, indented like what is around them. Their lines are given with four spaces for each
+level that they are nested; they get what the file has for it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 from roaml.diagnostics import Fix
-from roaml.rules.support.elements import removal
 from roaml.text import Span, TextEdit
 from roaml.xml import Document, Element
 
@@ -91,3 +92,31 @@ def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
         depth = (len(line) - len(line.lstrip(" "))) // len(_LEVEL)
         new.append(f"\n{indent}{level * depth}{line.lstrip(' ')}" if line else "\n")
     return "".join(new)
+
+
+def removal(text: str, span: Span) -> TextEdit:
+    """Takes away what stands at `span`, with the blanks before it and the line break before these."""
+    start = span.start
+    while start > 0 and text[start - 1] in " \t":
+        start -= 1
+    if text[start - 1 : start] == "\n":
+        start -= 2 if text[start - 2 : start - 1] == "\r" else 1
+    return TextEdit(Span(start, span.end), "")
+
+
+def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
+    """Change the name of an element in its start tag and its end tag."""
+    spans: list[Span] = [element.name_span, *([element.close_name_span] if element.close_name_span else [])]
+    return Fix(f"Change to `<{name}>`", tuple(TextEdit(span, name) for span in spans), preferred)
+
+
+def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
+    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
+    initial = root.get("initial")
+    edits = []
+    for state in states:
+        ticks = [child for child in state.elements if child.name == "bt_tick"]
+        if state.name == "state" and ticks and initial and state.find("bt_halt") is None:
+            halt = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
+            edits.append(after(document, ticks[-1], *halt))
+    return tuple(edits)

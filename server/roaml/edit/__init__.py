@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Edits of XML text: elements that are added, renamed and removed, in the layout of the file."""

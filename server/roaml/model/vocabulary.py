@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Words of the languages that more than one part of the tool needs, by what they mean."""
+
+from __future__ import annotations
+
+from roaml.language import HL_SCXML
+
+DECLARING_ELEMENTS = {
+    "publisher": "ros_topic_publisher",
+    "subscriber": "ros_topic_subscriber",
+    "service-client": "ros_service_client",
+    "service-server": "ros_service_server",
+    "action-client": "ros_action_client",
+    "action-server": "ros_action_server",
+    "timer": "ros_time_rate",
+}
+"""The element that declares a handle, by the kind of the handle."""
+
+EVENT_VARIABLES = {
+    binding.name: element.name for element in HL_SCXML.elements.values() for binding in reversed(element.binds)
+}
+"""The variables with the data of an event, with an element that has each."""
+
+BRANCH_MARKERS = ("else", "elseif")
+"""The elements that begin the next branch of an `<if>`."""
+
+INSIDE_THREADS = ("ros_action_handle_thread_start", "ros_action_thread_free")
+"""The elements that are allowed in an action thread only."""
+OUTSIDE_THREADS = ("ros_action_start_thread", "ros_action_handle_thread_free")
+"""The elements that are not allowed in an action thread."""
+UNUSUAL_IN_THREADS = ("ros_action_handle_goal",)
+"""The elements that are allowed in an action thread, but rarely right there."""
+
+DEFAULT_TYPES = {"int": "int32", "real": "float64", "bool": "bool", "string": "string"}
+"""The type of a declaration for a value, by the kind of the value."""
+
+FOREIGN_TYPES = {
+    "int": "int32", "integer": "int32", "uint": "uint32", "long": "int64", "short": "int16", "byte": "uint8",
+    "char": "uint8", "float": "float32", "double": "float64", "real": "float64", "number": "float64",
+    "boolean": "bool", "str": "string", "String": "string", "integer8": "int8", "integer16": "int16",
+    "integer32": "int32", "integer64": "int64",
+}  # fmt: skip
+"""Names of types in other languages, with the names that they have here."""

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The data of events: which are known where."""
+
+from __future__ import annotations
+
+from roaml.model.typing import Place, bound_in
+
+
+def known_here(place: Place) -> list[str]:
+    """The event variables that are known at a place."""
+    if place.handler is None:
+        return []
+    return [binding.name for binding in bound_in(place.handler, place.part)]

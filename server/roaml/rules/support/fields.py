@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fields of messages, requests, responses, goals, feedback and results."""
+
+from __future__ import annotations
+
+from roaml.expr.types import Struct
+from roaml.model.machine import Communicate
+from roaml.model.ros import InterfaceType
+from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.rules.rule import MachineContext
+
+ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
+
+
+def is_ros(struct: Struct) -> bool:
+    """Whether a struct is a ROS message or a part of a service or action."""
+    return struct.what.partition(" ")[0] in ROS_PARTS
+
+
+def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
+    """The fields that a sending element may set; None if its type is not known."""
+    declaration = find_handle(context.machine, statement)
+    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+        return None
+    found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    if not isinstance(found, InterfaceType):
+        return None
+    part = dict(found.parts).get(SECTIONS.get(statement.type.sends, statement.type.sends))
+    # Some elements send no fields at all: goal answers, and results that are no success.
+    return part if "field" in statement.type.children else Struct(found.name, ())

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Types in the words of messages."""
+
+from __future__ import annotations
+
+from roaml.expr.types import Array, EmptyArray, Struct, Type, Unknown, is_kind
+
+
+def phrase(type_: Type) -> str:
+    """A type as a noun phrase."""
+    if is_kind(type_, "string"):
+        return "a string"
+    if isinstance(type_, EmptyArray):
+        return "an array"
+    if isinstance(type_, Array):
+        return f"an array (`{type_}`)"
+    if isinstance(type_, Struct):
+        return f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"a {type_.what}"
+    if isinstance(type_, Unknown):
+        return "this"
+    kinds = {"int": "an integer", "real": "a real number", "bool": "a boolean"}
+    name = f" (`{type_}`)" if getattr(type_, "name", "") not in ("", "bool") else ""
+    return kinds.get(getattr(type_, "kind", ""), f"`{type_}`") + name
