@@ -507,7 +507,7 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--confidence", "0"), "between 0 and 1"),
         (("--max-traces", "0"), "from 1 on"),
         (("--seed", "-1"), "from 0"),
-        (("--method", "sprt"), "compared with no number"),
+        (("--method", "sprt"), "not compared with a number"),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),
     ],
