@@ -27,6 +27,7 @@ from as2fm_lsp.verification import background, stuck
 from as2fm_lsp.verification.choices import under_all_schedulers
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
 from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge
+from as2fm_lsp.verification.nodes import explained
 from as2fm_lsp.verification.report import Result, one_as_text, row
 from as2fm_lsp.verification.subject import Subject, of_system
 from as2fm_lsp.verification.verified import Known, missed, short
@@ -315,7 +316,9 @@ class _Run:
                 self.server.verified.put(self.path, made)
             self.server.refresh.look()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
-        text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
+        place_of = partial(_place_in_words, subject)
+        text = stuck.as_text(known, place_of)
+        text += explained(text, subject.model, place_of)
         if known.stuck is not None and not self.wanted.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
             _tell(self.server, kind, text.strip())
