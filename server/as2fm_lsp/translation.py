@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from roaml import api
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.jani.model import Model
+from roaml.jani.properties import Property
+from roaml.smc.forms import BOUNDS, bounds_in
 
 
 class OutputError(ValueError):
@@ -25,6 +29,24 @@ def keep_off(path: str, system: api.LoadedSystem) -> None:
     """
     if os.path.realpath(path) in {os.path.realpath(file) for file in system.files}:
         raise OutputError(f"{path} belongs to the system; the translation must go to another file")
+
+
+def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
+    """A model without the properties that have bounds on time or rewards, and a warning for each of these bounds.
+
+    JANI has these bounds for timed models. Of a model that counts steps, Storm reads a bound of 5 (seconds) as 5 steps.
+    """
+    warnings: list[Diagnostic] = []
+    kept: list[Property] = []
+    for each in model.properties:
+        bounds = list(bounds_in(each))
+        for why, bound in bounds:
+            assert bound.origin is not None  # It was read from a file of the system.
+            message = f"the property `{each.name}` is left out of the JANI file: {why}"
+            warnings.append(Diagnostic(bound.origin.path, BOUNDS, Severity.WARNING, bound.origin.span, message))
+        if not bounds:
+            kept.append(each)
+    return replace(model, properties=tuple(kept)), tuple(warnings)
 
 
 def summary(model: Model) -> str:

@@ -38,10 +38,18 @@ def test_safe_fixes_are_made(check: Command, tmp_path: Path, line_end: str, mark
     path.write_bytes(mark + MACHINE.replace("\n", line_end).encode())
     done = check("drainer.ascxml", "--fix", "--severity", "error")
     assert path.read_bytes() == mark + FIXED.replace("\n", line_end).encode()
-    assert done.err == "as2fm-lsp: fixed drainer.ascxml\n"
+    more = "1 more finding has a fix that is not safe to make without a look; an editor offers them: unknown-element"
+    assert done.err == f"as2fm-lsp: fixed drainer.ascxml\nas2fm-lsp: {more}\n"
     assert (done.status, done.codes) == (1, ["unknown-element"])
     again = check("drainer.ascxml", "--fix", "--severity", "error")
-    assert (again.err, again.codes) == ("", ["unknown-element"]), "once is enough"
+    assert (again.err, again.codes) == (f"as2fm-lsp: {more}\n", ["unknown-element"]), "once is enough"
+    without = check("drainer.ascxml", "--severity", "error")
+    assert without.err == "", "nothing was to be fixed"
+
+
+def test_nothing_more_is_offered_where_nothing_is_left(check: Command, tmp_path: Path) -> None:
+    (tmp_path / "drainer.ascxml").write_text(MACHINE.replace('            <asign location="n" expr="1" />\n', ""))
+    assert check("drainer.ascxml", "--fix", "--severity", "error").err == "as2fm-lsp: fixed drainer.ascxml\n"
 
 
 def test_only_what_is_reported_is_fixed(check: Command, tmp_path: Path) -> None:

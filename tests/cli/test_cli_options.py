@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked for, and with which status the command ends: 0 clean, 1 found, 2 wrong use, 3 a failure of ours."""
+"""What is asked for, and with which status the command ends: 0 clean, 1 found, 2 usage error, 3 internal error."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def test_a_crash_outside_of_rules(command: Command, tmp_path: Path, monkeypatch:
     done = command("--check", ".")
     assert done.status == 3
     assert "Traceback" in done.err
-    assert "mistake of the tool itself; please report it" in done.err
+    assert "internal error; please report it" in done.err
 
 
 def test_an_interrupt_is_quiet(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,14 +41,53 @@ def test_a_stuck_system_is_told_loudly(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml")
     assert done.status == 0
     lines = done.out.splitlines()
-    assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[1])
-    assert re.search(r"\n  [\d,]+ of [\d,]+ traces got stuck, and say nothing about the property\n", done.out)
-    assert re.search(r"\nstuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n", done.out)
+    assert re.fullmatch(
+        r"  warning: [\d,]+ of [\d,]+ traces got stuck and say nothing about the property, so its value is doubtful; "
+        r"for example trace \d+ after 55 steps at 2 s:",
+        lines[1],
+    )
+    assert lines[2].startswith("    the clock waits at 2 s for the tree")
+    assert lines[6].startswith("    help: a tick must be answered before time goes on")
+    assert lines[6].endswith(" [answer-needs-time]")
+    assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[7])
+    assert done.out.count("the clock waits") == 1
+    assert re.search(
+        r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
+        r"warning: the system gets stuck, time stands still; who waits for whom is shown above, beneath `delivered`\n",
+        done.out,
+    )
+    assert "\nnodes of the behavior tree: bt_1002 is Fetch (tree.xml:5)\n" in done.out
+
+
+def test_a_stuck_system_whose_properties_are_decided_before(command: Command, ward: Path) -> None:
+    """No result is doubtful; who waits for whom is shown with the traces that ran on."""
+    text = (ward / "properties.jani").read_text(encoding="utf-8")
+    (ward / "properties.jani").write_text(text.replace('"topic_delivered_msg.valid"', "true"), encoding="utf-8")
+    out = command("verify", "main.xml").out
+    assert "got stuck" not in out
+    assert re.search(
+        r"\nwarning: the system gets stuck, time stands still: trace \d+ after 55 steps at 2 s\n  the", out
+    )
+    assert out.count("the clock waits") == 1
+
+
+def test_who_waits_for_whom_is_shown_once_for_two_properties(command: Command, ward: Path) -> None:
+    written = json.loads((ward / "properties.jani").read_text(encoding="utf-8"))
+    written["properties"].append({**written["properties"][0], "name": "again"})
+    (ward / "properties.jani").write_text(json.dumps(written), encoding="utf-8")
+    out = command("verify", "main.xml").out
+    assert out.count("the clock waits") == 1
+    assert "doubtful; who waits for whom is shown above, beneath `delivered`\n" in out
+    explained = command("verify", "main.xml", "--explain").out
+    assert explained.count("waits at 2 s for the tree") == 1
+    assert explained.count("doubtful; who waits for whom is shown in the trace below\n") == 2
+    assert "\n  who waits for whom is shown above, at the end of the trace of `delivered`\n" in explained
+    assert explained.count("nodes of the behavior tree:") == 1
 
 
 def test_who_waits_for_whom_is_told_as_the_manual_shows_it(command: Command, ward: Path) -> None:
     page = DOCUMENT.read_text(encoding="utf-8")
-    (shown,) = re.findall(r"^```text\n(warning: the system gets stuck.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    (shown,) = re.findall(r"^```text\n(  warning: .*?)^```$", page, re.MULTILINE | re.DOTALL)
     assert shown in command("verify", "main.xml").out
 
 
@@ -63,7 +102,7 @@ def test_a_mended_system_is_not_told_to_get_stuck(command: Command, tmp_path: Pa
     done = command("verify", "main.xml", "--stuck", "error")
     assert done.status == 0
     assert "gets stuck" not in done.out
-    assert "stuck: 0 in [0, " in done.out
+    assert "probability of getting stuck: 0 in [0, " in done.out
     assert parsed(command("verify", "main.xml", "--format", "json").out)["stuck"]["example"] is None
 
 
@@ -88,12 +127,15 @@ def test_json(command: Command, ward: Path) -> None:
     waits = known["example"]["waits"]
     assert [(row["who"], row["file"], row["line"]) for row in waits] == [
         ("the clock", "tree.xml", 3),
-        ("the tree", "tree.xml", 3),
+        ("the tree", "tree.xml", 5),
         ("Fetch (bt_1002)", "fetch.ascxml", line(ward, "fetch.ascxml", "ros_service_handle_response")),
         ("Pharmacy", "pharmacy.ascxml", line(ward, "pharmacy.ascxml", "ros_rate_callback")),
     ]
     assert known["example"]["time"] == 2.0
     assert "answer RUNNING" in known["example"]["advice"]
+    assert known["example"]["rule"] == "answer-needs-time"
+    assert re.match(r"[\d,]+ of [\d,]+ traces got stuck and say nothing about the property, ", result["warning"])
+    assert "minimum" in result["warning"]
 
 
 def line(folder: Path, name: str, text: str) -> int:
@@ -112,7 +154,13 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
     assert suites.get("tests") == "2"
     told = cases["does not get stuck"].findtext("failure" if level == "error" else "system-out") or ""
     assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in told
-    assert "ends: goal decided" in (cases["delivered"].findtext("system-out") or "")
+    beneath = cases["delivered"].findtext("system-out") or ""
+    assert "ends: goal decided" in beneath
+    assert f"  {level}: " in beneath
+    assert "    the clock waits at 2 s" in beneath
+    (about,) = cases["delivered"].iter("property")
+    assert about.get("name") == "warning"
+    assert "traces got stuck" in (about.get("value") or "")
 
 
 def test_whether_it_gets_stuck_can_be_asked(command: Command, ward: Path) -> None:
@@ -140,7 +188,9 @@ def test_explained_to_the_end(command: Command, ward: Path) -> None:
     for options in ((), ("--property", "stuck")):
         story = command("verify", "main.xml", *options, "--explain").out
         assert re.search(r": trace \d+ gets stuck after \d+ steps, of which", story)
-        last = story.rstrip().splitlines()[-4:]
+        *last, advice, legend = story.rstrip().splitlines()[-6:]
+        assert advice.startswith("  help: a tick must be answered")
+        assert "bt_1002 is Fetch (tree.xml:5)" in legend
         assert [re.sub(r" {2,}", "  ", text).split("  ")[2] for text in last] == [
             "the clock",
             "the tree",
@@ -185,6 +235,7 @@ def test_counts_are_kept_for_later(command: Command, ward: Path) -> None:
 
 def test_sampled_schedulers_that_get_stuck_are_told(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--scheduler", "lss", "--epsilon", 0.1)
+    assert re.search(r"\n  by sampled scheduler .*\n  warning: .* traces got stuck and say nothing", done.out)
     assert "warning: the system gets stuck" in done.out
 
 
@@ -203,7 +254,7 @@ def test_a_trace_that_goes_wrong_after_its_goal_is_told(command: Command, tmp_pa
     done = command("verify", "main.xml")
     assert done.status == 0
     assert "delivered: 1 in" in done.out
-    assert "stuck: not known, since a trace that ran on went wrong: " in done.out
+    assert "probability of getting stuck: not known, since a trace that ran on went wrong: " in done.out
 
 
 def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path) -> None:

@@ -17,9 +17,11 @@ from lxml import etree
 
 import as2fm_lsp.cli.progress
 import as2fm_lsp.cli.translate
+from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json import parse
 from roaml.language.resources import schema_path
+from roaml.smc.fault import FaultError
 
 SCXML = "{http://www.w3.org/2005/07/scxml}"
 
@@ -107,13 +109,12 @@ def test_properties_by_name(command: Command, robot: Path) -> None:
 
 
 def test_parts_of_properties_without_effect(command: Command, robot: Path) -> None:
-    """Bounds that are not looked at, and comments on what is no operator of the formula itself."""
+    """Comments on what is no operator of the formula itself."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
     plain = command("translate", "main.xml", "-o", "-").out
     for each in written["properties"]:
         each["comment"] = each["expression"]["comment"] = each["expression"]["values"]["comment"] = "a remark"
-        each["expression"]["values"]["exp"]["time-bounds"] = {"upper": 3}
     path.write_text(json.dumps(written))
     done = command("translate", "main.xml", "-o", "-")
     assert (done.status, done.out) == (0, plain)
@@ -125,6 +126,51 @@ def test_parts_of_properties_without_effect(command: Command, robot: Path) -> No
         for each in json.loads(command("translate", "main.xml", "-o", "-").out)["properties"]
     ]
     assert [(each["comment"], each["step-bounds"]) for each in path_formulas] == [("a remark", {"upper": 3})] * 2
+
+
+@pytest.mark.parametrize("kind", ["time-bounds", "reward-bounds"])
+@pytest.mark.parametrize("depth", [0, 1])
+def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
+    command: Command, robot: Path, kind: str, depth: int
+) -> None:
+    """Without its bounds it would ask something else; with them, Storm reads seconds as steps."""
+    path = robot / "properties.jani"
+    written = json.loads(path.read_text())
+    bound = {"upper": 3} if kind == "time-bounds" else [{"exp": 1, "accumulate": ["steps"], "bounds": {"upper": 3}}]
+    bounded, other = (each["name"] for each in written["properties"])
+    formula = written["properties"][0]["expression"]["values"]["exp"]
+    if depth:
+        formula["exp"] = {"op": "F", "exp": formula["exp"]}
+        formula = formula["exp"]
+    formula[kind] = bound
+    path.write_text(json.dumps(written, indent=1))
+    done = command("translate", "main.xml", "-o", "-")
+    assert done.status == 0
+    assert [each["name"] for each in json.loads(done.out)["properties"]] == [other]
+    assert f"warning: the property `{bounded}` is left out of the JANI file: bounds on " in done.err
+    assert "[ignored-bounds]" in done.err
+    line = next(n for n, text in enumerate(path.read_text().splitlines(), 1) if f'"{kind}"' in text)
+    assert f"properties.jani:{line + (kind == 'reward-bounds')}:" in done.err
+    as_json = command("translate", "main.xml", "-o", "out.jani", "--format", "json")
+    assert [row["code"] for row in json.loads(as_json.out)] == ["ignored-bounds"]
+    (robot / "main.jani").unlink(missing_ok=True)
+    named = command("translate", "main.xml", "--property", bounded)
+    assert (named.status, named.out) == (1, "")
+    assert "main.jani was not written" in named.err
+    assert not (robot / "main.jani").exists()
+    assert command("translate", "main.xml", "--property", other).err == ""
+
+
+def test_a_model_keeps_bounds_that_cannot_be_answered(robot: Path) -> None:
+    """Who verifies it from Python is told."""
+    path = robot / "properties.jani"
+    written = json.loads(path.read_text())
+    written["properties"][0]["expression"]["values"]["exp"]["time-bounds"] = {"upper": 3}
+    path.write_text(json.dumps(written))
+    model = api.to_jani(api.load(str(robot / "main.xml")))
+    with pytest.raises(FaultError) as caught:
+        list(api.verify(model))
+    assert caught.value.code == "ignored-bounds"
 
 
 def test_parameters(command: Command, robot: Path) -> None:

@@ -25,10 +25,11 @@ from command import Command
 from smc_models import Json, at, automaton, document, edge, op, probability, variable, way
 
 import as2fm_lsp.verification.traces
-from as2fm_lsp.verification.bar import line
+from as2fm_lsp.verification.bar import line, search_line
 from as2fm_lsp.verification.expectations import parse
 from roaml import api
 from roaml.smc.goal import Question
+from roaml.smc.lss import GREATEST, LEAST, Search, Side
 from roaml.smc.run import FIXED, Options, Tally
 
 
@@ -319,6 +320,45 @@ def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
     assert "interrupted; this is what was known by then" in out
 
 
+def endless() -> Json:
+    """A model with choices whose traces are long enough to be interrupted."""
+    steps = [edge("s", way("s", n=op("+", "n", 1)), guard=op("<", "n", 500_000)), edge("s", way("t", x=1))]
+    steps.append(edge("t", way("t", m=op("+", "m", 1)), guard=op("<", "m", 500_000)))
+    goals = {"p": probability(op("F", op("=", "m", 500_000)))}
+    variables = [variable("n"), variable("m"), variable("x")]
+    return document(automaton("a", "s t", steps), variables=variables, properties=goals)
+
+
+def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_path: Path) -> None:
+    name = write(tmp_path, endless())
+    ours, theirs = pty.openpty()
+    with started(tmp_path, name, "--scheduler", "lss", "--jobs", "1", stderr=theirs) as running:
+        os.close(theirs)
+        seen = b""
+        while b"schedulers tried" not in seen:
+            seen += os.read(ours, 1000)
+        running.send_signal(signal.SIGINT)
+        out, _ = running.communicate(timeout=60)
+    os.close(ours)
+    assert re.search(rb"p, least probability: round \d+ of \d+, [\d,]+ of [\d,]+ schedulers tried", seen)
+    assert running.returncode == 130
+    assert "interrupted" in out
+    assert "seed 0" in out
+
+
+def test_what_the_bar_shows_of_a_search() -> None:
+    question, state = Question("p", "Pmin", False, None, ()), Search(rounds=9)
+    assert search_line(question, state, Options()) == "p, least probability …"
+    state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
+    text = search_line(question, state, Options())
+    assert text == "p, least probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
+    state.found[LEAST] = Side(7, Tally(traces=250, successes=100))
+    text = search_line(question, state, Options(method=FIXED, max_traces=1000))
+    assert text.startswith("p, least probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
+    state.side = GREATEST
+    assert search_line(question, state, Options()).startswith("p, greatest probability: round 2 of 9")
+
+
 def test_what_the_bar_shows() -> None:
     question = Question("p", "Pmin", False, None, ())
     text = line(question, Options(method=FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0)
@@ -507,7 +547,7 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--confidence", "0"), "between 0 and 1"),
         (("--max-traces", "0"), "from 1 on"),
         (("--seed", "-1"), "from 0"),
-        (("--method", "sprt"), "compared with no number"),
+        (("--method", "sprt"), "not compared with a number"),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),
     ],

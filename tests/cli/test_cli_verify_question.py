@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import json
 import os
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from pathlib import Path
@@ -111,16 +112,126 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     done = command("verify", name, *options)
     assert done.status == 0
     assert "expected ≥ 0.9: met under uniform choices" in done.out
-    assert "which may differ; " in done.out
-    assert "sampled schedulers show no difference" in done.out
+    assert done.out.count("may differ") == 1
+    assert (
+        "\nnote: these are values under uniform choices; the minimum or maximum over all schedulers may differ\n"
+        in (done.out)
+    )
+    assert re.search(
+        r"\n  p \(`Pmin` asks for the minimum\): up to \d+ sampled schedulers show no difference", done.out
+    )
+    assert "\n  help: use --scheduler uniform if " in done.out
+    assert "may differ" in rows(command("verify", name, *options, "--format", "json").out)["p"]["warning"]
     (judged,) = rows(command("verify", name, *options, "--format", "json").out)["p"]["expectations"]
     assert (judged["met"], judged["under_uniform_choices_only"]) == (True, True)
     suites = ET.fromstring(command("verify", name, *options, "--format", "junit").out)
     (case,) = suites.iter("testcase")
     assert case.find("failure") is None
-    assert [(each.get("name"), each.get("value")) for each in case.iter("property")] == [
-        ("expected ≥ 0.9", "met under uniform choices")
+    expected, about = case.iter("property")
+    assert (expected.get("name"), expected.get("value")) == ("expected ≥ 0.9", "met under uniform choices")
+    assert about.get("name") == "warning"
+    assert "which may differ; " in (about.get("value") or "")
+
+
+def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> None:
+    """And says why no schedulers were sampled, where none were."""
+    written = hidden()
+    written["properties"].append({**written["properties"][0], "name": "q"})
+    most = probability(op("F", "done"), "Pmax")
+    cost = {"op": "Emax", "exp": 1, "accumulate": ["steps"], "reach": op("=", "n", 200)}
+    written["properties"] += [{"name": "most", "expression": most}, {"name": "cost", "expression": cost}]
+    out = command("verify", write(tmp_path, written), "--method", "fixed", "--max-traces", "60").out
+    (note,) = re.findall(r"^note: .*\n((?:  .*\n)+)", out, re.MULTILINE)
+    lines = note.splitlines()
+    assert [line.split(":")[0] for line in lines] == [
+        "  p, q (`Pmin` asks for the minimum)",
+        "  most (`Pmax` asks for the maximum)",
+        "  cost (`Emax` asks for the maximum)",
+        "  help",
     ]
+    assert lines[2].endswith("schedulers are not sampled for expected rewards")
+
+
+def test_what_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, starving(length=6000))
+    done = command("verify", name, "--expect", "p >= 0.9")
+    assert "  expected ≥ 0.9: NOT MET under sampled scheduler 1, which lets `" in done.out
+    row = rows(command("verify", name, "--expect", "p >= 0.9", "--format", "json").out)["p"]
+    assert row["expectations"][0]["not_met"].startswith("under sampled scheduler 1, which lets `")
+    few = write(tmp_path, starving(length=50), "few.jani")
+    done = command("verify", few, "--expect", "p >= 0.9")
+    assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in done.out
+    exact = command("verify", few, "--expect", "p >= 0.9", "--exact")
+    assert "  expected ≥ 0.9: NOT MET by the least value, which is 0\n" in exact.out
+    assert command("verify", few, "--expect", "p <= 0.1", "--exact").status == 0
+    searched = command("verify", few, "--expect", "p >= 0.9", "--scheduler", "lss", "--epsilon", "0.1")
+    assert "  expected ≥ 0.9: NOT MET under sampled scheduler " in searched.out
+    alone = command("verify", few, "--expect", "p < 0.9", "--scheduler", "uniform")
+    assert "  expected < 0.9: NOT MET\n" in alone.out
+
+
+@pytest.mark.parametrize(
+    ("expected", "said"),
+    [
+        ("heads >= 0.3", "met; not certain: the interval includes values below 0.3"),
+        ("heads >= 0.31", "NOT MET; not certain: the interval includes values of at least 0.31"),
+        ("heads > 0.3", "met; not certain: the interval includes values of at most 0.3"),
+        ("heads > 0.31", "NOT MET; not certain: the interval includes values above 0.31"),
+        ("heads <= 0.31", "met; not certain: the interval includes values above 0.31"),
+        ("heads <= 0.3", "NOT MET; not certain: the interval includes values of at most 0.3"),
+        ("heads < 0.31", "met; not certain: the interval includes values of at least 0.31"),
+        ("heads < 0.3", "NOT MET; not certain: the interval includes values below 0.3"),
+        ("heads = 0.3", "met; not certain: the interval includes values more than 0.01 away from 0.3"),
+        ("heads = 0.313", "NOT MET; not certain: the interval includes values within 0.01 of 0.313"),
+        ("heads >= 0.2", "met"),
+        ("heads = 0.7", "NOT MET"),
+    ],
+)
+def test_verdicts_that_are_not_certain(command: Command, tmp_path: Path, expected: str, said: str) -> None:
+    """The estimate is 0.302371 in [0.292749, 0.312123]."""
+    out = command("verify", write(tmp_path, coin()), "--scheduler", "uniform", "--expect", expected).out
+    (line,) = (line for line in out.splitlines() if line.startswith("  expected "))
+    assert line.partition(": ")[2] == said
+
+
+def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, starving(length=3))
+    options = ("--scheduler", "lss", "--epsilon", "0.1", "--seed", "7")
+    out = command("verify", name, *options).out
+    block = r"p: (least|greatest) probability found .* failed\n  by sampled scheduler \d+, which .*\n  ends: .*\n"
+    assert re.match(rf"{block}{block}  [\d,]+ schedulers were tried, \d+\.\d s\n", out)
+    assert "seed 7" in out
+    row = rows(command("verify", name, *options, "--format", "json").out)["p"]
+    for side in ("least", "greatest"):
+        assert row[side]["by"].startswith("sampled scheduler ")
+        assert (row[side]["seed"], sum(row[side]["ends"].values())) == (7, row[side]["traces"])
+    assert row["schedulers"]["tried"] > 100
+
+
+@pytest.mark.parametrize("states", ["deadlock", "timelock", None])
+def test_states_that_are_not_the_initial_ones_are_named(command: Command, tmp_path: Path, states: str | None) -> None:
+    written = coin()
+    written["properties"][0]["expression"]["states"] = {"op": states} if states else op("=", "x", 0)
+    done = command("verify", write(tmp_path, written), "--format", "json")
+    row = rows(done.out)["heads"]
+    assert done.status == 1
+    assert "probability" not in row
+    what = f"`{states}`" if states else "a condition"
+    expected = f'`states` of the filter is {what}, but traces begin in the initial states; write {{"op": "initial"}}'
+    assert row["error"]["message"].startswith(expected)
+
+
+def test_too_many_combinations_are_told(command: Command, tmp_path: Path) -> None:
+    """2^64 of them; Storm would enumerate them, too."""
+    parts = [automaton(f"m{n}", "s t", [edge("s", way("t", x=k), action="a") for k in (0, 1)]) for n in range(64)]
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+    for number, part in enumerate(parts[1:], 1):
+        part["edges"] = [edge("s", way("t", **{f"y{number}": k}), action="a") for k in (0, 1)]
+    variables = [variable("x"), *(variable(f"y{n}") for n in range(1, 64))]
+    written = document(*parts, variables=variables, syncs=[["a"] * 64], properties=goals)
+    done = command("verify", write(tmp_path, written), "--exact")
+    assert (done.status, done.out) == (2, "")
+    assert "in one state there are more than 1,048,576 combinations of edges; leave --exact out to estimate" in done.err
 
 
 @pytest.mark.parametrize("way_of_saying", ["configuration", "option"])
@@ -161,7 +272,7 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
 def test_a_model_with_plugins_is_refused(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin(plugins=[{"name": "x"}])))
     assert done.status == 1
-    assert "there is no member of a model called `plugins`" in done.err
+    assert "a model has no member `plugins`" in done.err
     assert done.out == ""
 
 

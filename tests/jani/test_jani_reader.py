@@ -95,7 +95,7 @@ SYNTAX = [
     ("features", "[⟦'edge-priorities'⟧]", "what the feature `edge-priorities` adds to JANI is not read"),
     ("features", "[⟦1⟧]", "a feature is written as a string, not as a number"),
     ("metadata", "⟦'me'⟧", "metadata is written as an object `{ }`, not as a string"),
-    ("metadata", "{'⟦autor⟧': 'me'}", "there is no member of metadata called `autor`; did you mean `author`?"),
+    ("metadata", "{'⟦autor⟧': 'me'}", "metadata has no member `autor`; did you mean `author`?"),
     ("metadata", "{'url': ⟦1⟧}", "`url` is written as a string, not as a number"),
     (
         "constants",
@@ -125,7 +125,7 @@ SYNTAX = [
     (
         "guard",
         "{'op': '¬', 'exp': true, '⟦left⟧': true}",
-        "there is no member of `¬` called `left`",
+        "`¬` has no member `left`",
     ),
     ("guard", "⟦{'op': 'deadlock'}⟧", "this can only stand in a property, not in an expression"),
     ("guard", "{'constant': '⟦pi⟧'}", "there is no constant `pi`"),
@@ -145,7 +145,7 @@ SYNTAX = [
     ("assignments", "[{'ref': ⟦{'op': 'aa', 'exp': 1, 'index': 0}⟧, 'value': 1}]", "only a variable or a part of one"),
     ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦1.5⟧}]", "`index` is a whole number"),
     ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` is written as a whole number, not as true"),
-    ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "there is no member of an assignment called `guard`"),
+    ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "an assignment has no member `guard`"),
     ("edges", "[⟦{⟧'location': 'idle'}]", "an edge needs `destinations`"),
     ("syncs", "[{'synchronise': ⟦['go', null]⟧}]", "the vector has 2 entries, but the system has 1 elements"),
     ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action is written as a string, or null, not as a number"),
@@ -162,7 +162,7 @@ SYNTAX = [
     (
         "property",
         "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': true, 'step-bounds': {'⟦uper⟧': 3}}}",
-        "there is no member of an interval called `uper`; did you mean `upper`?",
+        "an interval has no member `uper`; did you mean `upper`?",
     ),
     (
         "property",
@@ -207,7 +207,7 @@ NAMES = [
     (
         "guard",
         "{'op': '=', 'right': 1, 'left': ⟦{'op': 'da', 'exp': 'p', 'member': 'y'}⟧}",
-        "there is no member of `P` called `y`",
+        "`P` has no member `y`",
     ),
     (
         "guard",
@@ -477,7 +477,7 @@ def test_what_may_have_a_meaning_that_is_not_known_is_an_error(what: str, part: 
         if is_harmless:
             assert not findings
         else:
-            assert [finding.message for finding in findings] == [f"there is no member of {what} called `plugins`"]
+            assert [finding.message for finding in findings] == [f"{what} has no member `plugins`"]
             assert findings[0].severity is None
 
 
@@ -515,7 +515,7 @@ def test_what_is_readable_is_read() -> None:
     assert [(finding.message, text[slice(*finding.span)]) for finding in findings] == [
         ("`<` needs `right`", "{"),
         ("a property needs `expression` and `name`", "{"),
-        ("there is no member of a property called `na`", "na"),
+        ("a property has no member `na`", "na"),
     ]
     expected = Binary(BinaryOperator.AND, Missing(), Binary(BinaryOperator.LESS, Name("x"), Missing()))
     assert properties[0].expression == expected

@@ -36,6 +36,21 @@ async def test_same_as_the_command_line(tmp_path: Path) -> None:
         assert told(client) == [(types.MessageType.Info, f"Wrote main.jani: {size}.")]
 
 
+async def test_a_property_that_is_left_out_is_told(tmp_path: Path) -> None:
+    clock.write(tmp_path)
+    written = json.loads((tmp_path / "properties.jani").read_text())
+    written["properties"][0]["expression"]["values"]["exp"]["time-bounds"] = {"upper": 3}
+    (tmp_path / "properties.jani").write_text(json.dumps(written))
+    name = written["properties"][0]["name"]
+    async with connect(tmp_path) as client:
+        await translate(client, (tmp_path / "main.xml").as_uri())
+        (kind, text), _ = told(client)
+    assert kind is types.MessageType.Warning
+    assert text.startswith(f"the property `{name}` is left out of the JANI file: bounds on the time ")
+    assert text.endswith(" [ignored-bounds]")
+    assert json.loads((tmp_path / "main.jani").read_text())["properties"] == []
+
+
 async def test_what_stands_in_the_editor_is_translated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     main, output = (tmp_path / "main.xml").as_uri(), tmp_path / "elsewhere.jani"

@@ -324,6 +324,14 @@ async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) ->
         told = [message for message in client.messages if message.type is types.MessageType.Warning]
         assert [message.message for message in told] == [known["text"]]
         assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in known["text"]
+        assert known["text"].startswith("probability of getting stuck: ")
+        assert known["text"].splitlines()[-2].endswith(" [answer-needs-time]")
+        assert known["text"].endswith("\nnodes of the behavior tree: bt_1002 is Fetch (tree.xml:5)")
+        assert "traces got stuck and say nothing about the property, so its value is doubtful" in result["warning"]
+        (own,) = (message.message for message in client.messages if message.message.startswith("delivered: "))
+        assert own.splitlines()[1].endswith(
+            "so its value is doubtful; who waits for whom is shown in a message of its own"
+        )
         # At the property and at the system.
         assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))
         assert "Show counterexample" in await lenses(client, properties)

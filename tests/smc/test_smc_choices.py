@@ -86,7 +86,7 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     assert found.differ
     assert found.minimum is not None
     assert (found.minimum.value, found.minimum.found) == (0, SAMPLING)
-    assert found.minimum.scheduler == "scheduler 1 that makes worker wait" or "busy" in found.minimum.scheduler
+    assert found.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert found.minimum.bounds.upper < 0.2
     assert found.maximum is not None
     assert (found.maximum.value, found.maximum.found) == (1, UNIFORM)
@@ -111,10 +111,12 @@ def test_rewards_are_not_sampled() -> None:
 
 def test_described() -> None:
     names = ["one", "two"]
-    assert described(7, names) == "scheduler 7"
-    assert described(MEMORY | 3, names) == "scheduler 3 with memory"
-    assert described(STARVE | (1 << 32) | 2, names) == "scheduler 2 that makes two wait"
-    assert described(FAVOUR | 1, names) == "scheduler 1 that prefers one"
+    assert described(7, names) == "sampled scheduler 7, which decides by the state alone"
+    assert described(MEMORY | 3, names) == "sampled scheduler 3, which decides by the state and what was done last"
+    assert described(STARVE | (1 << 32) | 2, names) == (
+        "sampled scheduler 2, which lets `two` act only where nothing else can act"
+    )
+    assert described(FAVOUR | 1, names) == "sampled scheduler 1, which lets `one` act wherever it can"
     some = candidates(2, each=1, memoryless=2, memory=2)
     assert len(set(some)) == len(some) == 2 + 4 + 2
 

@@ -12,7 +12,9 @@ from smc_models import Json, answers, automaton, document, edge, model, op, prob
 
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
+from roaml.smc.explore import Explorer, TooManyChoicesError
 from roaml.smc.model import Checker
+from roaml.smc.solve import solve
 from roaml.smc.statistics import clopper_pearson
 from twin import difference
 
@@ -134,3 +136,46 @@ def test_a_scheduler_is_a_function_of_the_state() -> None:
 def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Random, scheduler: int) -> None:
     checker = Checker(model(wide_network(random, count)))
     assert difference(checker, checker.asked[0], 7, 3, 20, scheduler) == ""
+
+
+# ------------------------------------------------------------------ states, where they are looked at one by one
+
+
+@pytest.mark.parametrize(("count", "edges"), [(21, 2), (64, 2), (1100, 3)])
+def test_combinations_are_counted_before_they_are_enumerated(count: int, edges: int) -> None:
+    checker = Checker(model(wide(count, edges)))
+    explorer = Explorer(checker.compiled(checker.asked[0]))
+    with pytest.raises(TooManyChoicesError):
+        next(explorer.choices(explorer.initial))
+    with pytest.raises(TooManyChoicesError):
+        explorer.reachable(10)
+
+
+def test_combinations_of_destinations_are_counted_as_well() -> None:
+    """One choice with 2^64 successors."""
+    parts = [automaton(f"m{n}", "s t", [edge("s", way("s", 0.5), way("t", 0.5), action="a")]) for n in range(64)]
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+    written = document(*parts, variables=[variable("x")], syncs=[["a"] * 64], properties=goals)
+    checker = Checker(model(written))
+    explorer = Explorer(checker.compiled(checker.asked[0]))
+    with pytest.raises(TooManyChoicesError):
+        explorer.reachable(10)
+
+
+def test_choices_that_differ_in_nothing_are_one_that_counts_often() -> None:
+    """Edges without effect: 2^62 combinations of them, and one successor."""
+    parts = [automaton("a", "s t", [edge("s", way("t", x=1), action="a")])]
+    parts += [automaton(f"m{n}", "s", [edge("s", "s", action="a"), edge("s", "s", action="a")]) for n in range(62)]
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+    written = document(*parts, variables=[variable("x")], syncs=[["a"] * 63], properties=goals)
+    checker = Checker(model(written))
+    explorer = Explorer(checker.compiled(checker.asked[0]))
+    ((times, branches),) = explorer.choices(explorer.initial)
+    assert (times, len(branches)) == (2**62, 1)
+    assert len(explorer.reachable(10)) == 2
+
+
+def test_agreement_is_not_looked_for_among_too_many_combinations() -> None:
+    for written in (wide(64, 2), wide(1100, 2)):
+        checker = Checker(model(written))
+        assert solve(checker.compiled(checker.asked[0])) is None

@@ -10,8 +10,10 @@ import pytest
 from as2fm_lsp.verification import stuck
 from as2fm_lsp.verification.subject import of_system
 from roaml import api
+from roaml.rules import BY_CODE
 from roaml.smc.run import Options
 from roaml.views.event_words import said
+from roaml.views.waiting import NEEDS_TIME
 from stuck_models import hospital, system
 
 HALTED = '<bt_halt target="{0}"><bt_return_halted /></bt_halt>'
@@ -29,7 +31,8 @@ def told(folder: Path, files: dict[str, str]) -> str:
         return f"{Path(path).name}:{line}"
 
     lines = stuck.as_text(look, place_of).splitlines()[2:]
-    return "".join(f"{line.strip()}\n" for line in lines)
+    # The rule stands on a line of its own here, which would be too long otherwise.
+    return "".join(f"{line.strip()}\n" for line in lines).replace(" [", "\n[")
 
 
 def test_a_plugin_waits_for_a_service_that_waits_for_time(tmp_path: Path) -> None:
@@ -37,10 +40,11 @@ def test_a_plugin_waits_for_a_service_that_waits_for_time(tmp_path: Path) -> Non
         told(tmp_path, hospital())
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Fetch (bt_1002) to answer its tick (tree.xml:3)
+the tree waits for Fetch (bt_1002) to answer its tick (tree.xml:5)
 Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
 Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock goes on (pharmacy.ascxml:8)
-a tick must be answered before time goes on: let Fetch (bt_1002) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time goes on: let Fetch (bt_1002) answer RUNNING, and the result at a later tick
+[answer-needs-time]
 """
     )
 
@@ -88,7 +92,8 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Move (bt_1001) to answer its tick (tree.xml:3)
 Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
 Arm waits in `busy` for its timer `step`, which ticks when the clock goes on (Arm.ascxml:11)
-a tick must be answered before time goes on: let Move (bt_1001) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time goes on: let Move (bt_1001) answer RUNNING, and the result at a later tick
+[answer-needs-time]
 """
     )
 
@@ -131,7 +136,8 @@ the tree waits for Ask (bt_1002) to answer its tick (tree.xml:3)
 Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
 Publisher waits in `s` for its timer `t`, which ticks when the clock goes on (Publisher.ascxml:5)
-a tick must be answered before time goes on: let Ask (bt_1002) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time goes on: let Ask (bt_1002) answer RUNNING, and the result at a later tick
+[answer-needs-time]
 """
     )
 
@@ -196,7 +202,8 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
         "the tree waits for Slow (bt_1002) to answer its halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock goes on (Server.ascxml:5)",
-        "a halt must be answered before time goes on: let Slow (bt_1002) answer it at once",
+        "help: a halt must be answered before time goes on: let Slow (bt_1002) answer it at once",
+        "[answer-needs-time]",
     ]
 
 
@@ -240,3 +247,39 @@ def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
 )
 def test_events_in_words(event: str, words: str) -> None:
     assert said(event, "Fetch", {"Fetch"}) == words
+
+
+def test_the_rule_that_is_named_exists() -> None:
+    assert NEEDS_TIME in BY_CODE
+
+
+NODES = """\
+<Sequence>
+<Fallback>
+<AlwaysFailure />
+<Fetch
+/>
+</Fallback>
+<Inverter><Fetch /></Inverter>
+</Sequence>"""
+
+
+def test_the_tree_waits_at_the_line_of_the_node_that_is_ticked(tmp_path: Path) -> None:
+    """Behind inner nodes, and not that of another node of the same name."""
+    found = told(tmp_path, system({"Fetch": ASK, "Server": SERVER, "Publisher": PUBLISHER}, NODES)).splitlines()
+    assert found[:2] == [
+        "the clock waits at 2 s for the tree to take its next tick (tree.xml:3)",
+        "the tree waits for Fetch (bt_1003) to answer its tick (tree.xml:6)",
+    ]
+
+
+def test_no_rule_is_named_where_none_finds_it(tmp_path: Path) -> None:
+    """The server never responds, whatever the time is."""
+    deaf = """free
+<ros_service_server name="s" service_name="/s" type="std_srvs/Empty" />
+<state id="free"><ros_service_handle_request name="s" target="done" /></state>
+<state id="done"><transition cond="false" target="free"><ros_service_send_response name="s" /></transition></state>
+"""
+    last = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()[-1]
+    assert last.startswith("help: ")
+    assert last.endswith("at a later tick")

@@ -94,7 +94,7 @@ export interface Verified {
         /** Whether uniform choices meet it, and it is not known whether all schedulers do. */
         readonly under_uniform_choices_only?: boolean;
     }[];
-    /** What the number is not, if the property asks for a minimum or maximum. */
+    /** Why the number is doubtful (traces got stuck), or not the minimum or maximum that the property asks for. */
     readonly warning?: string;
     /** Whether there is a trace that speaks against what is expected. */
     readonly counterexample?: boolean;

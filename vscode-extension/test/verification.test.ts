@@ -65,6 +65,12 @@ test("what only uniform choices are known to meet has passed, and how is told", 
     });
 });
 
+test("a warning is told of what has failed as well", () => {
+    const warning = "all 200 traces got stuck and say nothing about the property";
+    const failed = outcomeOf({ ...ROW, expectations: [MISSED], warning });
+    assert.ok(failed.kind === "failed" && failed.warning === warning);
+});
+
 test("what goes wrong is an error, not a failure", () => {
     const message = "a division by zero";
     assert.deepEqual(outcomeOf({ property: "alarm", error: { message } }), { kind: "errored", message });

@@ -18,7 +18,7 @@ from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml import api
-from roaml.diagnostics import Severity
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import SEVERITIES, ament_prefixes
 from roaml.rules import BY_CODE
@@ -27,7 +27,7 @@ from roaml.rules.files import internal_error
 _CRASH = internal_error.RULE.code
 
 CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
-"""Exit statuses: nothing found; errors found; wrong use; a failure of our own."""
+"""Exit statuses: nothing found; errors found; usage error; internal error."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -68,6 +68,8 @@ def run(options: argparse.Namespace) -> int:
     lowest = SEVERITIES[options.severity]
     failed = any(d.code == _CRASH for d in result.diagnostics)
     shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]
+    if options.fix and (more := _unsafe(shown)):
+        complain(more)
     entries = [entry(d, result.source, shown_path) for d in shown]
     if options.baseline is not None:
         try:
@@ -86,6 +88,17 @@ def run(options: argparse.Namespace) -> int:
     if failed:
         return FAILURE
     return FOUND if any(e.diagnostic.severity >= report.limit for e in entries) else CLEAN
+
+
+def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
+    """Which findings have fixes that are made only by somebody who looks at them; "" if none has."""
+    counts = Counter(each.code for each in diagnostics if each.fixes and not any(f.safe for f in each.fixes))
+    if not counts:
+        return ""
+    total = sum(counts.values())
+    have = "finding has a fix that is" if total == 1 else "findings have fixes that are"
+    names = ", ".join(f"{code} ({count})" if count > 1 else code for code, count in sorted(counts.items()))
+    return f"{total} more {have} not safe to make without a look; an editor offers them: {names}"
 
 
 def _write(options: argparse.Namespace, report: Report) -> None:

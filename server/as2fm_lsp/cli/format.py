@@ -70,7 +70,7 @@ def parser() -> ArgumentParser:
         "space is changed, so never what a file means. Plain SCXML, JANI models and files of other tools are laid out "
         "only if they are named.",
         epilog="exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not "
-        "well-formed, 2 wrong use",
+        "well-formed, 2 usage error",
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
     mode = result.add_mutually_exclusive_group()

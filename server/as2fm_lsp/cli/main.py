@@ -26,16 +26,16 @@ examples:
   as2fm-lsp --check main.xml              check a system and all of its files
   as2fm-lsp --check models --ros-path msgs --format github
   as2fm-lsp --check . --warnings-as-errors --baseline .as2fm-baseline.json
-  as2fm-lsp --check models --fix          mend what can be mended safely, tell the rest
+  as2fm-lsp --check models --fix          make all safe fixes, report the rest
   as2fm-lsp --explain late-event-data     what a rule means
   as2fm-lsp init my_robot                 write a small working system
-  as2fm-lsp format models --check         lay files out, or tell which ones are not
+  as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
-  as2fm-lsp translate main.xml            write main.jani; translate --help tells more
-  as2fm-lsp verify main.xml               how probable its properties are; verify --help tells more
+  as2fm-lsp translate main.xml            write main.jani; see translate --help
+  as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
   as2fm-lsp                               language server on standard input and output
 
-exit status: 0 nothing found, 1 errors found, 2 wrong use, 3 a failure of the tool itself
+exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
 """
 
 
@@ -72,7 +72,7 @@ def _failed(error: Exception) -> int:
         complain(f"{STANDARD_OUTPUT}: {error.strerror or error}")
         return USAGE
     print_text("".join(traceback.format_exception(error)), stream=sys.stderr)
-    complain("this is a mistake of the tool itself; please report it")
+    complain("internal error; please report it")
     return FAILURE
 
 
@@ -134,34 +134,38 @@ def parser() -> ArgumentParser:
     result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
     result.add_argument("--explain", metavar="CODE", help="print what a rule means and exit")
     serve = result.add_argument_group("serving an editor")
-    serve.add_argument("--stdio", action="store_true", help="serve on standard input and output, as without it")
+    serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
     serve.add_argument(
         "--tcp",
         metavar="HOST:PORT",
-        help="serve one editor on a port of this machine (0: any) instead; it must send the token that is printed, or "
+        help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
         "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
     )
     serve.add_argument("--allow-remote", action="store_true", help="with --tcp: let other machines connect, too")
     serve.add_argument(
-        "--socket", metavar="FILE", help="serve one editor on a socket file instead, which only you can connect to"
+        "--socket", metavar="FILE", help="serve one editor on a socket file to which only you can connect"
     )
     check = result.add_argument_group("checking")
     check.add_argument("--check", action="store_true", help="check files and exit")
-    check.add_argument("--fix", action="store_true", help="make all safe fixes first: none guesses or changes a model")
+    check.add_argument(
+        "--fix",
+        action="store_true",
+        help="make all safe fixes first: those that guess nothing and do not change what a model does",
+    )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
     formats = ("text", "json", "github", "gitlab", "sarif", "junit")
-    check.add_argument("--format", default="text", choices=formats, help="how diagnostics are written")
-    check.add_argument("--output", metavar="FILE", help="write there instead of standard output")
+    check.add_argument("--format", default="text", choices=formats, help="format of the diagnostics")
+    check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
     )
     check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report these rules only")
     check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
     check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the least severity to report")
-    check.add_argument("--warnings-as-errors", action="store_true", help="exit with status 1 on warnings, too")
+    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings, too")
     check.add_argument("--statistics", action="store_true", help="count how often each rule is broken")
     check.add_argument(
-        "--baseline", metavar="FILE", help="do not report what this file knows; written if it is missing"
+        "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
     )
     check.add_argument("--stdin-filename", metavar="FILE", help="read the text of FILE from standard input")
     return result

@@ -47,7 +47,7 @@ def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp migrate",
         description="Move systems of an older dialect to the current one, keeping comments and layout.",
-        epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 wrong use",
+        epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 usage error",
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
     result.add_argument("--diff", action="store_true", help="show what would change and write nothing")

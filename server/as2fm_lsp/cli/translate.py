@@ -7,7 +7,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from as2fm_lsp.cli.arguments import ArgumentParser
@@ -17,9 +17,10 @@ from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.progress import Progress
 from as2fm_lsp.cli.times import time_of
-from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
+from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
 from as2fm_lsp.write import write_file
 from roaml import api
+from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.model.system_file import Overrides
@@ -27,6 +28,7 @@ from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.scxml.model import Network
 from roaml.scxml.writer import write as scxml_texts
+from roaml.text import SourceFile
 from roaml.views import NOTATIONS, Notation, machine_graph, network_graph, tree_graph
 
 STANDARD_OUTPUT = "-"
@@ -38,7 +40,8 @@ examples:
   as2fm-lsp translate main.xml --property tree_success --max-time "20 s"
   as2fm-lsp translate main.xml --scxml-dir scxml --map main.map.json --dot diagrams
 
-exit status: 0 translated, 1 the system has errors and nothing was written, 2 wrong use, 3 a failure of the tool itself
+exit status: 0 translated; 1 the system has errors, or a property that was named cannot be translated, and nothing was
+written; 2 usage error; 3 internal error
 """
 
 
@@ -61,9 +64,11 @@ def run(arguments: Sequence[str]) -> int:
                     keep_off(path, system)
             progress.stage("translating")
             network = api.to_scxml(system)
-            model = api.to_jani(system, options.property or None)
-            progress.stage("writing")
-            _write(options, output, system, network, model)
+            model, left_out = without_bounded(api.to_jani(system, options.property or None))
+            is_refused = bool(left_out and options.property)
+            if not is_refused:
+                progress.stage("writing")
+                _write(options, output, system, network, model)
         except (api.PathError, api.PropertyError, OutputError) as error:
             return _fail(str(error))
         except api.ModelError as error:
@@ -75,11 +80,16 @@ def run(arguments: Sequence[str]) -> int:
         else:
             failure = None
     if failure is not None:
-        _report(options.format, failure.result, output)
-        return FOUND
-    if options.format == "json" and STANDARD_OUTPUT not in (output, options.map):
-        print_text("[]\n")
-    elif output != STANDARD_OUTPUT:
+        result = failure.result
+        _report(options, _reported(result.diagnostics, result.source, result.files))
+        return _not_written(options, output)
+    report = _reported(left_out, lambda path: _source(system, path), system.files)
+    if is_refused:  # What was named cannot be translated.
+        _report(options, report)
+        return _not_written(options, output)
+    if options.format == "text" or STANDARD_OUTPUT not in (output, options.map):
+        _report(options, report)
+    if options.format == "text" and output != STANDARD_OUTPUT:
         told = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
         print_text(f"{shown_path(output)}: {summary(model)}\n", stream=told)
     return CLEAN
@@ -93,24 +103,24 @@ def parser() -> ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("main", metavar="MAIN.xml", help="the system file")
+    result.add_argument("-o", "--output", metavar="FILE", help="the JANI file (MAIN.jani); - for standard output")
+    result.add_argument("--indent", type=_count, metavar="N", help="indent the JANI file by N spaces (one line)")
     result.add_argument(
-        "-o", "--output", metavar="FILE", help="the JANI file; MAIN.jani if not given, - for standard output"
+        "--map", metavar="FILE", help="write the place in the models of each automaton, edge and variable"
     )
-    result.add_argument("--indent", type=_count, metavar="N", help="lay the JANI file out for people")
-    result.add_argument("--map", metavar="FILE", help="write where every automaton, edge and variable comes from")
     result.add_argument("--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton")
     for notation in NOTATIONS.values():
         help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
         result.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
     result.add_argument(
-        "--property", action="append", default=[], metavar="NAME", help="put only this property into the JANI file"
+        "--property", action="append", default=[], metavar="NAME", help="translate only this property; may be repeated"
     )
-    result.add_argument("--max-array-size", type=_size, metavar="N", help="in place of that in MAIN.xml")
+    result.add_argument("--max-array-size", type=_size, metavar="N", help="overrides <max_array_size> of MAIN.xml")
     result.add_argument(
-        "--max-time", type=time_of, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"'
+        "--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"'
     )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
-    result.add_argument("--format", default="text", choices=("text", "json"), help="how errors are written")
+    result.add_argument("--format", default="text", choices=("text", "json"), help="format of the diagnostics")
     return result
 
 
@@ -172,15 +182,31 @@ def _write_text(path: str, chunks: Iterable[str]) -> None:
         print_text(chunk, encoding="utf-8")
 
 
-def _report(format_: str, result: api.CheckResult, output: str) -> None:
-    """The errors, as `--check` writes them: for people where they look, for programs on standard output."""
-    entries = [entry(diagnostic, result.source, shown_path) for diagnostic in result.diagnostics]
-    report = Report(entries, len(result.files), color=takes_color(sys.stderr))
-    if format_ == "json":
+def _source(system: api.LoadedSystem, path: str) -> SourceFile:
+    source = system.analysis.source(path)
+    assert source is not None
+    return source
+
+
+def _reported(
+    diagnostics: Sequence[Diagnostic], source_of: Callable[[str], SourceFile], files: Sequence[str]
+) -> Report:
+    entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
+    return Report(entries, len(files), color=takes_color(sys.stderr))
+
+
+def _report(options: argparse.Namespace, report: Report) -> None:
+    """The diagnostics, as `--check` writes them: for people where they look, for programs on standard output."""
+    if options.format == "json":
         print_text(FORMATS["json"](report), "utf-8")
-    else:
+    elif report.entries:
         print_text(FORMATS["text"](report), stream=sys.stderr)
+
+
+def _not_written(options: argparse.Namespace, output: str) -> int:
+    if options.format == "text":
         complain(f"{shown_path(output)} was not written")
+    return FOUND
 
 
 def _fail(message: str) -> int:

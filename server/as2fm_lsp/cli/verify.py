@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
@@ -25,9 +25,10 @@ from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck
 from as2fm_lsp.verification.bar import Bar
 from as2fm_lsp.verification.choices import asks_for_minimum, under_all_schedulers
-from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge, parse
+from as2fm_lsp.verification.expectations import Expectation, RangeError, Verdict, check_range, judge, parse
+from as2fm_lsp.verification.nodes import explained
 from as2fm_lsp.verification.refusal import refusal
-from as2fm_lsp.verification.report import Result, as_json, as_junit, as_text
+from as2fm_lsp.verification.report import Found, Result, as_json, as_junit, as_text
 from as2fm_lsp.verification.state import State, StateError
 from as2fm_lsp.verification.subject import ConstantError, Subject, load
 from as2fm_lsp.write import write_file
@@ -39,30 +40,34 @@ from roaml.project.settings import ament_prefixes
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
+from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
 from roaml.smc.run import ADAPTIVE, LEAST_EPSILON, METHODS, SPRT, Answer, Options, Tally, summary
 from roaml.text import Location, SourceFile, Span
 
+if TYPE_CHECKING:
+    from roaml.smc.story import Story
+
 EXAMPLES = """\
 examples:
-  as2fm-lsp verify main.xml                              all properties, with 95 percent confidence to 0.01
+  as2fm-lsp verify main.xml                              all properties, to 0.01 with 95 percent confidence
   as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
-  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability, by sampling schedulers
-  as2fm-lsp verify main.xml --property stuck --explain   does time stand still, and who waits for whom then?
-  as2fm-lsp verify main.xml --exact                      the same by Storm, if there are few states
+  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
+  as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
+  as2fm-lsp verify main.xml --exact                      exact minimum and maximum by Storm, if there are few states
 
-A trace resolves nondeterminism at random: at each step, each edge without action and each combination of edges of a
-synchronisation is one choice, and all enabled choices are equally probable. It ends where nothing is enabled or no
-choice changes anything; then F and U are false, G and W true. Why it ended is counted. Traces in which everybody waits
-for somebody else are stuck, which is told with an example; --property stuck asks how probable that is.
+In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
+combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
+where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result counts the
+reasons why traces have ended. A trace is stuck if its automata wait for one another, so that time stands still; a
+warning with an example says so.
 
-exit status: 0 all expectations are met, 1 one is not, the model has errors or gets stuck (--stuck
-error), 2 wrong use, 3 a failure of the tool
-itself, 130 interrupted
+exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
+stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
@@ -199,7 +204,7 @@ class _Verification:
         if self.options.exact:
             return self._exact(asked, began)
         if self.limits.method == SPRT and (asked.question.threshold is None or asked.question.is_reward):
-            raise UsageError(f"{name} is compared with no number, which a sequential test needs; use --expect")
+            raise UsageError(f"{name} is not compared with a number, which a sequential test needs; use --expect")
         tally = Tally()
         payload = self.checker.payload(asked)
         if self.state is not None:
@@ -213,21 +218,13 @@ class _Verification:
             if self.state is not None:
                 self.state.keep(name, payload, found)
 
+        if self.options.scheduler == "lss":
+            return self._search(asked, pool, bar, began)
         try:
-            if self.options.scheduler == "lss":
-                extremes = self.checker.extremes(asked, self.limits, pool, pulse=bar.pulse)
-                found = [self._stuck(asked, extremes.least, extremes.least_by)]
-                found.append(self._stuck(asked, extremes.greatest, extremes.greatest_by))
-                of_side = extremes.least if asks_for_minimum(asked.question) else extremes.greatest
-                verdicts = tuple(judge(each, of_side) for each in self._expected(asked))
-                took = time.monotonic() - began
-                return Result(name, None, verdicts, took, extremes=extremes, stuck=stuck.shortest(found))
             answer = self.checker.answer(asked, self.limits, pool, tally, watch, bar.pulse)
             if not self.is_uniform and not asked.question.is_stuck:
                 choices = self.checker.choices(asked, answer, pool, bar.pulse)
         except KeyboardInterrupt:
-            if self.options.scheduler == "lss":
-                raise
             interrupted = True
             answer = summary(asked.question, self.limits, tally)
             if not self.is_uniform:
@@ -238,6 +235,34 @@ class _Verification:
         took = time.monotonic() - began
         stuck_traces = self._stuck(asked, answer)
         return Result(name, answer, verdicts, took, interrupted, stuck=stuck_traces, choices=choices)
+
+    def _search(self, asked: Asked, pool: Pool, bar: Bar, began: float) -> Result:
+        """The least and the greatest probability that sampled schedulers achieve; as much as is known if that is
+        interrupted."""
+        search, interrupted = Search(), False
+        try:
+            self.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
+        except KeyboardInterrupt:
+            interrupted = True
+        found = []
+        for side, (scheduler, tally) in search.found.items():
+            if tally.traces:
+                answer = summary(asked.question, sampling_options(self.limits), tally)
+                words = described(scheduler, self.checker.automata)
+                found.append(Found(side, answer, scheduler, words, self._stuck(asked, answer, scheduler)))
+        side = LEAST if asks_for_minimum(asked.question) else GREATEST
+        own = next((each for each in found if each.side == side), None)
+        verdicts = [
+            Verdict(each, False, False, under="so far") if own is None else judge(each, own.answer)
+            for each in self._expected(asked)
+        ]
+        if own is not None:
+            verdicts = [each if each.is_met else replace(each, under=f"under {own.words}") for each in verdicts]
+        took = time.monotonic() - began
+        example = stuck.shortest([each.stuck for each in found])
+        return Result(
+            asked.question.name, None, tuple(verdicts), took, interrupted, tuple(found), search.tried, example
+        )
 
     def _stuck(self, asked: Asked, answer: Answer, scheduler: int = 0) -> stuck.Stuck | None:
         return stuck.stuck_in(self.subject, self.checker, asked, answer, scheduler)
@@ -257,7 +282,7 @@ class _Verification:
             found = exactly(self.checker, asked, self.options.max_states)
         except ExactError as error:
             raise UsageError(f"{asked.question.name}: {error}") from None
-        verdicts = tuple(judged(each, found) for each in self._expected(asked))
+        verdicts = tuple(judged(each, found, asked.question) for each in self._expected(asked))
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=found)
 
     def _print(self) -> None:
@@ -270,15 +295,34 @@ class _Verification:
             entries = [_row(each) for each in self._fault_entries()]
             row = None if self.look is None else stuck.as_row(self.look, self._place_row)
             return as_json(self.results, entries, stuck=row)
-        about_stuck = "" if self.look is None else stuck.as_text(self.look, self._place)
         if self.options.format == "junit":
-            return as_junit(self.results, shown_path(self.options.main), self.look, about_stuck)
-        note = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+            return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
+        # A story of a stuck trace ends with who waits for whom.
+        is_told = STANDARD_OUTPUT in self.options.explain and any(each.answer for each in self.results)
+        is_told = is_told and not any(each.is_interrupted for each in self.results)
+        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
+        if self.look is not None:
+            text += stuck.as_text(self.look, self._place, self._where_shown(is_told))
+        return f"{text}{'' if is_told else explained(text, self.subject.model, self._place)}{self._assumptions()}\n"
+
+    def _where_shown(self, is_told: bool) -> str:
+        """Where it was shown who waits for whom, as in the example that is known of getting stuck; "" if nowhere."""
+        if self.look is None or self.look.stuck is None:
+            return ""
+        same = [each for each in self.results if each.stuck and each.stuck.chain == self.look.stuck.chain]
+        if same and is_told:
+            return "in the trace below"
+        named = next((each.name for each in same if not each.asks_stuck), None)
+        return "" if named is None else f"above, beneath `{named}`"
+
+    def _assumptions(self) -> str:
+        """What holds for all results, in one line."""
         if self.options.exact:
-            note = "computed by Storm over all ways to resolve nondeterminism"
-        elif self.options.scheduler == "lss":
-            note = f"{self.limits.confidence:g} confidence for each scheduler found; there may be better ones"
-        return as_text(self.results, "") + about_stuck + f"{note}\n"
+            return "computed by Storm over all ways to resolve nondeterminism"
+        if self.options.scheduler == "lss":
+            how = f"with each scheduler found; others may reach farther; seed {self.limits.seed}"
+            return f"{self.limits.confidence:g} confidence {how}"
+        return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
 
     def _place(self, origin: Location) -> str:
         path, line, _ = self.subject.place(origin) or ("", 0, 0)
@@ -306,11 +350,13 @@ class _Verification:
         from as2fm_lsp.verification.counterexample import speaking_against, wanted_verdict  # noqa: PLC0415
         from as2fm_lsp.verification.traces import write_traces  # noqa: PLC0415
         from roaml.smc.record import Recorder  # noqa: PLC0415
-        from roaml.smc.story import Story, tell  # noqa: PLC0415
+        from roaml.smc.story import tell  # noqa: PLC0415
 
         stories: list[Story] = []
         for result in self.results:
             if result.answer is None:
+                if result.found and (self.options.explain or self.options.traces is not None):
+                    complain(f"{result.name}: traces of sampled schedulers are neither explained nor written")
                 continue
             recorder = Recorder(self.checker, asked[result.name], self.limits.seed, self.limits.max_steps)
             if self.options.traces is not None:
@@ -325,16 +371,29 @@ class _Verification:
         for target in self.options.explain:
             self._write_stories(stories, target)
 
-    def _write_stories(self, stories: Sequence[Any], target: str) -> None:
-        from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
+    def _story_texts(self, stories: Sequence[Story]) -> str:
+        """The stories, one after the other; what several have in common is said once."""
         from roaml.views.story import as_text as story_text  # noqa: PLC0415
+        from roaml.views.story import waits_of  # noqa: PLC0415
+
+        texts: list[str] = []
+        shown_at: dict[object, str] = {}
+        for story in stories:
+            chain = stuck.chain_of(waits_of(story))
+            texts.append(story_text(story, self._place, shown_at.get(chain, "") if chain else ""))
+            shown_at.setdefault(chain, f"above, at the end of the trace of `{story.property}`")
+        text = "\n".join(texts)
+        return text + explained(text, self.subject.model, self._place)
+
+    def _write_stories(self, stories: Sequence[Story], target: str) -> None:
+        from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
 
         if target.endswith(".html"):
             text = as_html(stories, self._place, shown_path(self.options.main))
         elif target.endswith(".mmd"):
             text = "\n".join(as_mermaid(story, self._place) for story in stories)
         else:
-            text = "\n".join(story_text(story, self._place) for story in stories)
+            text = self._story_texts(stories)
         if target == STANDARD_OUTPUT:
             # Programs read standard output; the story is for people.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
@@ -363,42 +422,64 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp verify",
-        description="Estimate by random traces how probable the properties of a system or JANI model are.",
+        description="Estimate the probabilities of the properties of a system or JANI model by random traces.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("main", metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
     add = result.add_argument
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
-    add("--expect", action="append", default=[], metavar="'NAME >= P'", help="exit with 1 unless it is so")
-    add("--confidence", type=_share, default=0.95, metavar="C", help="that the true value is in the interval (0.95)")
-    add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); of an "
-        "expected reward in parts of its value")  # fmt: skip
-    add("--method", choices=METHODS, default=ADAPTIVE, help="adaptive: until the interval is narrow enough; okamoto: a "
-        "fixed number of traces; sprt: until a threshold is decided; fixed: --max-traces traces")  # fmt: skip
-    add("--max-traces", type=_positive, metavar="N", help="no more traces than that")
-    add("--max-steps", type=_positive, default=1_000_000, metavar="N", help="traces that are not decided after so many "
-        "steps stay undecided (1000000)")  # fmt: skip
-    add("--seed", type=_natural, default=0, metavar="N", help="other traces for another number (0)")
-    add("--jobs", type=_positive, default=_processors(), metavar="N", help="processes; no influence on results")
-    add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: at random, or by schedulers "
-        "that make the probability small or great; unless said, at random, and whether it matters is looked "
-        "into")  # fmt: skip
-    add("--exact", action="store_true", help="compute the least and greatest probability with Storm (needs stormpy)")
-    add("--max-states", type=_positive, default=200_000, metavar="N", help="with --exact: refuse more states (200000)")
-    add("--max-time", type=time_of, metavar="TIME", help='in place of that in MAIN.xml, such as "100 s"')
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="the value of a constant for which "
-        "MODEL.jani has none; may be repeated")  # fmt: skip
-    add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="what it is that traces get stuck: a warning, or "
-        "an error, with exit status 1")  # fmt: skip
-    add("--resume", metavar="FILE", help="keep what is known in FILE, and go on from it if it is there")
-    add("--traces", metavar="DIR", help="write traces as CSV and JSON")
-    add("--traces-limit", type=_natural, default=10, metavar="N", help="so many of each verdict (10)")
+    add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
+        "property NAME, with >=, <=, >, < or ==, and exit with 1 if it is not met; may be repeated")  # fmt: skip
+    add(
+        "--confidence",
+        type=_share,
+        default=0.95,
+        metavar="C",
+        help="the probability with which the interval contains the true value (0.95)",
+    )
+    add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); for "
+        "an expected reward relative to its value")  # fmt: skip
+    add("--method", choices=METHODS, default=ADAPTIVE, help="how many traces: until the interval is narrow enough "
+        "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
+        "expectation is met (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--max-traces", type=_positive, metavar="N", help="make at most N traces")
+    add("--max-steps", type=_positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
+        "undecided (1000000)")  # fmt: skip
+    add("--seed", type=_natural, default=0, metavar="N", help="seed of the random numbers (0)")
+    add(
+        "--jobs",
+        type=_positive,
+        default=_processors(),
+        metavar="N",
+        help="number of processes (all processors); does not change the results",
+    )
+    add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: uniformly at random, or by "
+        "schedulers that are sampled for the least and the greatest probability; default: uniformly at random, and a "
+        "warning or note says if other schedulers may give another value")  # fmt: skip
+    add("--exact", action="store_true", help="compute the minimum and the maximum exactly with Storm (needs stormpy)")
+    add(
+        "--max-states",
+        type=_positive,
+        default=200_000,
+        metavar="N",
+        help="with --exact: refuse models with more states (200000)",
+    )
+    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example '
+        '"100 s"')  # fmt: skip
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="gives a value to a constant that "
+        "MODEL.jani declares without one; may be repeated")  # fmt: skip
+    add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
+        "warning (default), or as an error with exit status 1")  # fmt: skip
+    add("--resume", metavar="FILE", help="save what is known in FILE, and continue from it if it exists")
+    add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
+    add("--traces-limit", type=_natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
-        help="tell the shortest failing trace, as text or into FILE.txt, FILE.mmd (Mermaid) or FILE.html")  # fmt: skip
+        help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
+        "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
-    add("--format", default="text", choices=("text", "json", "junit"), help="how results are written")
+    add("--format", default="text", choices=("text", "json", "junit"), help="format of the results")
     return result
 
 
@@ -448,7 +529,9 @@ def _natural(text: str) -> int:
 
 def _story_file(text: str) -> str:
     if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
-        raise argparse.ArgumentTypeError(f"'{text}' does not end in .txt, .mmd or .html; MAIN.xml stands first")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' does not end in .txt, .mmd or .html; name MAIN.xml before --explain"
+        )
     return text
 
 

@@ -14,9 +14,10 @@ from pygls.lsp.server import LanguageServer
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress, progress
-from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary
+from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
 from as2fm_lsp.write import write_file
 from roaml import api
+from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
@@ -61,7 +62,7 @@ def register(server: Server) -> None:
         async with progress(server, f"Translating {name}", cancellable=True) as shown:
             try:
                 with server.requests.cancelled_by(shown.token):
-                    model = await _write(server, shown, path, target)
+                    model, left_out = await _write(server, shown, path, target)
             except Interrupted:
                 if shown.is_cancelled:
                     return None
@@ -77,6 +78,8 @@ def register(server: Server) -> None:
             except OSError as error:
                 _tell(server, types.MessageType.Error, f"{target} cannot be written: {error.strerror or error}")
                 return None
+        for each in left_out:
+            _tell(server, types.MessageType.Warning, f"{each.message} [{each.code}]")
         found = summary(model)
         _tell(server, types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
         return {"uri": session.convert.uri(target), "summary": found}
@@ -90,8 +93,11 @@ def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter
         yield types.CodeLens(convert.range(source, file.element.name_span), command)
 
 
-async def _write(server: Server, shown: Progress, path: str, target: str) -> Model:
+async def _write(server: Server, shown: Progress, path: str, target: str) -> tuple[Model, tuple[Diagnostic, ...]]:
     """Translate a system, as it is now, into a file. Between the steps other messages are handled.
+
+    Returns:
+        The model, and what is left out of it.
 
     Raises:
         Interrupted: the client does not want it any more. The file is as it was before.
@@ -101,10 +107,10 @@ async def _write(server: Server, shown: Progress, path: str, target: str) -> Mod
     system = api.loaded(snapshot, path)
     keep_off(target, system)
     await shown.step("translating")
-    model = api.to_jani(system)
+    model, left_out = without_bounded(api.to_jani(system))
     await shown.step("writing")
     write_file(target, _while_wanted(server, chain(jani_text(model), "\n")))
-    return model
+    return model, left_out
 
 
 def _while_wanted(server: Server, pieces: Iterable[str]) -> Iterator[str]:

@@ -12,6 +12,7 @@ import os
 import time
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
@@ -26,7 +27,8 @@ from as2fm_lsp.verification import background, stuck
 from as2fm_lsp.verification.choices import under_all_schedulers
 from as2fm_lsp.verification.counterexample import counterexample, speaking_against
 from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge
-from as2fm_lsp.verification.report import Result, as_text, row
+from as2fm_lsp.verification.nodes import explained
+from as2fm_lsp.verification.report import Result, one_as_text, row
 from as2fm_lsp.verification.subject import Subject, of_system
 from as2fm_lsp.verification.verified import Known, missed, short
 from as2fm_lsp.verification.wishes import Wishes, wishes
@@ -187,7 +189,7 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
-            whole = as_text([known.result], "").strip()
+            whole = one_as_text(known.result, partial(_place_in_words, known.subject))
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
 
 
@@ -268,9 +270,14 @@ class _Run:
             rows.append({**row(result), "short": short(result), "counterexample": speaking_against(result) is not None})
             server.refresh.look()
             if not self.wanted.is_silent:
-                _tell(server, types.MessageType.Info, as_text([result], "").strip())
+                _tell(server, types.MessageType.Info, self.text(result, subject))
         look = None if checker is None else await self.look(subject, system.analysis, checker, results, texts)
         return {"results": rows, "errors": [], "stuck": look}
+
+    def text(self, result: Result, subject: Subject) -> str:
+        """A result as a message; another message shows who waits for whom."""
+        shown = "in a message of its own"
+        return one_as_text(result, partial(_place_in_words, subject), self.wanted.stuck, shown)
 
     def asked(self, subject: Subject, name: str) -> tuple[Checker, Asked]:
         """A property, ready to be answered.
@@ -309,7 +316,9 @@ class _Run:
                 self.server.verified.put(self.path, made)
             self.server.refresh.look()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
-        text = stuck.as_text(known, lambda origin: _place_in_words(subject, origin))
+        place_of = partial(_place_in_words, subject)
+        text = stuck.as_text(known, place_of)
+        text += explained(text, subject.model, place_of)
         if known.stuck is not None and not self.wanted.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
             _tell(self.server, kind, text.strip())

@@ -7,9 +7,11 @@ import math
 import shutil
 import sys
 import time
+from dataclasses import replace
 from types import TracebackType
 
 from roaml.smc.goal import Question
+from roaml.smc.lss import Search
 from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
 
 PAUSE = 0.1
@@ -28,6 +30,7 @@ class Bar:
         self._is_wanted = sys.stderr.isatty()
         self._next = time.monotonic() + PATIENCE
         self._question: Question | None = None
+        self._search: Search | None = None
         self._options = Options()
         self._tally = Tally()
         self._began = time.monotonic()
@@ -45,10 +48,19 @@ class Bar:
         """What is shown from here on."""
         self._question, self._options, self._tally = question, options, tally
         self._began, self._first = time.monotonic(), tally.traces
+        self._search = None
 
     def watch(self, tally: Tally) -> None:
         """A batch has come in."""
         self._tally = tally
+        self._show()
+
+    def search(self, search: Search) -> None:
+        """Schedulers are looked for, or traces are made with one that was found."""
+        self._search = search
+        side = search.found.get(search.side)
+        if side is not None:
+            self._tally = side.tally
         self._show()
 
     def pulse(self, trace: int, steps: int) -> None:
@@ -62,7 +74,10 @@ class Bar:
         self._next = now + PAUSE
         self._is_shown = True
         width = shutil.get_terminal_size().columns - 1
-        text = line(self._question, self._options, self._tally, now - self._began, self._first) + more
+        if self._search is None:
+            text = line(self._question, self._options, self._tally, now - self._began, self._first) + more
+        else:
+            text = search_line(self._question, self._search, self._options)
         sys.stderr.write(_CLEAR + text[:width])
         sys.stderr.flush()
 
@@ -81,6 +96,18 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
     if seconds > 1 and 0 < share < 1 and made:
         text += f"  {_duration(seconds / made * tally.traces * (1 - share) / share)} left"
     return text
+
+
+def search_line(question: Question, search: Search, options: Options) -> str:
+    """The line while schedulers are looked for: the round and the best share so far; then the estimate."""
+    text = f"{question.name}, {search.side} probability"
+    side = search.found.get(search.side)
+    if side is not None and side.tally.traces:
+        return line(replace(question, name=text), options, side.tally, 0)
+    if search.round == 0:
+        return f"{text} …"
+    text += f": round {search.round} of {search.rounds}, {search.done:,} of {search.left:,} schedulers tried"
+    return text if search.best is None else f"{text}, best so far {search.best:.4g}"
 
 
 def progress(question: Question, options: Options, tally: Tally) -> float:

@@ -10,12 +10,13 @@ expected of it, in words and for programs.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 from as2fm_lsp.verification.expectations import Verdict
 from roaml.jani.operators import BinaryOperator
-from roaml.smc.choices import EXPLORATION, SAMPLING, Choices, Extreme
+from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices, Extreme
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 
@@ -30,35 +31,52 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     """
     if choices is None or choices.agreement:
         return verdict
+    if not verdict.is_met:
+        verdict = replace(verdict, under="under uniform choices")
     threshold = verdict.expectation.threshold
     is_minimum = asks_for_minimum(answer.question)
     extreme = choices.minimum if is_minimum else choices.maximum
+    missed = replace(verdict, is_met=False, is_certain=True, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
         if threshold.relation is BinaryOperator.EQUAL:
-            near = abs(extreme.value - threshold.number) <= answer.options.epsilon + 1e-12
-            return replace(verdict, is_met=near, is_certain=True)
-        is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
-        slack = 0.0 if is_strict else _SLACK
-        met = threshold.met(extreme.value + slack) or threshold.met(extreme.value - slack)
-        return replace(verdict, is_met=met, is_certain=True)
+            met = abs(extreme.value - threshold.number) <= answer.options.epsilon + 1e-12
+        else:
+            is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
+            slack = 0.0 if is_strict else _SLACK
+            met = threshold.met(extreme.value + slack) or threshold.met(extreme.value - slack)
+        return replace(verdict, is_met=True, is_certain=True, under="") if met else missed
     if threshold.relation is BinaryOperator.EQUAL:
         width = answer.options.epsilon
         bounds = None if extreme is None else extreme.bounds
         if bounds is not None and not bounds.lower - width <= threshold.number <= bounds.upper + width:
-            return replace(verdict, is_met=False, is_certain=True)
+            return missed
         return replace(verdict, is_uniform=verdict.is_met)
     if threshold.is_lower is is_minimum:
         if extreme is not None and not threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
-            return replace(verdict, is_met=False, is_certain=True)
+            return missed
         return replace(verdict, is_uniform=verdict.is_met)
     if extreme is not None and threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
-        return replace(verdict, is_met=True, is_certain=True)
+        return replace(verdict, is_met=True, is_certain=True, under="")
     return verdict
+
+
+def _missed_by(question: Question, extreme: Extreme | None) -> str:
+    """Where an extreme is found that does not meet what is expected."""
+    if extreme is None or extreme.found == UNIFORM:
+        return "under uniform choices"
+    if extreme.is_exact:
+        return f"by the {_asked(question)} over all schedulers, which is {extreme.value:.6g}"
+    return f"under {extreme.scheduler}: {_interval(extreme)}"
 
 
 def asks_for_minimum(question: Question) -> bool:
     """Whether a property asks for the least value."""
     return question.operator.endswith("min")
+
+
+def may_differ(choices: Choices | None) -> bool:
+    """Whether it is open if other schedulers than the uniform one give another value."""
+    return choices is not None and not choices.agreement and not choices.differ
 
 
 def remark(question: Question, choices: Choices | None) -> str:
@@ -67,21 +85,55 @@ def remark(question: Question, choices: Choices | None) -> str:
         return ""
     if choices.agreement:
         return f"all schedulers agree: {choices.agreement}"
-    extreme = "minimum" if asks_for_minimum(question) else "maximum"
-    head = f"warning: this is the value under uniform choices, and `{question.operator}` asks for the {extreme}"
+    head = "warning: this is the value under uniform choices"
+    head += f", and `{question.operator}` asks for the {_asked(question)}"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
         return f"{head}; schedulers reach from {_reached(least)} to {_reached(greatest)}"
-    if choices.tried:
-        return f"{head}, which may differ; {choices.tried:,} sampled schedulers show no difference"
-    why = "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"
-    return f"{head}, which may differ; {why}"
+    return f"{head}, which may differ; {_looked(question, choices)}"
 
 
 def warning(question: Question, choices: Choices | None) -> str:
     """The same if it is a warning, for programs; else empty."""
     text = remark(question, choices)
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
+
+
+def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
+    """Said once of all properties whose minimum or maximum may differ from their values, and what one can do about it.
+
+    Args:
+        asked: these properties, with what is known of them.
+    """
+    if not asked:
+        return []
+    names: dict[tuple[str, str], list[str]] = {}
+    tried: dict[tuple[str, str], int] = {}
+    for question, choices in asked:
+        key = (question.operator, "" if choices.tried else _looked(question, choices))
+        names.setdefault(key, []).append(question.name)
+        tried[key] = max(tried.get(key, 0), choices.tried)
+    lines = ["note: these are values under uniform choices; the minimum or maximum over all schedulers may differ"]
+    for (operator, why), of in names.items():
+        extreme = "minimum" if operator.endswith("min") else "maximum"
+        looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
+        lines.append(f"  {', '.join(of)} (`{operator}` asks for the {extreme}): {looked}")
+    lines.append(
+        "  help: use --scheduler uniform if you want uniform choices, --scheduler lss to sample more schedulers, "
+        "or --exact to compute the minimum and the maximum if there are few states"
+    )
+    return lines
+
+
+def _looked(question: Question, choices: Choices) -> str:
+    """How a difference was looked for, and was not found."""
+    if choices.tried:
+        return f"{choices.tried:,} sampled schedulers show no difference"
+    return "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"
+
+
+def _asked(question: Question) -> str:
+    return "minimum" if asks_for_minimum(question) else "maximum"
 
 
 def rows(choices: Choices | None) -> dict[str, Any]:
@@ -114,8 +166,12 @@ def _row(extreme: Extreme) -> dict[str, Any]:
 def _reached(extreme: Extreme) -> str:
     if extreme.found == EXPLORATION:
         return f"{extreme.value:.6g} (exactly, from all states)"
-    who = f"by {extreme.scheduler}" if extreme.found == SAMPLING else "by uniform choices"
-    return f"{extreme.value:.6g} in [{extreme.bounds.lower:.6g}, {extreme.bounds.upper:.6g}] ({who})"
+    who = extreme.scheduler if extreme.found == SAMPLING else "uniform choices"
+    return f"{_interval(extreme)} (by {who})"
+
+
+def _interval(extreme: Extreme) -> str:
+    return f"{extreme.value:.6g} in [{extreme.bounds.lower:.6g}, {extreme.bounds.upper:.6g}]"
 
 
 def _finite(value: float) -> float | str | None:

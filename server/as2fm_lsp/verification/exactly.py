@@ -8,13 +8,16 @@ import importlib
 import json
 from typing import Any
 
+from as2fm_lsp.verification.choices import asks_for_minimum
 from as2fm_lsp.verification.expectations import Expectation, Verdict
 from as2fm_lsp.verification.report import Exact
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
-from roaml.smc.explore import Explorer, StateFaultError, TooManyStatesError
-from roaml.smc.goal import Asked
+from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
+from roaml.smc.goal import Asked, Question
 from roaml.smc.model import Checker
+
+_SLACK = 1e-6
 
 
 class ExactError(ValueError):
@@ -42,6 +45,10 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
     except TooManyStatesError:
         message = f"there are more than {limit:,} states (--max-states); leave --exact out to estimate"
         raise ExactError(message) from None
+    except TooManyChoicesError:
+        raise ExactError(
+            f"in one state there are more than {MOST_CHOICES:,} combinations of edges; leave --exact out to estimate"
+        ) from None
     except StateFaultError as error:
         raise checker.fault(error.problem) from None
     if asked.property not in checker.model.properties:
@@ -64,16 +71,17 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
     return Exact(found[0], found[1], states)
 
 
-def judged(expectation: Expectation, exact: Exact) -> Verdict:
-    """Whether an expectation holds under all schedulers."""
+def judged(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
+    """Whether an expectation holds of the value that is asked for: the least or the greatest."""
     threshold = expectation.threshold
-    both = (exact.least, exact.greatest)
+    what, value = ("least", exact.least) if asks_for_minimum(question) else ("greatest", exact.greatest)
     if threshold.relation is BinaryOperator.EQUAL:
-        met = all(abs(value - threshold.number) <= 1e-6 for value in both)
+        met = abs(value - threshold.number) <= _SLACK
     else:
-        slack = 1e-6 if threshold.relation in (BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER_EQUAL) else 0.0
-        met = all(threshold.met(value + slack) or threshold.met(value - slack) for value in both)
-    return Verdict(expectation, met, True)
+        is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
+        slack = 0.0 if is_strict else _SLACK
+        met = threshold.met(value + slack) or threshold.met(value - slack)
+    return Verdict(expectation, met, True, under="" if met else f"by the {what} value, which is {value:.6g}")
 
 
 def _inner(formula: dict[str, Any]) -> dict[str, Any]:

@@ -50,17 +50,39 @@ class Verdict:
     Attributes:
         is_certain: whether the whole interval says the same.
         is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
+        under: under which scheduler it is not met, in words; "" if only one is asked about.
     """
 
     expectation: Expectation
     is_met: bool
     is_certain: bool
     is_uniform: bool = False
+    under: str = ""
 
     @property
     def text(self) -> str:
         """For people."""
-        return "met under uniform choices" if self.is_uniform else "met" if self.is_met else "NOT MET"
+        if self.is_met:
+            return "met under uniform choices" if self.is_uniform else "met"
+        return f"NOT MET {self.under}".rstrip()
+
+    def doubt(self, epsilon: float) -> str:
+        """Why the interval leaves the verdict open; "" if it does not.
+
+        Args:
+            epsilon: what `==` allows a value to be away.
+        """
+        if self.is_certain:
+            return ""
+        number = f"{self.expectation.threshold.number:g}"
+        met, missed = {
+            BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
+            BinaryOperator.GREATER: (f"above {number}", f"of at most {number}"),
+            BinaryOperator.LESS_EQUAL: (f"of at most {number}", f"above {number}"),
+            BinaryOperator.LESS: (f"below {number}", f"of at least {number}"),
+            BinaryOperator.EQUAL: (f"within {epsilon:g} of {number}", f"more than {epsilon:g} away from {number}"),
+        }[self.expectation.threshold.relation]
+        return f"not certain: the interval includes values {missed if self.is_met else met}"
 
 
 def parse(text: str) -> Expectation:
@@ -103,8 +125,11 @@ def judge(expectation: Expectation, answer: Answer) -> Verdict:
         return Verdict(expectation, tally.accepted, True)
     lower, upper = answer.bounds
     if threshold.relation is BinaryOperator.EQUAL:
-        near = abs(answer.value - threshold.number) <= answer.options.epsilon + 1e-12
-        return Verdict(expectation, near, not lower <= threshold.number <= upper)
+        width = answer.options.epsilon + 1e-12
+        near = abs(answer.value - threshold.number) <= width
+        least, greatest = threshold.number - width, threshold.number + width
+        is_certain = least <= lower and upper <= greatest if near else upper < least or greatest < lower
+        return Verdict(expectation, near, is_certain)
     if answer.question.is_reward:
         value = answer.value
     elif threshold.is_lower:

@@ -14,9 +14,9 @@ from typing import Any
 from as2fm_lsp.verification import choices, ends
 from as2fm_lsp.verification.expectations import Verdict
 from as2fm_lsp.verification.refusal import Refusal
-from as2fm_lsp.verification.stuck import NOT_STUCK, Look, Stuck
+from as2fm_lsp.verification.stuck import NOT_STUCK, PROBABILITY, WARNING, Look, PlaceOf, Stuck, told
+from as2fm_lsp.verification.stuck import as_text as stuck_text
 from roaml.smc.choices import Choices
-from roaml.smc.lss import Extremes
 from roaml.smc.run import Answer, ratio_of
 
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
@@ -32,11 +32,30 @@ class Exact:
 
 
 @dataclass(frozen=True, slots=True)
+class Found:
+    """What a scheduler achieves that was found for the least or the greatest probability.
+
+    Attributes:
+        side: `LEAST` or `GREATEST`.
+        scheduler: its number; `words` describes it.
+        stuck: its traces that got stuck, if any did.
+    """
+
+    side: str
+    answer: Answer
+    scheduler: int
+    words: str
+    stuck: Stuck | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Result:
     """What came of one property.
 
     Attributes:
-        answer: by traces; None if only exact values were asked for.
+        answer: by traces with uniform choices; None if only other schedulers or exact values were asked for.
+        found: by traces with schedulers that were looked for.
+        tried: how many these were chosen from.
         seconds: how long it took.
         is_interrupted: whether somebody could not wait.
         choices: what is known of other schedulers than the uniform one; None if that is the one that is wanted.
@@ -49,11 +68,24 @@ class Result:
     verdicts: tuple[Verdict, ...]
     seconds: float
     is_interrupted: bool = False
-    extremes: Extremes | None = None
+    found: tuple[Found, ...] = ()
+    tried: int = 0
     stuck: Stuck | None = None
     exact: Exact | None = None
     choices: Choices | None = None
     refusal: Refusal | None = None
+
+    @property
+    def asks_stuck(self) -> bool:
+        """Whether it is asked whether traces get stuck."""
+        answers = [self.answer, *(each.answer for each in self.found)]
+        return any(answer is not None and answer.question.is_stuck for answer in answers)
+
+    @property
+    def epsilon(self) -> float:
+        """What `==` allows a value to be away."""
+        answers = [self.answer, *(each.answer for each in self.found)]
+        return next((answer.options.epsilon for answer in answers if answer is not None), 0.0)
 
     @property
     def is_met(self) -> bool:
@@ -61,13 +93,36 @@ class Result:
         return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)
 
 
-def as_text(results: Sequence[Result], note: str) -> str:
-    """For people; `note` says what holds for all of them."""
-    blocks = [_block(result) for result in results]
-    return "".join(f"{block}\n" for block in blocks) + (f"{note}\n" if note else "")
+def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
+    """For people: all results of one call.
+
+    Args:
+        place_of: file and line of an origin.
+        level: what it is that a trace gets stuck.
+        shown: where it is shown who waits for whom; where that is "", it is shown beneath the first result that it
+            makes doubtful.
+    """
+    blocks = []
+    shown_at: dict[object, str] = {}
+    for result in results:
+        where = "" if result.stuck is None else shown or shown_at.get(result.stuck.chain, "")
+        blocks.append(_block(result, place_of, level, where, is_alone=False))
+        if result.stuck is not None and not result.asks_stuck:
+            shown_at.setdefault(result.stuck.chain, f"above, beneath `{result.name}`")
+    open_ = [
+        (result.answer.question, result.choices)
+        for result in results
+        if result.answer is not None and result.choices is not None and choices.may_differ(result.choices)
+    ]
+    return "".join(f"{line}\n" for line in (*blocks, *choices.note(open_)))
 
 
-def _block(result: Result) -> str:
+def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
+    """For people: a result that is read by itself. See `as_text`."""
+    return _block(result, place_of, level, shown, is_alone=True)
+
+
+def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alone: bool) -> str:
     lines = []
     if result.refusal is not None:
         lines.append(f"{result.name}: not answered: {result.refusal.text}")
@@ -76,22 +131,39 @@ def _block(result: Result) -> str:
         both = _number(exact.least)
         if exact.least != exact.greatest:
             both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
-        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states")
-    if result.extremes is not None:
-        for what, found, by in (
-            ("least", result.extremes.least, result.extremes.least_by),
-            ("greatest", result.extremes.greatest, result.extremes.greatest_by),
-        ):
-            lines.append(f"{result.name}: {what} probability found {_estimate(found)} by scheduler {by}")
-    elif result.answer is not None:
-        lines.append(f"{result.name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
-        lines += _remarks(result)
+        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states, {result.seconds:.1f} s")
+    for each in result.found:
+        lines.append(f"{result.name}: {each.side} probability found {_estimate(each.answer)}")
+        lines.append(f"  by {each.words}")
+        if each.stuck is not None and not each.answer.question.is_stuck:
+            lines += _stuck_lines(each.stuck, place_of, level, shown)
+        lines += _remarks(each.answer)
+    if result.tried:
+        lines.append(f"  {result.tried:,} schedulers were tried, {result.seconds:.1f} s")
+    if result.answer is not None:
+        is_stuck = result.answer.question.is_stuck
+        name = f"{result.name} ({PROBABILITY})" if is_stuck else result.name
+        lines.append(f"{name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
+        if result.stuck is not None and not is_stuck:
+            lines += _stuck_lines(result.stuck, place_of, level, shown)
+        lines += _remarks(result.answer)
+        if is_alone or not choices.may_differ(result.choices):
+            about = choices.remark(result.answer.question, result.choices)
+            lines += [f"  {about}"] if about else []
+        if not result.is_interrupted and not result.answer.is_complete:
+            lines.append("  the interval is wider than asked for (--epsilon)")
+    if result.is_interrupted:
+        what = "this is what was known by then" if result.answer or result.found else "nothing was known by then"
+        lines.append(f"  interrupted; {what}" if lines else f"{result.name}: interrupted; {what}")
     for verdict in result.verdicts:
+        doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
-        if not verdict.is_certain and result.answer is not None:
-            text += f"; the interval reaches to the other side of {verdict.expectation.threshold.number:g}"
-        lines.append(text)
+        lines.append(f"{text}; {doubt}" if doubt else text)
     return "\n".join(lines)
+
+
+def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> list[str]:
+    return [f"  {line}" for line in told(stuck, place_of, level, shown)]
 
 
 def _estimate(answer: Answer) -> str:
@@ -100,20 +172,17 @@ def _estimate(answer: Answer) -> str:
         return "nothing is known yet"
     what = "infinite" if math.isinf(answer.value) else _number(answer.value)
     interval = f" in [{_number(lower)}, {_number(upper)}]"
-    counts = f"{tally.traces:,} traces: {tally.successes:,} passed, {answer.failures:,} failed"
+    good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
+    counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
     if tally.undecided:
         counts += f", {tally.undecided:,} undecided"
     return f"{what}{interval} from {counts}"
 
 
-def _remarks(result: Result) -> list[str]:
-    answer = result.answer
-    assert answer is not None
+def _remarks(answer: Answer) -> list[str]:
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach what the reward is counted to")
-    if about := choices.remark(answer.question, result.choices):
-        lines.append(f"  {about}")
     ratio = ratio_of(answer.question, answer.options)
     if answer.tally.accepted is not None and ratio is not None:
         low, high = max(0.0, ratio.threshold - ratio.epsilon), min(1.0, ratio.threshold + ratio.epsilon)
@@ -122,17 +191,10 @@ def _remarks(result: Result) -> list[str]:
             f"value is between {low:.6g} and {high:.6g}"
         )
     if answer.is_anytime and answer.tally.traces:
-        lines.append("  the interval holds whenever one stops: it is one of a confidence sequence")
+        lines.append("  the interval is valid whenever one stops: it is one of a confidence sequence")
     if answer.tally.undecided:
         steps = f"{answer.options.max_steps:,}"
         lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
-    if result.stuck is not None and not answer.question.is_stuck:
-        count = answer.tally.traces
-        lines.append(f"  {result.stuck.count:,} of {count:,} traces got stuck, and say nothing about the property")
-    if result.is_interrupted:
-        lines.append("  interrupted; this is what was known by then")
-    elif not answer.is_complete:
-        lines.append("  the interval is wider than asked for (--epsilon)")
     return lines
 
 
@@ -162,12 +224,12 @@ def row(result: Result) -> dict[str, Any]:
     if result.answer is not None:
         found.update(_answer(result.answer))
         found.update(choices.rows(result.choices))
-        if about := choices.warning(result.answer.question, result.choices):
-            found["warning"] = about
-    if result.extremes is not None:
-        both = result.extremes
-        found["least"] = {**_answer(both.least), "scheduler": both.least_by}
-        found["greatest"] = {**_answer(both.greatest), "scheduler": both.greatest_by}
+    if about := warning(result):
+        found["warning"] = about
+    for each in result.found:
+        found[each.side] = {**_answer(each.answer), "scheduler": each.scheduler, "by": each.words}
+    if result.tried:
+        found["schedulers"] = {"wanted": "lss", "tried": result.tried}
     if result.exact is not None:
         exact = result.exact
         found["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
@@ -178,10 +240,21 @@ def row(result: Result) -> dict[str, Any]:
             "met": verdict.is_met,
             "certain": verdict.is_certain,
             "under_uniform_choices_only": verdict.is_uniform,
+            **({"not_met": verdict.under} if verdict.under else {}),
         }
         for verdict in result.verdicts
     ]
     return found
+
+
+def warning(result: Result) -> str:
+    """Why the value is not, or may not be, what was asked for; "" if it is."""
+    parts = []
+    if result.stuck is not None and not result.asks_stuck:
+        parts.append(result.stuck.warning)
+    if result.answer is not None:
+        parts.append(choices.warning(result.answer.question, result.choices))
+    return "; ".join(filter(None, parts))
 
 
 def _answer(answer: Answer) -> dict[str, Any]:
@@ -213,9 +286,10 @@ def _finite(value: float) -> float | str | None:
     return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"
 
 
-def as_junit(results: Sequence[Result], title: str, look: Look | None = None, stuck: str = "") -> str:
+def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Look | None = None) -> str:
     """A test for each property; it fails if an expectation is not met, and is an error if there is no answer. One more
-    tells whether the system gets stuck: it fails if that is an error; `stuck` is its text."""
+    tells whether the system gets stuck: it fails if that is an error."""
+    level = WARNING if look is None else look.level
     errors = sum(result.refusal is not None for result in results)
     failures = sum(not result.is_met for result in results) - errors + (look is not None and not look.is_met)
     counts = {
@@ -228,14 +302,17 @@ def as_junit(results: Sequence[Result], title: str, look: Look | None = None, st
     for result in results:
         names = {"classname": _clean(title), "name": _clean(result.name), "time": f"{result.seconds:.3f}"}
         case = ET.SubElement(suite, "testcase", names)
-        text = _clean(_block(result))
+        text = _clean(one_as_text(result, place_of, level))
         uniform = [verdict for verdict in result.verdicts if verdict.is_uniform]
-        if uniform:
+        about = warning(result)
+        if uniform or about:
             properties = ET.SubElement(case, "properties")
             for verdict in uniform:
                 ET.SubElement(
                     properties, "property", {"name": f"expected {verdict.expectation.text}", "value": verdict.text}
                 )
+            if about:
+                ET.SubElement(properties, "property", {"name": "warning", "value": _clean(about)})
         if result.refusal is not None:
             ET.SubElement(case, "error", {"message": result.refusal.message, "type": result.refusal.code}).text = text
         elif result.is_met:
@@ -245,8 +322,8 @@ def as_junit(results: Sequence[Result], title: str, look: Look | None = None, st
             ET.SubElement(case, "failure", {"message": f"expected {' and '.join(missed)}"}).text = text
     if look is not None:
         case = ET.SubElement(suite, "testcase", {"classname": _clean(title), "name": NOT_STUCK})
-        told = ET.SubElement(case, "system-out") if look.is_met else ET.SubElement(case, "failure", message="stuck")
-        told.text = _clean(stuck)
+        output = ET.SubElement(case, "system-out") if look.is_met else ET.SubElement(case, "failure", message="stuck")
+        output.text = _clean(stuck_text(look, place_of))
     ET.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 from as2fm_lsp.verification.subject import Subject
 from roaml.jani.node import Origin
@@ -20,11 +20,12 @@ from roaml.smc.model import Checker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
-from roaml.views.waiting import Wait, advice, waits
+from roaml.views.waiting import Wait, advice, help_line, rule, waits
 
 WARNING, ERROR = "warning", "error"
 LEVELS = (WARNING, ERROR)
 """What it is that a trace gets stuck."""
+PROBABILITY = "probability of getting stuck"
 NOT_STUCK = "does not get stuck"
 """The name of the test in a JUnit report."""
 TRACES = 100
@@ -43,12 +44,14 @@ class Stuck:
 
     Attributes:
         count: how many.
+        traces: of so many.
         seen: the shortest one.
         time: of the model at its end, in s; None without a clock.
         waits: who waits for whom there.
     """
 
     count: int
+    traces: int
     seen: Seen
     time: float | None
     waits: tuple[Wait, ...]
@@ -57,6 +60,30 @@ class Stuck:
     def advice(self) -> str:
         """What to do about it; "" where that is not known."""
         return advice(self.waits)
+
+    @property
+    def rule(self) -> str:
+        """The rule that finds the reason in the model; "" if there is none."""
+        return rule(self.waits)
+
+    @property
+    def warning(self) -> str:
+        """What it means for the value of the property whose traces these are."""
+        of = f"all {self.traces:,} traces" if self.count == self.traces else f"{self.count:,} of {self.traces:,} traces"
+        return f"{of} got stuck and say nothing about the property, so its value is doubtful"
+
+    @property
+    def chain(self) -> Chain:
+        """Who waits for whom, whenever it is."""
+        return chain_of(self.waits)
+
+
+Chain: TypeAlias = tuple[tuple[str, str, str], ...]
+
+
+def chain_of(waiting: Sequence[Wait]) -> Chain:
+    """Who waits for whom, whenever it is: automata, where they are, and for whom they wait."""
+    return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +141,7 @@ def stuck_in(subject: Subject, checker: Checker, asked: Asked, answer: Answer, s
     recorder = Recorder(checker, asked, answer.options.seed, answer.options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
     time = time_of(subject, recorder)
-    return Stuck(ended.count, ended.shortest, time, waits(recorder.standstill(), time))
+    return Stuck(ended.count, answer.tally.traces, ended.shortest, time, waits(recorder.standstill(), time))
 
 
 def time_of(subject: Subject, recorder: Recorder) -> float | None:
@@ -137,26 +164,48 @@ PlaceOf = Callable[[Origin], str]
 """File and line of an origin, as people read it."""
 
 
-def as_text(look: Look, place_of: PlaceOf) -> str:
-    """For people."""
+def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
+    """For people.
+
+    Args:
+        shown: where it has been shown who waits for whom; it is shown here if that is "".
+    """
     answer, stuck = look.answer, look.stuck
     lines = []
     if answer is not None and answer.tally.traces:
         lower, upper = answer.bounds
         cut = answer.tally.ended(End.CUT)
         to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
-        lines.append(f"stuck: {answer.value:.6g} in [{lower:.6g}, {upper:.6g}] from {answer.tally.traces:,} traces{to}")
+        value = f"{answer.value:.6g} in [{lower:.6g}, {upper:.6g}]"
+        lines.append(f"{PROBABILITY}: {value} from {answer.tally.traces:,} traces{to}")
     if look.fault:
-        lines.append(f"stuck: not known, since a trace that ran on went wrong: {look.fault}")
+        lines.append(f"{PROBABILITY}: not known, since a trace that ran on went wrong: {look.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else ", time stands still"
-        lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
-        for wait in stuck.waits:
-            place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
-            lines.append(f"  {wait.who} {wait.what}{place}")
-        if stuck.advice:
-            lines.append(f"  {stuck.advice}")
+        if shown:
+            lines.append(f"{look.level}: the system gets stuck{still}; who waits for whom is shown {shown}")
+        else:
+            lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
+            lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
     return "".join(f"{line}\n" for line in lines)
+
+
+def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
+    """For people, beneath the value that it makes doubtful; `shown` as in `as_text`."""
+    if shown:
+        return [f"{level}: {stuck.warning}; who waits for whom is shown {shown}"]
+    lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
+    return [*lines, *(f"  {line}" for line in waiting_lines(stuck, place_of))]
+
+
+def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
+    """Who waits for whom, and what to do about it."""
+    lines = []
+    for wait in stuck.waits:
+        place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
+        lines.append(f"{wait.who} {wait.what}{place}")
+    line = help_line(stuck.waits)
+    return [*lines, line] if line else lines
 
 
 def _where(stuck: Stuck) -> str:
@@ -188,4 +237,5 @@ def example_row(stuck: Stuck, place: Callable[[Origin], dict[str, Any]]) -> dict
             for wait in stuck.waits
         ],
         "advice": stuck.advice,
+        "rule": stuck.rule,
     }

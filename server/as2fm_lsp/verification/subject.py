@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from roaml import api
 from roaml.jani.constants import with_constants
@@ -12,7 +12,6 @@ from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
-from roaml.smc.forms import BOUNDS, faults_in
 from roaml.text import SourceFile
 
 CLOCK = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
@@ -89,9 +88,6 @@ def of_system(system: api.LoadedSystem) -> Subject:
         return found
 
     model = api.to_jani(system)
-    # The translation leaves out bounds that its models cannot have: without them, another question would be answered.
-    bounded = {each.name: each for each in system.properties if any(f.code == BOUNDS for f in faults_in(each))}
-    model = replace(model, properties=tuple(bounded.get(each.name, each) for each in model.properties))
     return Subject(system.path, system.files, model, source_of, _clock(model))
 
 

@@ -276,7 +276,7 @@ class Inference:
                 return member.type
         if name:
             known = [member.name for member in declared.members]
-            self.notes.unknown(f"member of `{datatype}` called", name, span_of(node), known, fix=False)
+            self.notes.unknown("member", name, span_of(node), known, fix=False, owner=f"`{datatype}`")
         return UNKNOWN
 
     def call(self, node: Call, bound: Bound) -> Steps[Type]:

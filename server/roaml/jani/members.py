@@ -76,10 +76,9 @@ class Members:
                     continue  # the parser has reported that there is no name
                 if key in HARMLESS:
                     continue
-                what = f"member of {form.what} called"
                 place, known = member.key_content_span, sorted(form.allowed)
                 severity = Severity.WARNING if form.is_open else None
-                self.notes.unknown(what, key, place, known, code=SYNTAX, severity=severity)
+                self.notes.unknown("member", key, place, known, code=SYNTAX, severity=severity, owner=form.what)
             elif member.value is not None and not isinstance(member.value, JsonError):
                 self.values[key] = member.value
         if missing:

@@ -51,14 +51,15 @@ class Notes:
         code: str = NAME,
         severity: Severity | None = None,
         fix: bool = True,
+        owner: str = "",
     ) -> None:
         """`name` is none of the `known` ones; the nearest of them is suggested.
 
-        With `fix`, `span` is the text of the name and nothing else.
+        With `fix`, `span` is the text of the name and nothing else. `owner` is what has no such thing, in words.
         """
-        message = f"there is no {what} `{name[:80]}`"
+        message = f"{owner} has no {what} `{name[:80]}`" if owner else f"there is no {what} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()
-        if guess := self._guess(what, name, known):
+        if guess := self._guess(f"{owner} {what}", name, known):
             message += f"; did you mean `{guess}`?"
         if guess and fix:
             fixes = (Fix(f"Change to `{guess}`", (TextEdit(span, quote(guess)[1:-1]),)),)

@@ -236,19 +236,18 @@ class StatementLowering:
         return Param("status", value, origin)
 
     def call_child(self, statement: CallChild, origin: Location) -> Iterator[Statement]:
-        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children)."""
+        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children). The place of what it is
+        sent is that of the child in the tree."""
         assert statement.child is not None
         children = self.children
         verb = "halt" if statement.halts else "tick"
+        calls = [Send(f"bt_{child}_{verb}", (), self.context.program.node(child)) for child in children]
         if (index := literal_index(statement.child)) is not None:
-            yield Send(f"bt_{children[index]}_{verb}", (), origin)
+            yield calls[index]
         elif children:
             variable = name(statement.child.value, statement.child.span)
             yield If(
-                tuple(
-                    Branch(equal(variable, integer(i)), (Send(f"bt_{child}_{verb}", (), origin),), origin)
-                    for i, child in enumerate(children)
-                ),
+                tuple(Branch(equal(variable, integer(i)), (call,), origin) for i, call in enumerate(calls)),
                 (),
                 origin,
             )

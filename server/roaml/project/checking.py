@@ -460,6 +460,6 @@ class _Run:
 
 def internal_error(where: str, error: Exception) -> Finding:
     message = (
-        f"the rule `{where}` failed ({type(error).__name__}: {error}); this is a mistake of the tool, please report it"
+        f"the rule `{where}` failed ({type(error).__name__}: {error}); this is an internal error, please report it"
     )
     return internal_error_rule.RULE.at(Span(0, 0), message)

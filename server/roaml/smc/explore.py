@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,6 +12,9 @@ from typing import NamedTuple
 from roaml.smc.batch import Problem
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
+
+MOST_CHOICES = 1 << 20
+"""Combinations of edges and destinations in one state: some seconds."""
 
 
 class State(NamedTuple):
@@ -32,6 +36,10 @@ class TooManyStatesError(Exception):
     """There are more states than allowed."""
 
 
+class TooManyChoicesError(Exception):
+    """In one state there are more combinations of edges and their destinations than allowed."""
+
+
 class StateFaultError(Exception):
     """Something that has no meaning happens in a state."""
 
@@ -41,9 +49,15 @@ class StateFaultError(Exception):
 
 
 class Explorer:
-    """Looks at all states that can be reached before a goal without step bounds is decided."""
+    """Looks at all states that can be reached before a goal without step bounds is decided.
 
-    def __init__(self, compiled: Compiled) -> None:
+    Args:
+        limit: no more combinations of edges and destinations than that are enumerated in one state. With n automata of
+            k edges on one action there are kⁿ of them.
+    """
+
+    def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES) -> None:
+        self._limit = limit
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._instances = compiled.program.instances
         self._kernel.begin(0, 0)
@@ -54,24 +68,19 @@ class Explorer:
         self._kernel.restore(*state)
         return self._kernel.look()
 
-    def choices(self, state: State) -> Iterator[list[Branch]]:
-        """The choices of a state, as often as each counts, with their successors."""
-        for times, branches in self._choices(state):
-            for _ in range(times):
-                yield branches
-
-    def ways(self, state: State) -> Iterator[list[Branch]]:
-        """The choices of a state, with their successors.
+    def choices(self, state: State) -> Iterator[tuple[int, list[Branch]]]:
+        """The choices of a state with their successors, and how many choices there are that differ in nothing else.
 
         Raises:
             StateFaultError: one of them goes wrong.
+            TooManyChoicesError: there are more than `limit`; nothing has been enumerated.
         """
-        for _, branches in self._choices(state):
-            yield branches
-
-    def _choices(self, state: State) -> Iterator[tuple[int, list[Branch]]]:
         self._kernel.restore(*state)
-        for vector, times, slots in self._kernel.choices():
+        vectors = self._kernel.choices()
+        # Each combination of edges is a choice, and each combination of their destinations a successor of it.
+        if sum(math.prod(sum(map(len, edges)) for edges in slots) for _, _, slots in vectors) > self._limit:
+            raise TooManyChoicesError
+        for vector, times, slots in vectors:
             for picks in itertools.product(*(range(len(edges)) for edges in slots)):
                 ways = [slots[i][pick] for i, pick in enumerate(picks)]
                 branches = []
@@ -91,6 +100,7 @@ class Explorer:
 
         Raises:
             TooManyStatesError: there are more than `limit`.
+            TooManyChoicesError, StateFaultError: see `choices`.
         """
         found = {self.initial: self.verdict(self.initial)}
         waiting = deque(found)
@@ -98,7 +108,7 @@ class Explorer:
             state = waiting.popleft()
             if found[state] in (TRUE, FALSE):
                 continue
-            for branches in self.choices(state):
+            for _, branches in self.choices(state):
                 for _, successor in branches:
                     if successor not in found:
                         if len(found) >= limit:

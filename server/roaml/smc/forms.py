@@ -26,6 +26,7 @@ from roaml.jani.properties import (
     StatePredicate,
     UnaryFormula,
     UnaryPath,
+    walk,
 )
 from roaml.smc.fault import FaultError
 
@@ -55,6 +56,13 @@ def faults_in(property_: Property) -> Iterator[FaultError]:
         yield FaultError(f"{what}; {ANSWERED}", node.origin or property_.origin, code=code)
 
 
+def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:
+    """The bounds on time and rewards, wherever they are in a property, and why no translated model can have them."""
+    for formula in walk(property_.expression):
+        if isinstance(formula, (UnaryPath, BinaryPath)):
+            yield from _in_bounds(formula)
+
+
 def check_form(property_: Property) -> None:
     """
     Raises:
@@ -70,7 +78,7 @@ def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
         match formula:
             case Filter(function, values, states):
                 if not isinstance(states, Predicate) or states.predicate is not StatePredicate.INITIAL:
-                    yield "only the initial states can be asked about", states
+                    yield f'{_about(states)}, but traces begin in the initial states; write {{"op": "initial"}}', states
                 if function in (FilterFunction.FORALL, FilterFunction.EXISTS):
                     if not isinstance(values, BinaryFormula):
                         yield f"the filter `{function.value}` needs a comparison of a probability with a number", values
@@ -91,6 +99,13 @@ def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
             case _:
                 yield "this is neither a probability (`Pmin`, `Pmax`) nor an expected reward (`Emin`, `Emax`)", formula
                 return
+
+
+def _about(states: Formula) -> str:
+    """The `states` of a filter in words."""
+    if isinstance(states, Predicate):
+        return f"`states` of the filter is `{states.predicate.value}`"
+    return "`states` of the filter is a condition"
 
 
 def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:

@@ -17,19 +17,24 @@ farther out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from roaml.smc.batch import Payload, Task
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.program import FALSE, TRUE
-from roaml.smc.run import FIXED, SPRT, Answer, Options, TraceFaultError, Watch, answer
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.run import ADAPTIVE, FIXED, SPRT, Answer, Options, Tally, TraceFaultError, answer
 
 SCHEDULERS = 256
 """So many memoryless ones are tried at first."""
 TRIED = 16
 """Traces for each in the first round; in each further round there are twice as many."""
+SURE = 3
+"""Rounds after which a scheduler is taken that has never, or always, had a success."""
+USUAL = 100
+"""Traces with uniform choices, to see how long they are."""
 PROBED = 6
 """Traces for each scheduler where the budget is small."""
 LARGE = 1 << 40
@@ -44,8 +49,12 @@ _NUMBERS = (1 << _AUTOMATON) - 1
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """What the schedulers that were found achieve. `least_by` and `greatest_by` are their numbers; `tried`: how many
-    were tried."""
+    """What the schedulers that were found achieve.
+
+    Attributes:
+        least_by, greatest_by: their numbers.
+        tried: how many were tried.
+    """
 
     least: Answer
     greatest: Answer
@@ -62,11 +71,12 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
     """
     kind, number = scheduler & _KINDS, scheduler & _NUMBERS
     name = automata[(scheduler & ~_KINDS) >> _AUTOMATON]
-    if kind == STARVE:
-        return f"scheduler {number} that makes {name} wait"
-    if kind == FAVOUR:
-        return f"scheduler {number} that prefers {name}"
-    return f"scheduler {number} with memory" if kind == MEMORY else f"scheduler {number}"
+    does = {
+        STARVE: f"lets `{name}` act only where nothing else can act",
+        FAVOUR: f"lets `{name}` act wherever it can",
+        MEMORY: "decides by the state and what was done last",
+    }
+    return f"sampled scheduler {number}, which {does.get(kind, 'decides by the state alone')}"
 
 
 def candidates(automata: int, each: int = 2, memoryless: int = SCHEDULERS, memory: int = SCHEDULERS // 4) -> list[int]:
@@ -87,27 +97,85 @@ def candidates(automata: int, each: int = 2, memoryless: int = SCHEDULERS, memor
     return [*range(1, memoryless + 1), *biased, *remembering]
 
 
-def extremes(
+LEAST, GREATEST = "least", "greatest"
+SIDES = (LEAST, GREATEST)
+
+
+class Side(NamedTuple):
+    """The scheduler that was found for the least or the greatest probability, and the traces that were made with it."""
+
+    scheduler: int
+    tally: Tally
+
+
+@dataclass(slots=True)
+class Search:
+    """How far a search for schedulers is; it is changed while it goes on, and keeps what is known if that is ended.
+
+    Attributes:
+        side: which probability is looked for now.
+        round, rounds: of choosing schedulers; in each the better half is kept.
+        left: the schedulers that are tried in this round.
+        done: how many of them have been tried.
+        best: the best share of successes in the last round; None before the first one is over.
+        tried: how many schedulers there were at first.
+        found: for each side what is known of the scheduler that was chosen.
+    """
+
+    side: str = LEAST
+    round: int = 0
+    rounds: int = 0
+    left: int = 0
+    done: int = 0
+    best: float | None = None
+    tried: int = 0
+    found: dict[str, Side] = field(default_factory=dict)
+
+
+def search(
     payload: Payload,
     question: Question,
     options: Options,
     pool: Pool,
     schedulers: Sequence[int],
-    watch: Watch | None = None,
+    state: Search,
+    watch: Callable[[Search], None] | None = None,
     pulse: Pulse | None = None,
-) -> Extremes:
+) -> None:
     """Look for schedulers under which the probability is small, and such under which it is great.
+
+    Args:
+        state: where what is found is kept.
+        watch: told after each scheduler that was tried, and after each batch of traces with the one that was chosen.
 
     Raises:
         TraceFaultError: a trace went wrong.
     """
-    found = []
-    for sign in (-1, 1):
-        best = _best(payload, options, pool, schedulers, sign, pulse)
-        plain = replace(options, method=options.method if options.method != SPRT else "adaptive")
-        found.append((answer(payload, question, plain, pool, watch=watch, pulse=pulse, scheduler=best), best))
-    (least, least_by), (greatest, greatest_by) = found
-    return Extremes(least, greatest, least_by, greatest_by, len(schedulers))
+    state.tried = len(schedulers)
+    told = watch or (lambda _: None)
+    usual = answer(payload, question, replace(options, method=FIXED, max_traces=USUAL), pool, pulse=pulse).tally
+    longest = min(options.max_steps, _longest(usual.steps / usual.traces))
+    for side in SIDES:
+        state.side, state.round, state.best = side, 0, None
+        best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, told, pulse)
+        state.found[side] = Side(best, Tally())
+        plain = sampling_options(options)
+        tally = state.found[side].tally
+        answer(payload, question, plain, pool, tally, lambda _: told(state), pulse, scheduler=best)
+
+
+def _longest(length: float) -> int:
+    """Steps after which a trace is given up while schedulers are tried: many of them go round in circles.
+
+    Args:
+        length: of an average trace with uniform choices.
+    """
+    return int(20 * length) + 1000
+
+
+def sampling_options(options: Options) -> Options:
+    """How the probability under a scheduler that was found is estimated: no threshold decides about the traces."""
+    return replace(options, method=ADAPTIVE) if options.method == SPRT else options
 
 
 def probe(
@@ -134,7 +202,7 @@ def probe(
     Raises:
         TraceFaultError: a trace went wrong.
     """
-    longest = min(options.max_steps, max(int(20 * length) + 1000, budget // 2))
+    longest = min(options.max_steps, max(_longest(length), budget // 2))
     traces = int(budget / max(1.0, length))
     if traces < 4:
         return None
@@ -167,20 +235,36 @@ def probe(
 
 
 def _best(
-    payload: Payload, options: Options, pool: Pool, schedulers: Sequence[int], sign: int, pulse: Pulse | None
+    payload: Payload,
+    options: Options,
+    pool: Pool,
+    schedulers: Sequence[int],
+    state: Search,
+    told: Callable[[Search], None],
+    pulse: Pulse | None,
 ) -> int:
-    """The scheduler with the greatest share of successes, times `sign`."""
-    candidates = dict.fromkeys(schedulers, (0, 0))
+    """The scheduler with the least or greatest share of successes; a trace that was given up counts as half a one."""
+    sign = 1 if state.side == GREATEST else -1
+    candidates = dict.fromkeys(schedulers, (0.0, 0))
     tried, first = TRIED, LARGE
+    state.rounds = (len(candidates) - 1).bit_length()
     while len(candidates) > 1:
+        state.round, state.left, state.done = state.round + 1, len(candidates), 0
         tasks = [Task(payload, options.seed, first, tried, options.max_steps, number) for number in candidates]
         for task, outcome in pool.outcomes(tasks, pulse):
             if outcome.problem is not None:
                 raise TraceFaultError(outcome.problem)
             successes, traces = candidates[task.scheduler]
-            candidates[task.scheduler] = successes + outcome.verdicts.count(TRUE), traces + tried
+            good = outcome.verdicts.count(TRUE) + outcome.verdicts.count(UNKNOWN) / 2
+            candidates[task.scheduler] = successes + good, traces + tried
+            state.done += 1
+            told(state)
         ranked = sorted(candidates, key=lambda n: (-sign * candidates[n][0] / candidates[n][1], n))
+        successes, traces = candidates[ranked[0]]
+        state.best = successes / traces
         candidates = {number: candidates[number] for number in ranked[: (len(ranked) + 1) // 2]}
+        if state.round >= SURE and state.best == max(sign, 0):
+            return ranked[0]  # There is nothing farther out.
         first += tried
         tried *= 2
     return next(iter(candidates))

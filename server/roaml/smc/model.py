@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from types import MappingProxyType
 
 from roaml.jani.model import Model
@@ -15,7 +15,7 @@ from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import Asked, ask, ask_stuck
-from roaml.smc.lss import Extremes, candidates, extremes
+from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program
@@ -105,10 +105,16 @@ class Checker:
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
-    def extremes(
-        self, asked: Asked, options: Options, pool: Pool, watch: Watch | None = None, pulse: Pulse | None = None
-    ) -> Extremes:
-        """The least and the greatest probability that schedulers were found to achieve.
+    def search(
+        self,
+        asked: Asked,
+        options: Options,
+        pool: Pool,
+        state: Search,
+        watch: Callable[[Search], None] | None = None,
+        pulse: Pulse | None = None,
+    ) -> None:
+        """Look for schedulers with which the probability is small and great; see `roaml.smc.lss.search`.
 
         Raises:
             FaultError: a trace went wrong, or the question is about rewards.
@@ -117,7 +123,7 @@ class Checker:
             raise FaultError("schedulers are sampled for probabilities only", asked.property.origin)
         try:
             schedulers = candidates(len(self.automata))
-            return extremes(self.payload(asked), asked.question, options, pool, schedulers, watch, pulse)
+            search(self.payload(asked), asked.question, options, pool, schedulers, state, watch, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

@@ -128,7 +128,7 @@ def _argument(node: Expression, type_: Type, names: Names) -> Meaning:
 
 
 def length(node: ArrayConstructor, names: Names) -> int:
-    """How many elements an array by rule has."""
+    """How many elements an array constructor has."""
     try:
         size = evaluate(node.length, names.constants(), names.functions)
     except EvaluationError as error:

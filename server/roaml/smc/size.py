@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How large a model becomes when it is compiled, counted before it is: calls of functions are replaced by their bodies,
-and arrays by rule by their elements."""
+and array constructors by their elements."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAX_OPERATIONS = 300_000
 """Of all calls of functions together, with the calls in their bodies."""
 
 MAX_CELLS = 10_000_000
-"""Elements of one array by rule, over all its dimensions."""
+"""Elements of one array constructor, over all its dimensions."""
 
 
 def check_size(model: Model, properties: Iterable[Property]) -> None:

@@ -14,7 +14,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.smc.explore import Explorer, State, StateFaultError
+from roaml.smc.explore import Explorer, State, StateFaultError, TooManyChoicesError
 from roaml.smc.goal import NOT, STUCK
 from roaml.smc.program import FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
@@ -70,7 +70,7 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
     is_solvable = not goal.is_bounded and len(goal.left) == 1 and not is_reward and goal.right[0] != STUCK
     try:
         graph = _explored(compiled, limit, work, is_solvable)
-    except StateFaultError:
+    except (StateFaultError, TooManyChoicesError):
         return None
     if graph is None:
         return None
@@ -94,8 +94,8 @@ def _explored(
     Args:
         stops: whether nothing beyond a state in which the goal is decided matters.
     """
-    explorer = Explorer(compiled)
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
+    explorer = Explorer(compiled, limit=work // max(1, size))
     number: dict[State, int] = {explorer.initial: 0}
     verdicts = [explorer.verdict(explorer.initial)]
     choices: list[tuple[_Choice, ...]] = []
@@ -106,7 +106,7 @@ def _explored(
             choices.append(())
             continue
         found: dict[_Choice, None] = {}
-        for branches in explorer.ways(state):
+        for _, branches in explorer.choices(state):
             work -= size * (1 + len(branches))
             if work < 0:
                 return None

@@ -2,7 +2,8 @@
 """Properties as they are checked (docs/spec/jani.md#properties).
 
 - Comparisons with an array literal are spelled out.
-- The clock of the system is a variable: bounds on time, and on rewards, of which there are none, are left out.
+- Bounds on time and rewards stay as they are, although the model counts steps and has no rewards: `roaml.smc.forms`
+  says so of each property that has some. Without its bounds, a property would ask another question.
 - Only path formulas and operators keep their comments.
 """
 
@@ -14,7 +15,7 @@ from dataclasses import replace
 from roaml.jani.expressions import ArrayAccess, ArrayValue, Binary, Expression, Name
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator
-from roaml.jani.properties import BinaryPath, Filter, Probability, Property, UnaryPath
+from roaml.jani.properties import Filter, Probability, Property
 from roaml.jani.rewrite import rewrite
 from roaml.to_jani.shapes import Shape
 from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
@@ -32,8 +33,6 @@ def expanded(property_: Property, variables: Mapping[str, Shape]) -> Property:
                 if stored is not None and isinstance(right, ArrayValue):
                     same = equal_arrays(stored, _listed(right))
                     return same if operator is BinaryOperator.EQUAL else negated(same)
-            case UnaryPath() | BinaryPath():
-                return replace(node, time_bounds=None, reward_bounds=None)
             case Property() | Filter() | Probability():
                 return replace(node, comment=None)
         return node

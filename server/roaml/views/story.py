@@ -14,7 +14,7 @@ from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Change, Plain
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
-from roaml.views.waiting import Wait, waits
+from roaml.views.waiting import Wait, help_line, waits
 
 LONGEST = 60
 FIRST, LAST = 30, 50
@@ -43,13 +43,22 @@ class Line(NamedTuple):
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[Line]:
-    """The story as a table."""
+    """The story as a table; at its end who waits for whom, if it gets stuck."""
+    return [*_told(story, place_of), *_waiting(story, place_of)]
+
+
+def _told(story: Story, place_of: PlaceOf) -> list[Line]:
     told = turns(story)
     folded = range(FIRST, len(told) - LAST)
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
         found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
-    for wait in _waits(story):
+    return found
+
+
+def _waiting(story: Story, place_of: PlaceOf) -> list[Line]:
+    found = []
+    for wait in waits_of(story):
         place = "" if wait.origin is None else place_of(wait.origin)
         found.append(
             Line(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
@@ -57,7 +66,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
     return found
 
 
-def _waits(story: Story) -> tuple[Wait, ...]:
+def waits_of(story: Story) -> tuple[Wait, ...]:
     """Who waits for whom at the end, if it is stuck."""
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
@@ -76,9 +85,14 @@ def _line(turn: Turn, place_of: PlaceOf) -> Line:
     )
 
 
-def as_text(story: Story, place_of: PlaceOf) -> str:
-    """For a terminal."""
-    table = lines(story, place_of)
+def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
+    """For a terminal.
+
+    Args:
+        shown: where it has been shown who waits for whom at the end; it is shown here if that is "".
+    """
+    waiting = waits_of(story)
+    table = [*_told(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
     text = f"{heading(story)}\n"
     for row in table:
@@ -86,7 +100,8 @@ def as_text(story: Story, place_of: PlaceOf) -> str:
         text += "  " + "  ".join((*cells, row.what.ljust(widths[3]), row.place)).rstrip() + "\n"
         margin = " " * (widths[0] + widths[1] + widths[2] + 8)
         text += "".join(f"{margin}{detail}\n" for detail in row.details)
-    return text
+    last = f"who waits for whom is shown {shown}" if waiting and shown else help_line(waiting)
+    return f"{text}  {last}\n" if last else text
 
 
 def heading(story: Story) -> str:
@@ -137,7 +152,7 @@ def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
         details = "<br/>".join(_escaped(detail) for detail in _details(turn))
         if details:
             body.append(f"Note over {actor(turn)}: {details}")
-    for wait in _waits(story):
+    for wait in waits_of(story):
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
         body.append(f"Note over {names.setdefault(wait.who, f'A{len(names)}')}: {_escaped(wait.what + place)}")
     yield "sequenceDiagram"

@@ -10,6 +10,7 @@ are left out.
 from __future__ import annotations
 
 import heapq
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -45,7 +46,9 @@ class Wait(NamedTuple):
         origin: the place in the text that says so.
         automaton, location: what it is called in the model, and where it is.
         whom: for whom it waits; "" if that is nobody.
-        unanswered: `TICK` or `HALT` if it waits for the answer to one.
+        unanswered: `TICK` or `HALT` if it waits for the answer to one; then `origin` is the place of the node that
+            must answer, in the tree.
+        for_timer: whether it waits for a timer.
     """
 
     who: str
@@ -55,6 +58,7 @@ class Wait(NamedTuple):
     location: str
     whom: str = ""
     unanswered: str = ""
+    for_timer: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,16 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     return tuple(_Chain(standstill, time).told())
 
 
+NEEDS_TIME = "answer-needs-time"
+"""The rule that finds a tick or halt whose answer needs time to pass, before anything is run."""
+
+
+def rule(waiting: Sequence[Wait]) -> str:
+    """The rule whose document says more: for a node that must answer the tree and waits for a timer; else ""."""
+    is_late = any(wait.unanswered for wait in waiting) and any(wait.for_timer for wait in waiting)
+    return NEEDS_TIME if is_late and any(wait.who == THE_CLOCK for wait in waiting) else ""
+
+
 def advice(waiting: Sequence[Wait]) -> str:
     """What to do about it, where the reason is a node that does not answer the tree in time; else ""."""
     late = next((wait for wait in waiting if wait.unanswered), None)
@@ -94,6 +108,12 @@ def advice(waiting: Sequence[Wait]) -> str:
     return (
         f"a tick must be answered before time goes on: let {late.whom} answer RUNNING, and the result at a later tick"
     )
+
+
+def help_line(waiting: Sequence[Wait]) -> str:
+    """What to do about it, with the rule that says more; "" where that is not known."""
+    what, code = advice(waiting), rule(waiting)
+    return f"help: {what}{f' [{code}]' if code else ''}" if what else ""
 
 
 class _Chain:
@@ -269,7 +289,7 @@ class _Chain:
         shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
         others = list(dict.fromkeys(name for name, _ in shown))
         them = " and ".join(others)
-        unanswered = ""
+        unanswered, origin, for_timer = "", link.origin, False
         if link.event is None:
             does = "takes" if received_by(link.wanted) else "sends"
             event = received_by(link.wanted) or sent_by(link.wanted)
@@ -280,13 +300,20 @@ class _Chain:
             what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
         elif _is_answer(link.event):
             unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
+            origin = self.place_in_tree(shown[0][1]) or origin
             what = f"waits{where} for {them} to answer its {unanswered}"
         else:
             senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
             what = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
-            if is_timer(link.event):
+            for_timer = is_timer(link.event)
+            if for_timer:
                 what += ", which ticks when the clock goes on"
-        return Wait(who, what, link.origin, self.automata[number].name, here, them, unanswered)
+        return Wait(who, what, origin, self.automata[number].name, here, them, unanswered, for_timer)
+
+    def place_in_tree(self, answer: str) -> Origin | None:
+        """The place in the tree of the node that sends an answer: what ticks it stands there."""
+        called = _ANSWER.sub(lambda found: f"_{HALT if found[1] else TICK}", answer)
+        return self.automata[self.index[called]].origin if called in self.index else None
 
     def clients(self) -> frozenset[str]:
         return frozenset(self.index)
@@ -296,5 +323,8 @@ def _cost(edge: Edge) -> int:
     return 1 if received_by(edge.action or "") else 0
 
 
+_ANSWER = re.compile(r"_(halt_)?response\Z")
+
+
 def _is_answer(event: str) -> bool:
-    return event.startswith("bt_") and event.endswith(("_response", "_halt_response"))
+    return event.startswith("bt_") and _ANSWER.search(event) is not None

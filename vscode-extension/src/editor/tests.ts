@@ -209,8 +209,8 @@ export class PropertyTests implements vscode.Disposable {
         const line = `${asked.property}: ${brief}`;
         const more = stuck === undefined ? "" : `${stuck.replaceAll(/\r?\n/g, "\r\n")}\r\n`;
         if (stuck !== undefined) this.tellStuck(run, asked.system);
+        const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
         if (outcome.kind === "passed") {
-            const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
             // The Test Explorer knows no more than passed and failed: how it has passed stands beside its name.
             if (outcome.uniform.length > 0) {
                 const expected = outcome.uniform.join(", ");
@@ -221,7 +221,7 @@ export class PropertyTests implements vscode.Disposable {
             return;
         }
         const missed = outcome.missed.length > 0 ? [vscode.l10n.t("expected {0}", outcome.missed.join(", "))] : [];
-        run.appendOutput(`${[line, ...missed].join(", ")}\r\n${more}`, undefined, item);
+        run.appendOutput(`${[line, ...missed].join(", ")}\r\n${warned}${more}`, undefined, item);
         const text = new vscode.MarkdownString(escaped([brief, ...missed].join(", ")));
         if (stuck !== undefined) text.appendCodeblock(stuck, "text");
         if (outcome.hasCounterexample || stuck !== undefined) {

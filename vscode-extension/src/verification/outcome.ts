@@ -10,7 +10,7 @@ export type Outcome =
           readonly milliseconds: number;
           /** What is met under uniform choices, and not known to be met under all schedulers. */
           readonly uniform: readonly string[];
-          /** What the number is not, if the property asks for a minimum or maximum. */
+          /** Why the number is doubtful, or not what was asked for. */
           readonly warning?: string;
           /** Who waits for whom, if the system gets stuck. */
           readonly stuck?: string;
@@ -22,6 +22,7 @@ export type Outcome =
           /** What was expected and is not so. */
           readonly missed: readonly string[];
           readonly hasCounterexample: boolean;
+          readonly warning?: string;
           readonly stuck?: string;
       }
     | { readonly kind: "errored"; readonly message: string };
@@ -36,13 +37,13 @@ export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome
     const milliseconds = Math.round(seconds * 1000);
     const missed = (verified.expectations ?? []).filter(({ met }) => !met).map(({ expected }) => expected);
     const stuck = known?.example ? { stuck: known.text } : {};
+    const warning = verified.warning === undefined ? {} : { warning: verified.warning };
     const isWrong = known?.example && known.level === "error";
     if (missed.length === 0 && !isWrong) {
         const onlyUniform = (verified.expectations ?? []).filter((each) => each.under_uniform_choices_only);
         const uniform = onlyUniform.map(({ expected }) => expected);
-        const warning = verified.warning === undefined ? {} : { warning: verified.warning };
         return { kind: "passed", short, milliseconds, uniform, ...warning, ...stuck };
     }
     const hasCounterexample = verified.counterexample ?? false;
-    return { kind: "failed", short, milliseconds, missed, hasCounterexample, ...stuck };
+    return { kind: "failed", short, milliseconds, missed, hasCounterexample, ...warning, ...stuck };
 }

@@ -35,6 +35,6 @@ def _ignored(bound: Node, message: str) -> Iterator[Finding]:
 RULE = Rule(
     BOUNDS,
     Severity.WARNING,
-    "A property has bounds that `verify` refuses and `translate` leaves out.",
+    "A property has bounds for which `verify` does not answer it and `translate` leaves it out.",
     properties=check,
 )
