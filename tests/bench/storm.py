@@ -15,7 +15,7 @@ from bench.report import Benchmark, Row, seconds
 
 
 class Expected(NamedTuple):
-    """What Storm 1.11.3 found in the reference's translation (spec/06 §1): the probability, and the states for it."""
+    """What Storm 1.11.3 found in the reference's translation: the probability, and the states for it."""
 
     system: str
     property: str

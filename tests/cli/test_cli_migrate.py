@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp migrate`: older systems become current ones, and nothing else changes (spec/08)."""
+"""`as2fm-lsp migrate`: older systems become current ones, and nothing else changes (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 
@@ -362,7 +362,7 @@ def test_a_current_system_with_older_machines(command: Command, check: Command, 
 
 
 def test_events_of_the_tree(command: Command, check: Command, tmp_path: Path) -> None:
-    """The dialect A′ of spec/08."""
+    """Tree events, which are removed (docs/spec/files.md#removed-tree-events)."""
     files = dict(NEW)
     plugin = "plugins/move&wait.ascxml"
     now = files[plugin]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of expressions and what does not fit in them (spec/03 §6)."""
+"""Types of expressions and what does not fit in them (docs/spec/expressions.md#operators)."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_no_problems(text: str) -> None:
 
 
 REPRINTED = [
-    # expression, type after the numbers were printed without their `.0` (spec/03 §5.2)
+    # expression, type after the numbers were printed without their `.0` (docs/spec/expressions.md#whole-reals)
     ("1.0", "int"),
     ("1.5", "float"),
     ("-2.0", "int"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the expression language accepts, as which tree, and what it says about everything else (spec/03 §2)."""
+"""What the expression language accepts, as which tree, and what it says about everything else
+(docs/spec/expressions.md#grammar)."""
 
 from __future__ import annotations
 
@@ -65,7 +66,7 @@ def test_accepted(text: str, tree: str) -> None:
 
 
 NUMBERS = [
-    # text, value; a float is real in the sense of spec/03 §5.1
+    # text, value; a float is real in the sense of docs/spec/expressions.md#number-literals
     ("0", 0),
     ("42", 42),
     ("1.0", 1.0),

@@ -195,7 +195,7 @@ def test_services_and_actions() -> None:
         assert {name: " ".join(kinds[kind]) for name, kinds in packages.items() if kinds[kind]} == expected  # type: ignore[index]
 
 
-SIGNATURES: list[tuple[Kind, str, str]] = [  # spec/06-conformance.md section 6
+SIGNATURES: list[tuple[Kind, str, str]] = [
     ("srv", "example_interfaces/AddTwoInts", "int64 a, int64 b -> int64 sum"),
     ("srv", "std_srvs/Empty", " -> "),
     ("srv", "std_srvs/SetBool", "bool data -> bool success, string message"),
@@ -213,7 +213,7 @@ def test_signatures(kind: Kind, name: str, signature: str) -> None:
 
 
 def test_results_of_goals() -> None:
-    """The codes that models compare with, spec/01-language.md section 10.1."""
+    """The codes that models compare with, docs/spec/ros.md#action-client."""
     status = REGISTRY.message("action_msgs", "GoalStatus")
     assert isinstance(status, Definition)
     codes = {constant.name: constant.value for constant in status.sections[0].constants}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavior trees executed in plain Python: what the built-in nodes of spec/02 §5 and §7.2 do, said a second time.
+"""Behavior trees executed in plain Python: what the built-in nodes of docs/spec/nodes.md do, said a second time.
 
 - Nothing here knows how the nodes are translated; each class is a paragraph of the specification.
 - A node is ticked and halted by its parent only. Both, and the answers, are logged in the order in which they happen.
@@ -21,7 +21,7 @@ MOST_STEPS_PER_TICK = 2000
 
 
 class Status(enum.IntEnum):
-    """The numbers of spec/01 §11."""
+    """The numbers of docs/spec/plugins.md#status."""
 
     SUCCESS = 1
     FAILURE = 2
@@ -39,7 +39,7 @@ class NeverEnds(Exception):  # noqa: N818 - it is an outcome, no error
 
 
 INITIAL = {"int8": "0", "uint8": "0", "int32": "0", "uint32": "0", "bool": "false", "string": ""}
-"""What a blackboard variable holds before it is written (spec/02 §3.5)."""
+"""What a blackboard variable holds before it is written (docs/spec/trees.md#blackboard)."""
 
 
 @dataclass
@@ -63,12 +63,12 @@ class World:
         self.log.append((number, what))
 
     def ticks(self, milliseconds: int) -> int:
-        """So many ticks of the tree take so many ms, or more (spec/02 §7.2)."""
+        """So many ticks of the tree take so many ms, or more (docs/spec/nodes.md#durations)."""
         return math.ceil(milliseconds * self.rate / 1000)
 
 
 def run(tree: Tree, setup: Setup) -> list[Step]:
-    """All that happens in the tree until the time is over, or until the root has answered (spec/02 §4).
+    """All that happens in the tree until the time is over, or until the root has answered (docs/spec/trees.md#root).
 
     Raises:
         NeverEnds: a tick takes more steps than any sensible tree needs.
@@ -83,7 +83,7 @@ def run(tree: Tree, setup: Setup) -> list[Step]:
 
 
 def build(tree: Tree, world: World, numbers: Iterator[int]) -> Node:
-    """The numbers are given in pre-order (spec/02 §3.3)."""
+    """The numbers are given in pre-order (docs/spec/trees.md#instances)."""
     number = next(numbers)
     children = [build(child, world, numbers) for child in tree.children]
     return Node.kinds[tree.kind](tree, world, number, children)
@@ -258,7 +258,7 @@ class ReactiveFallback(ReactiveSequence):
 
 
 class Parallel(Node):
-    """Ticks the children that have not ended, and counts after each child (spec/10a B)."""
+    """Ticks the children that have not ended, and counts after each child (docs/spec/nodes.md#control)."""
 
     def reset(self) -> None:
         self.answers: dict[int, Status] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An interpreter of plain SCXML networks, written from spec/05 §5-§8 and independent of the translation.
+"""An interpreter of plain SCXML networks, written from docs/spec/jani.md and independent of the translation.
 
 A machine is between two states while statements of its current move remain (`Machine.rest`); a step executes one of
 them that others can notice - a send, the choice of a branch, the end of an `if` - and the assignments after it.

@@ -106,7 +106,8 @@ def test_tick_that_never_ends() -> None:
 
 @pytest.mark.parametrize(("goes_on", "ticks"), [(False, 3), (True, 6)])
 def test_root_that_has_answered(goes_on: bool, ticks: int) -> None:
-    """Without `bt_tick_if_not_running` the root is not ticked again after SUCCESS or FAILURE (spec/02 §4)."""
+    """Without `bt_tick_if_not_running` the root is not ticked again after SUCCESS or FAILURE
+    (docs/spec/trees.md#root)."""
     tree, setup = leaf("RRF"), Setup(6, goes_on=goes_on)
     steps, _ = bt_runs.of_network(lowered(system(tree, setup)), seed=1)
     assert steps == bt_model.run(tree, setup)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the reference cannot translate and we can (spec/07 §2, marked F): Storm finds what must come out of it.
+"""What the reference cannot translate and we can (docs/spec/differences.md#accepted): Storm finds what must come out of
+it.
 
 The systems stand in `beyond.txt`. The property of each is written as `VARIABLE = VALUE`: sooner or later this holds,
 whatever happens.

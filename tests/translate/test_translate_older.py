@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models in the older dialect leave fields out: these are sent with the defaults of ROS (spec/08)."""
+"""Models in the older dialect leave fields out: these are sent with the defaults of ROS
+(docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 

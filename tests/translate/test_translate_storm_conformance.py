@@ -12,8 +12,8 @@ from storm import Exact, exact, read
 import conformance
 from roaml import api
 
-# System, property: probability and number of states that Storm 1.11.3 found in the reference's translation
-# (spec/06 §1 and §2). Those of more than 50,000 states, and one whose states take long to build, are left to the
+# System, property: probability and number of states that Storm 1.11.3 found in the reference's translation.
+# Those of more than 50,000 states, and one whose states take long to build, are left to the
 # benchmarks; reals have infinitely many.
 PROBABILITIES = {
     ("ros_example/main.xml", "battery_depleted"): Exact(1, 1, 3646),
@@ -46,7 +46,7 @@ TREES = {
     ("parallel_failure", "parallel_failure_test"): 1,
     ("parallel_failure", "parallel_running_test"): 0,
 }
-"""Behavior trees, property: the least and the greatest probability, which are the same (spec/06 §3)."""
+"""Behavior trees, property: the least and the greatest probability, which are the same."""
 
 
 @cache

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The type of an expression, and everything in it that does not fit together (spec/03 §2, §6).
+"""The type of an expression, and everything in it that does not fit together (docs/spec/expressions.md#operators).
 
 - Pure: what a name stands for is asked of the caller, `Scope`.
 - Problems are data (`Problem`); the rules put them into words.
@@ -136,7 +136,7 @@ class DivisionByZero:
 
 @dataclass(frozen=True, slots=True)
 class IntegerDivision:
-    """`/` of two ints: the result is real (spec/07 1.8)."""
+    """`/` of two ints: the result is real (docs/spec/expressions.md#operators)."""
 
     span: Span
 
@@ -148,7 +148,7 @@ class RandomUsed:
 
 @dataclass(frozen=True, slots=True)
 class LengthOfStruct:
-    """`.length` of a struct that is no array (spec/07 1.24)."""
+    """`.length` of a struct that is no array (docs/spec/types.md#leaves)."""
 
     span: Span
     struct: Struct
@@ -156,14 +156,14 @@ class LengthOfStruct:
 
 @dataclass(frozen=True, slots=True)
 class ObjectUsed:
-    """An object literal where no initial value is given (spec/07 2.11)."""
+    """An object literal where no initial value is given (docs/spec/types.md#initial-values)."""
 
     span: Span
 
 
 @dataclass(frozen=True, slots=True)
 class ElementComputed:
-    """An element of an array literal that is no literal itself (spec/03 §2)."""
+    """An element of an array literal that is no literal itself (docs/spec/expressions.md#grammar)."""
 
     span: Span
 
@@ -191,7 +191,7 @@ def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, t
     """The type of `expr` and its problems, in the order of the text.
 
     `reprinted` gives the type that the expression has after the translation printed its numbers: `2.0` has become `2`,
-    an int (spec/03 §5.2).
+    an int (docs/spec/expressions.md#whole-reals).
     """
     if isinstance(expr, Name) and (known := scope(expr.name)) is not None:
         return known, ()  # as most are

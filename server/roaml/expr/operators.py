@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operators and functions of the expression language (spec/03 §2), each with what it takes and gives.
+"""The operators and functions of the expression language (docs/spec/expressions.md#grammar), each with what it takes
+and gives.
 
 This is the only list of them: parser, typing, completion, signature help and translation all read it.
 """

@@ -2,7 +2,8 @@
 """Text -> expression tree, by operator precedence (Pratt 1973), whatever the text.
 
 - Never fails: every mistake is a finding with a place, and the tree holds an `ErrorExpr` there.
-- Accepts what spec/03 §2 accepts and, beyond the reference, `===`, `!==`, unary `+` and `?:` (spec/07 2.10).
+- Accepts what docs/spec/expressions.md#grammar accepts and, beyond the reference, `===`, `!==`, unary `+` and `?:`
+  (docs/spec/differences.md#accepted-expressions).
 - Legal ECMAScript outside the subset is named as such ("unsupported-expression"), not called a syntax mistake.
 """
 
@@ -515,7 +516,8 @@ def _in_xml(symbol: str) -> str:
 
 
 def _number_value(text: str) -> int | float | None:
-    """The value of a number, an int if it is whole and written without a point (spec/03 §5.1); None if too large."""
+    """The value of a number, an int if it is whole and written without a point
+    (docs/spec/expressions.md#number-literals); None if too large."""
     if text[:2] in ("0x", "0X"):
         value = int(text, 16)
     elif len(text) > 1 and text[0] == "0" and text.isdigit() and not set(text) & {"8", "9"}:

@@ -17,7 +17,7 @@ from roaml.text import Decoded, Span
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """`is_real` as in spec/03 §5.1: written with a point, or not a whole number."""
+    """`is_real` as in docs/spec/expressions.md#number-literals: written with a point, or not a whole number."""
 
     span: Span
     value: int | float

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of HL-SCXML values (spec/01 §2.4, §3) and the questions one asks of them.
+"""The types of HL-SCXML values (docs/spec/types.md) and the questions one asks of them.
 
 Types are values: equal types compare equal, whichever file they were read from. A struct holds its members' types, so
 nothing has to be looked up again; ROS messages and event data are structs too.
@@ -104,7 +104,8 @@ class TypeName:
 
 
 def parse_type(text: str) -> TypeName | None:
-    """`int32[3][]` -> TypeName("int32", (3, None)); None if `text` has not the form of a type (spec/01 §2.4)."""
+    """`int32[3][]` -> TypeName("int32", (3, None)); None if `text` has not the form of a type
+    (docs/spec/types.md#type-names)."""
     match = _TYPE.match(text)
     if match is None:
         return None
@@ -137,7 +138,8 @@ def unwrap(type_: Type) -> tuple[Type, tuple[int | None, ...]]:
 
 
 def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Type]]:
-    """The leaf members of a type in declaration order, depth first, with the member names on the way (spec/01 §3.3).
+    """The leaf members of a type in declaration order, depth first, with the member names on the way
+    (docs/spec/types.md#leaves).
 
     Brackets of enclosing levels come first: a `Vec[4]` member `x: float64[]` gives `float64[4][]`.
     """
@@ -161,8 +163,8 @@ def is_kind(type_: Type, kind: str) -> bool:
 def fits(value: Type, target: Type) -> bool:
     """Whether a value of type `value` may be stored where `target` is declared.
 
-    An int fits a real; widths and bounds are not compared (spec/03 §5.3: integers are mathematical); structs fit by
-    name. What is unknown fits everything.
+    An int fits a real; widths and bounds are not compared (docs/spec/types.md#conversion: integers are mathematical);
+    structs fit by name. What is unknown fits everything.
     """
     match value, target:
         case (Unknown(), _) | (_, Unknown()):

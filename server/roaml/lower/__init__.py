@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""HL-SCXML systems -> plain SCXML (spec/04).
+"""HL-SCXML systems -> plain SCXML (docs/spec/plain-scxml.md).
 
 - Total: a system without errors is lowered; whatever has no plain form, a rule has reported. An assertion that fails
   here is our mistake, never the user's.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS action (spec/04 §7): one goal is decided on at a time.
+"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton): one goal
+is decided on at a time.
 
 A client is known by its goal id, its place among the clients of the action.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The automaton that holds the blackboard (spec/02 §6)."""
+"""The automaton that holds the blackboard (docs/spec/plain-scxml.md#blackboard)."""
 
 from __future__ import annotations
 

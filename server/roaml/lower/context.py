@@ -98,7 +98,7 @@ def type_of(data: Data, program: Program) -> Type:
 
 
 def literal(text: str, type_: Type, span: Span) -> Expr:
-    """A port's text as a value of its type; strings need no quotes (spec/02 §3.4)."""
+    """A port's text as a value of its type; strings need no quotes (docs/spec/trees.md#port-values)."""
     if type_ in (STRING, UNKNOWN):
         return String(span, text)
     if is_kind(type_, "bool"):

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variables of HL-SCXML -> plain ones: a struct becomes one variable per leaf member (spec/04 §3.5).
+"""Variables of HL-SCXML -> plain ones: a struct becomes one variable per leaf member
+(docs/spec/plain-scxml.md#flattening).
 
-Numbers keep their point here: `1.0` is a real initial value (spec/03 §5.2).
+Numbers keep their point here: `1.0` is a real initial value (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
 
 
 def as_type(value: Expr, element: Type) -> Expr:
-    """Literals of a real type are reals, also those written without a point (spec/07 1.25)."""
+    """Literals of a real type are reals, also those written without a point
+    (docs/spec/plain-scxml.md#initial-reals)."""
     if not is_kind(element, "real"):
         return value
     match value:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions of HL-SCXML -> plain ones (spec/04 §3): event variables renamed, structs flattened, indexes last.
+"""Expressions of HL-SCXML -> plain ones (docs/spec/plain-scxml.md#expressions): event variables renamed, structs
+flattened, indexes last.
 
 - `a[i].b[j].c` -> `a__b__c[i][j]`, `_msg.pose.x` -> `_event.data.ros_fields__pose__x`, `points.length` ->
   `points__x.length`.
 - A value that is a struct becomes one value per leaf member.
-- `2.0` becomes `2`, as in the reference (spec/03 §5.2).
+- `2.0` becomes `2`, as in the reference (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -189,7 +190,7 @@ def _member(type_: Type, member: str) -> Type | None:
 
 
 def _event_parameter(variable: str, names: list[str]) -> Path:
-    """The parameter that an event variable means (spec/01 §12.1)."""
+    """The parameter that an event variable means (docs/spec/machines.md#event-variables)."""
     match variable:
         case "_event":
             return tuple(names[1:])

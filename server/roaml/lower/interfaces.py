@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events that stand for the parts of ROS interfaces (spec/04 §2), and the fields that they carry."""
+"""The events that stand for the parts of ROS interfaces (docs/spec/plain-scxml.md#events), and the fields that they
+carry."""
 
 from __future__ import annotations
 

@@ -131,7 +131,8 @@ class _ChartLowering:
         )
 
     def waiting_state(self, state: str, handler: Handler, number: int) -> State:
-        """Where the machine waits for the blackboard's answer, and does then what the handler says (spec/04 §8.4)."""
+        """Where the machine waits for the blackboard's answer, and does then what the handler says
+        (docs/spec/plain-scxml.md#blackboard-read)."""
         origin = self.context.origin(handler.element.span)
         target = handler.targets[0]
         scope = Scope(self.context.variables, {}, {})
@@ -258,7 +259,8 @@ def values_in(statement: hl.Statement) -> Iterator[Value | None]:
 
 
 def probabilities(handler: Handler) -> list[float]:
-    """The probabilities of the targets, made to add up to 1: the last one may be left out (spec/01 §5.2)."""
+    """The probabilities of the targets, made to add up to 1: the last one may be left out
+    (docs/spec/machines.md#targets)."""
     given = [_decimal(target.probability.value) if target.probability else None for target in handler.targets]
     rest = 1 - sum((p for p in given if p is not None), Decimal(0))
     known = [rest if p is None else p for p in given]

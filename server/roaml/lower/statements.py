@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Executable content of HL-SCXML -> plain statements (spec/04 §2)."""
+"""Executable content of HL-SCXML -> plain statements (docs/spec/plain-scxml.md#events)."""
 
 from __future__ import annotations
 
@@ -162,7 +162,8 @@ class StatementLowering:
         return infer(value.tree, known.get)[0]
 
     def send(self, event: str, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
-        """What is drawn at random is stored before the event can be received (spec/07 1.13)."""
+        """What is drawn at random is stored before the event can be received
+        (docs/spec/plain-scxml.md#random-draws)."""
         ready = []
         for param, type_ in params:
             value = param.value
@@ -190,7 +191,7 @@ class StatementLowering:
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
     def arguments(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Param]:
-        """What is sent besides the fields (spec/04 §2)."""
+        """What is sent besides the fields (docs/spec/plain-scxml.md#events)."""
         for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
@@ -235,7 +236,7 @@ class StatementLowering:
         return Param("status", value, origin)
 
     def call_child(self, statement: CallChild, origin: Location) -> Iterator[Statement]:
-        """A child known by a variable is found by comparing with every index (spec/01 §11.2)."""
+        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children)."""
         assert statement.child is not None
         children = self.children
         verb = "halt" if statement.halts else "tick"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A whole system -> a network of plain automata, in processing order (spec/02 §2.2)."""
+"""A whole system -> a network of plain automata, in processing order (docs/spec/systems.md#processing-order)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Timers and the clock that makes them tick (spec/04 §6).
+"""Timers and the clock that makes them tick (docs/spec/plain-scxml.md#time).
 
 - Times are integers throughout: no rounding beyond that of the periods, which is the reference's.
 - Every automaton that uses a timer gets ticks of its own; in the usual case of one user the event has the timer's name.

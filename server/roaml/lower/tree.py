@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The root of the behavior tree: ticks the topmost node at the tree's rate (spec/02 §4)."""
+"""The root of the behavior tree: ticks the topmost node at the tree's rate (docs/spec/plain-scxml.md#tree-root)."""
 
 from __future__ import annotations
 

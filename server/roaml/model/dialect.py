@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of the languages that look alike a machine is written in (spec/08)."""
+"""Which of the languages that look alike a machine is written in (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree with all its instances: subtrees put in place, nodes numbered, ports bound (spec/02 §3.3, §7.1).
+"""The executed tree with all its instances: subtrees put in place, nodes numbered, ports bound
+(docs/spec/trees.md#instances, docs/spec/trees.md#subtrees).
 
 - Works on outlines, which hold no places: an instance knows its file, its tree and its position in that tree.
 - What cannot be expanded (an unknown or recursive subtree) is left out; rules on the files themselves report it.
@@ -178,7 +179,8 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
         for tree in trees:
             if tree.id == wanted:
                 return tree
-        # A file of one tree needs no names: its only tree is meant whatever it is called (spec/02 §3.1).
+        # A file of one tree needs no names: its only tree is meant whatever it is called
+        # (docs/spec/trees.md#main-tree).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
     trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:

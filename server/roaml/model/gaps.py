@@ -343,7 +343,8 @@ def reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
 
 
 def is_interface_name(name: str) -> bool:
-    """Whether `name` can name a topic, service or action: it becomes a part of event names (spec/01 §8)."""
+    """Whether `name` can name a topic, service or action: it becomes a part of event names
+    (docs/spec/plain-scxml.md#interface-names)."""
     return bool(name) and not any(character.isspace() for character in name)
 
 

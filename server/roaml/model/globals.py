@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The global variables that the translation of a system will have: what properties may refer to (spec/05 §2, §3.2).
+"""The global variables that the translation of a system will have: what properties may refer to
+(docs/spec/jani.md#global-variables).
 
 Every event that is sent gives `EVENT.valid` and one variable per parameter, arrays also their lengths. The translation
 itself does not read this table; a test holds the two against each other.
@@ -50,7 +51,8 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
 
 
 def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
-    """The variables of a parameter: its leaves, and the lengths of arrays (spec/01 §3.3, spec/05 §3)."""
+    """The variables of a parameter: its leaves, and the lengths of arrays (docs/spec/types.md#leaves,
+    docs/spec/jani.md#array-storage)."""
     for path, leaf in leaves(type_):
         full = "__".join((name, *path))
         inner, bounds = unwrap(leaf)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Initial values against declared types (spec/01 §2.2, §3.4): constants, array and object literals."""
+"""Initial values against declared types (docs/spec/types.md#initial-values): constants, array and object literals."""
 
 from __future__ import annotations
 

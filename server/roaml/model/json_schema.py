@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Struct declarations given as a JSON Schema (spec/01 §3.2).
+"""Struct declarations given as a JSON Schema (docs/spec/types.md#json-structs).
 
 The root object is a struct named by its `title`; an inline object is one named after its property; a `$ref` names a
 definition, of which only those that the root reaches exist. What the language has no type for is a finding; then a

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file is. Content decides, never the extension alone (spec/08)."""
+"""What a file is. Content decides, never the extension alone (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state machine document as typed data (spec/01): what was written, not yet what it means in a system.
+"""A state machine document as typed data (docs/spec/machines.md): what was written, not yet what it means in a system.
 
 - Frozen; built from one file alone, so equal texts give equal models.
 - Half-written documents give models with holes: whatever may be missing is None, nothing is invented.
@@ -20,7 +20,7 @@ from roaml.xml import Element
 
 
 class Dialect(enum.Enum):
-    """Which of the languages that look alike a machine is written in (spec/08)."""
+    """Which of the languages that look alike a machine is written in (docs/spec/files.md#dialects)."""
 
     CURRENT = "current HL-SCXML"
     OLDER = "older HL-SCXML"
@@ -30,7 +30,8 @@ class Dialect(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Data:
-    """A variable. `comment_type` tells that the type stands in a comment before the element (spec/01 §2.3)."""
+    """A variable. `comment_type` tells that the type stands in a comment before the element
+    (docs/spec/machines.md#type-comment)."""
 
     element: Element
     id: Name | None
@@ -242,7 +243,7 @@ class Chart:
     @cached_property
     def executed(self) -> tuple[Statement, ...]:
         """The statements that some transition executes. Those of `<onentry>` are left out where nothing leads to, those
-        of `<onexit>` where nothing leads away (spec/05: they become parts of the transitions)."""
+        of `<onexit>` where nothing leads away (docs/spec/jani.md: they become parts of the transitions)."""
         return tuple(statement for body in self._executed() for statement in statements(body))
 
     def _executed(self) -> Iterator[tuple[Statement, ...]]:
@@ -278,7 +279,8 @@ class Machine:
 
     Attributes:
         root: `ascxml` or `scxml`.
-        plain: uses none of the elements, declarations and types that HL-SCXML adds to SCXML (spec/01 §12.3).
+        plain: uses none of the elements, declarations and types that HL-SCXML adds to SCXML
+            (docs/spec/machines.md#plain-machines).
     """
 
     element: Element

@@ -155,7 +155,8 @@ class MachineOutline:
 
     @property
     def takes_part_in_tree(self) -> bool:
-        """Whether anything in the machine belongs to a behavior tree, were it an event of that name (spec/08, A')."""
+        """Whether anything in the machine belongs to a behavior tree, were it an event of that name
+        (docs/spec/files.md#removed-tree-events)."""
         plugin = self.plugin
         takes = plugin.ticked or plugin.halted
         answers = plugin.answers_tick or plugin.answers_halt

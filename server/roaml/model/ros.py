@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What HL-SCXML sees of a ROS interface type: its parts as structs of HL types (spec/01 §8).
+"""What HL-SCXML sees of a ROS interface type: its parts as structs of HL types (docs/spec/ros.md#interface-types).
 
 - Every kind of ROS field has an HL type here. Some kinds the reference translator does not know; models written for it
   leave such fields out, so they need not be set (`InterfaceType.optional`).
@@ -130,7 +130,7 @@ def _optional(section: Section, path: tuple[str, ...], struct: Struct, find: Fin
 
 
 def known_to_reference(type_: FieldType) -> bool:
-    """Whether the reference translator wants a field of this type to be set (spec/01 §8, spec/07 1.17)."""
+    """Whether the reference translator wants a field of this type to be set (docs/spec/ros.md#required-fields)."""
     if not type_.is_primitive:
         return True
     if type_.is_array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Struct declarations (spec/01 §3): read from XML, and resolved to types."""
+"""Struct declarations (docs/spec/types.md#structs): read from XML, and resolved to types."""
 
 from __future__ import annotations
 

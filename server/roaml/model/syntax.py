@@ -91,7 +91,8 @@ def type_of(attribute: Attribute | None) -> TypeRef | None:
 
 
 def value_of(document: Document, element: Element, name: str) -> Value | None:
-    """A value that may be given as attribute or child element `name` (spec/01 §1.4); the attribute wins."""
+    """A value that may be given as attribute or child element `name` (docs/spec/files.md#attribute-or-child); the
+    attribute wins."""
     attribute = element.get(name)
     if attribute is not None:
         return expression_of(document, attribute)

@@ -57,7 +57,7 @@ Fact: TypeAlias = "tuple[str, str | None]"
 
 
 def sanitise(name: str) -> str:
-    """The form of a topic, service or action name in events (spec/04 §1)."""
+    """The form of a topic, service or action name in events (docs/spec/plain-scxml.md#interface-names)."""
     return name.removeprefix("/").replace("/", "__")
 
 
@@ -163,7 +163,7 @@ class System:
 
     Attributes:
         path: of the system file.
-        older: the system is written in the older dialect (spec/08, B).
+        older: the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: listed nodes, in order; plugins: listed plugins, in order.
         instances: the nodes of the executed tree, in pre-order.
         tree_paths: the tree file and what it includes; empty without a tree.
@@ -188,7 +188,7 @@ class System:
 
     @cached_property
     def automata(self) -> tuple[Automaton, ...]:
-        """In processing order: nodes, then the tree in pre-order (spec/02 §2.2)."""
+        """In processing order: nodes, then the tree in pre-order (docs/spec/systems.md#processing-order)."""
         found = [Automaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)]
         for instance in self.instances:
             path, outline = self.plugin(instance.plugin)
@@ -312,7 +312,8 @@ class System:
         return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
 
     def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
-        """File and outline of the plugin called `name`; the nodes of BehaviorTree.CPP come first (spec/07 1.20)."""
+        """File and outline of the plugin called `name`; the nodes of BehaviorTree.CPP come first
+        (docs/spec/trees.md#nodes)."""
         builtin = builtin_plugins().get(name)
         if builtin is not None:
             return "", builtin
@@ -335,7 +336,7 @@ class System:
 
     @cached_property
     def services(self) -> Mapping[str, Channel]:
-        """By name as written (spec/01 §9)."""
+        """By name as written (docs/spec/ros.md#services)."""
         return self._channels("service-server", "service-client", str)
 
     @cached_property
@@ -404,12 +405,14 @@ class System:
         return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
 
     def variable_type(self, variable: str) -> str:
-        """The name of a blackboard variable's type: that of the first port that has a definite one (spec/02 §3.5)."""
+        """The name of a blackboard variable's type: that of the first port that has a definite one
+        (docs/spec/trees.md#blackboard)."""
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
         return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
 
     def any_type(self, automaton: Automaton) -> str:
-        """The name of the type that those ports of a node hold that take any, the ports of `Switch` (spec/02 §7.2).
+        """The name of the type that those ports of a node hold that take any, the ports of `Switch`
+        (docs/spec/nodes.md#control).
 
         It is that of the first blackboard variable that one of them is bound to; string if none is.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The system file as typed data (spec/02 §2)."""
+"""The system file as typed data (docs/spec/systems.md)."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Parameters:
     Attributes:
         max_time: the bound of the clock in ns; None if it is not given or no number.
         tick_rate: of the behavior tree, in Hz.
-        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (spec/03 §7).
+        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
     """
 
     max_time: int | None = None
@@ -126,7 +126,7 @@ class SystemFile:
     """One system file.
 
     Attributes:
-        older: it has the older root (spec/08, dialect B).
+        older: it has the older root (docs/spec/files.md#older-dialect).
         inputs: of all sections, in order; misspelled ones are there as what they are meant to be.
         unread: the sections that may list more than `inputs` says, because an element there has no place.
     """
@@ -138,7 +138,7 @@ class SystemFile:
     unread: frozenset[str]
 
     def parameter(self, name: str) -> Element | None:
-        """The element that sets a parameter: of several the last counts (spec/02 §2.3)."""
+        """The element that sets a parameter: of several the last counts (docs/spec/systems.md#parameters)."""
         section = _parameter_section(self.element)
         return next((each for each in reversed(section.elements) if each.name == name), None) if section else None
 

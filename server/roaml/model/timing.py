@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Periods of timers, and the unit in which the clock of a system counts (spec/04 §6)."""
+"""Periods of timers, and the unit in which the clock of a system counts (docs/spec/plain-scxml.md#time)."""
 
 from __future__ import annotations
 

@@ -2,7 +2,8 @@
 """What the automata, events and actions of a translated system are called, where a name means something.
 
 Plain SCXML and JANI know no ROS and no trees: that an automaton is the clock, or that an event waits for its receivers,
-is told by the name alone (spec/04, spec/05). Who translates writes these names, who shows a translation reads them.
+is told by the name alone (docs/spec/plain-scxml.md#events, docs/spec/jani.md#names). Who translates writes these names,
+who shows a translation reads them.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def is_internal(event: str) -> bool:
 
 
 def is_synchronising(event: str) -> bool:
-    """Whether the event waits for its receivers, where others are discarded (spec/05 §6)."""
+    """Whether the event waits for its receivers, where others are discarded (docs/spec/jani.md#synchronising-names)."""
     return _SYNCHRONISING.match(event) is not None
 
 
@@ -71,7 +72,8 @@ CLOCK_ACTION = "global_timer_tick_action"
 
 
 def on_send(event: str) -> str:
-    """The action of sending an event. The clock's step to itself is no communication (spec/05 §8)."""
+    """The action of sending an event. The clock's step to itself is no communication
+    (docs/spec/jani.md#clock-actions)."""
     return event if event == CLOCK_STEP else f"{event}{_ON_SEND}"
 
 
@@ -96,7 +98,7 @@ _ON_RECEIVE = "_on_receive"
 
 
 def is_length(variable: str) -> bool:
-    """Whether it is the length of an array that stands beside it (spec/05 §2)."""
+    """Whether it is the length of an array that stands beside it (docs/spec/jani.md#array-storage)."""
     return _LENGTH.search(variable) is not None
 
 

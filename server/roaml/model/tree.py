@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file of behavior trees as typed data (spec/02 §3, §7): what was written, before subtrees are put in place."""
+"""A file of behavior trees as typed data (docs/spec/trees.md): what was written, before subtrees are put in place."""
 
 from __future__ import annotations
 
@@ -211,5 +211,6 @@ def is_variable_name(name: str) -> bool:
 
 
 def looks_like_reference(value: str) -> bool:
-    """Whether a value begins with `{…}` (the reference translator takes it for a reference, spec/02 §3.4)."""
+    """Whether a value begins with `{…}` (the reference translator takes it for a reference,
+    docs/spec/trees.md#port-values)."""
     return bool(_BEGINS_LIKE_REFERENCE.match(value))

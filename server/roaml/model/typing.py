@@ -93,7 +93,7 @@ class Place:
     Attributes:
         part: "data", "cond", "body", "onentry" or "onexit".
         late: something was sent, or a condition evaluated, between the arrival of the event and this value, so the
-            event data may be newer (spec/01 §12.2).
+            event data may be newer (docs/spec/machines.md#event-data-lifetime).
         branch_conditions: what is known to hold, or not to hold, by the enclosing `<if>` parts; None for nothing.
     """
 
@@ -110,7 +110,8 @@ class TypedValue:
     """A value with its type and problems. `wanted` is the type that it should have, None if any will do.
 
     `target` is the field, parameter, location or variable that the value is for, in words ("" if none). `sent` is the
-    type that the value has in the translation if it is sent: there `2.0` is an int (spec/03 §5.2).
+    type that the value has in the translation if it is sent: there `2.0` is an int
+    (docs/spec/expressions.md#whole-reals).
     """
 
     use: Use
@@ -169,7 +170,8 @@ def bindings(handler: Handler, part: str, machine: Machine, environment: Environ
 
 
 def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
-    """The event variables known in a part of a handler (spec/01 §12.1): a transition without event knows none."""
+    """The event variables known in a part of a handler (docs/spec/machines.md#event-variables): a transition without
+    event knows none."""
     if handler.trigger == "":
         return ()
     return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
@@ -237,8 +239,8 @@ def interface_part(part: str, declaration: Declaration | None, environment: Envi
 
 
 def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
-    """A message with the fields of its own type and those of the types that are published (spec/07 1.11): that they are
-    not the same is a warning, and each field is there."""
+    """A message with the fields of its own type and those of the types that are published (docs/spec/ros.md#topics):
+    that they are not the same is a warning, and each field is there."""
     members = dict(own.members)
     for other in published:
         part = dict(other.parts).get("message", UNKNOWN)
@@ -249,7 +251,8 @@ def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct
 
 def unset_fields(statement: Communicate, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
     """The dotted paths and types of the fields that a sending element should set and does not. They are sent as well,
-    with the defaults of ROS: 0, false, empty (spec/08); in the current dialect a rule forbids that."""
+    with the defaults of ROS: 0, false, empty (docs/spec/files.md#dialects); in the current dialect a rule forbids
+    that."""
     declaration = find_handle(machine, statement)
     if declaration is None or declaration.type is None or "field" not in statement.type.children:
         return ()
@@ -330,7 +333,7 @@ class _Typer:
 
 
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
-"""The answers of a tree node and the numbers that stand for them (spec/01 §11.2)."""
+"""The answers of a tree node and the numbers that stand for them (docs/spec/plugins.md#status)."""
 
 
 def port_type(machine: Machine, read: PortRead) -> Type:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moving a system from an older dialect to the current one (spec/08).
+"""Moving a system from an older dialect to the current one (docs/spec/files.md#dialects).
 
 - Made of the fixes that the rules offer, applied until none is left, so a migration changes what the rules name and
   nothing else: comments and layout stay.

@@ -17,7 +17,8 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A tick or halt is answered in the instant in which it comes, or the clock of the model stops (spec/05 §7)."""
+    """A tick or halt is answered in the instant in which it comes, or the clock of the model stops
+    (docs/spec/semantics.md#time)."""
     system = context.system
     if system is None or not system.complete:
         return

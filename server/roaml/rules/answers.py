@@ -112,7 +112,7 @@ _ASKS_ONCE = _SWITCHES | {
     *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
     *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
 }
-"""They do not tick a child again that has ended, before they have ended themselves (spec/02 §5, §7.2)."""
+"""They do not tick a child again that has ended, before they have ended themselves (docs/spec/nodes.md)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """They halt their child only when they are halted."""
 _INTERRUPTS = _SWITCHES | {

@@ -18,7 +18,8 @@ CONSTANT = (Use.INITIAL, Use.BOUND)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Places in which a port can only hold a constant, while the tree binds it to the blackboard (spec/07 2.20)."""
+    """Places in which a port can only hold a constant, while the tree binds it to the blackboard
+    (docs/spec/plugins.md#get-input)."""
     bound = _bound(context)
     if not bound:
         return

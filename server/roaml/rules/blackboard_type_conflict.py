@@ -12,7 +12,7 @@ from roaml.rules.rule import Rule, TreeContext
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """All ports bound to one variable have one type, to the letter (spec/02 §3.5)."""
+    """All ports bound to one variable have one type, to the letter (docs/spec/trees.md#blackboard)."""
     if context.system is None:
         return
     for variable, ports in context.system.blackboard.items():

@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
-    """Legal: the attribute wins (spec/01 §1.4)."""
+    """Legal: the attribute wins (docs/spec/files.md#attribute-or-child)."""
     return RULE.at(
         child.name_span,
         f"`{child.name}` is given twice: the attribute counts, this is not read",

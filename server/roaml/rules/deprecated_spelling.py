@@ -34,7 +34,8 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """The system decides which dialect its machines are written in (spec/08), and the current one has one root only."""
+    """The system decides which dialect its machines are written in (docs/spec/files.md#dialects), and the current one
+    has one root only."""
     machine = context.machine
     if context.system is not None and not context.older and machine.root != ROOT:
         message = f"the machines of a `<roaml>` system have the root `<{ROOT}>`, not `<{machine.root}>`"
@@ -43,7 +44,7 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def check_system(context: SystemContext) -> Iterator[Finding]:
-    """The reference translator tells by its name, too, whether a file is a machine (spec/01 §1.1)."""
+    """The reference translator tells by its name, too, whether a file is a machine (docs/spec/files.md#kinds)."""
     roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
     for listed in context.files:
         src = listed.input.src

@@ -38,14 +38,15 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     if _meaning(declaration) == _meaning(before):
         message = f"`{handle.value}` is declared twice in the same way"
         remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
-        # Two timers of one name are refused, whatever their rates are (spec/01 §7).
+        # Two timers of one name are refused, whatever their rates are (docs/spec/ros.md#timers).
         severity = Severity.ERROR if declaration.kind == "timer" else Severity.WARNING
         return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
         handle.span,
         f"`{handle.value}` is declared twice; give one of them another `name`",
         _rename(context, declaration, handle),
-        # With two kinds each use still finds its own here; the reference translator takes the first (spec/01 §8).
+        # With two kinds each use still finds its own here; the reference translator takes the first
+        # (docs/spec/ros.md#handles).
         severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
         related=related,
     )
@@ -80,14 +81,14 @@ def _written(value: Name | PortRead | None) -> str:
 
 
 def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
-    """A machine declares each service and action that it uses once (spec/01 §9)."""
+    """A machine declares each service and action that it uses once (docs/spec/ros.md#services)."""
     assert before.handle is not None
     message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
 
 
 def _same_threads(context: MachineContext) -> Iterator[Finding]:
-    """Two declarations would make two threads of each number (spec/01 §10.3)."""
+    """Two declarations would make two threads of each number (docs/spec/ros.md#threads)."""
     known: dict[str, Name] = {}
     for thread in context.machine.threads:
         if thread.server is None:

@@ -54,7 +54,8 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         return RULE.at(problem.span, message, *replacements(problem.span, close))
     if place.part in ("onentry", "onexit"):
         if name == "_event" and context.machine.plain:
-            # Machines without any ROS or tree element are taken over as they are (spec/01 §12.3, spec/07 1.34).
+            # Machines without any ROS or tree element are taken over as they are
+            # (docs/spec/machines.md#plain-machines).
             message = f"`_event` in `<{place.part}>` means the event of whichever transition is taken"
             return RULE.at(problem.span, message, severity=Severity.WARNING)
         message = f"`{name}` is not known in `<{place.part}>`; store it in a variable in the body of the transition"

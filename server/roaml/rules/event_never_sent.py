@@ -52,7 +52,8 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
 
 
 def _generated(context: MachineContext, system: System, event: str) -> bool:
-    """Whether it is an event that ROS elements, timers or the tree stand for in the translation (spec/04)."""
+    """Whether it is an event that ROS elements, timers or the tree stand for in the translation
+    (docs/spec/plain-scxml.md)."""
     timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
 
     def interface(kind: str, name: str) -> InterfaceType | None:

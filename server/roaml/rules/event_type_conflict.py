@@ -34,7 +34,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _parameter(event: Event, param: Param, value: TypedValue) -> Iterator[Finding]:
-    """All senders of an event must agree on the types of its parameters (spec/01 §6.2)."""
+    """All senders of an event must agree on the types of its parameters (docs/spec/machines.md#send)."""
     if param.name is None:
         return
     for automaton, sent in event.senders:
@@ -71,7 +71,7 @@ def flat(name: str) -> str:
 
 
 def flattened(name: str, type_: Type) -> dict[str, Type]:
-    """What a parameter is in the translation: one parameter for each leaf of a struct (spec/01 §3.3)."""
+    """What a parameter is in the translation: one parameter for each leaf of a struct (docs/spec/types.md#leaves)."""
     return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
 
 
@@ -101,7 +101,8 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, str], list[
 
 
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
-    """The reference translator gives a field the type of what is sent, whatever its ROS type is (spec/03 §5.2)."""
+    """The reference translator gives a field the type of what is sent, whatever its ROS type is
+    (docs/spec/expressions.md#whole-reals)."""
     real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
     for name, value in sent:
         if name in real and is_kind(value.sent, "int") and value.wanted and is_kind(value.wanted, "real"):

@@ -33,7 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         declaration.type.span,
                         f"the {what} `{name}` has the type `{type_}` elsewhere",
                         Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
-                        # The reference translates topics without comparing their types (spec/07 1.11).
+                        # The reference translates topics without comparing their types (docs/spec/ros.md#topics).
                         severity=Severity.WARNING if what == "topic" else Severity.ERROR,
                         related=related,
                     )

@@ -53,7 +53,7 @@ def _order(context: MachineContext, data: Data) -> Iterator[Finding]:
         bound, nearest = (f"below {low}", low) if is_below else (f"above {high}", high)
         fix = Fix(f"Begin with {nearest}", (TextEdit(data.value.span, str(nearest)),), preferred=False)
         message = f"the initial value {initial} lies outside the bounds of the variable: {bound}"
-        # The bounds say what is meant; the translation does not read them (spec/01 §2.2).
+        # The bounds say what is meant; the translation does not read them (docs/spec/machines.md#data).
         yield RULE.at(data.value.span, message, fix, severity=Severity.WARNING)
 
 

@@ -30,7 +30,8 @@ _ANSWERS = {
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Event data are shared variables, read when the step that reads them is executed (spec/01 §12.2)."""
+    """Event data are shared variables, read when the step that reads them is executed
+    (docs/spec/machines.md#event-data-lifetime)."""
     for value in context.typed.values:
         if not value.place.late or not isinstance(value.value, Expression):
             continue

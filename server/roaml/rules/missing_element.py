@@ -44,7 +44,7 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
-    """A machine may do without a datamodel, a thread may not (spec/01 §10.3)."""
+    """A machine may do without a datamodel, a thread may not (docs/spec/ros.md#threads)."""
     element = thread.element
     wanted = element.complete and element.find("datamodel") is None
     if wanted and not misspelled.among(element.elements, "datamodel", HL_SCXML):

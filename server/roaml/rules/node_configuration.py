@@ -17,7 +17,7 @@ from roaml.text import Decoded
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Settings with which a node of BehaviorTree.CPP stops answering (spec/02 §5, spec/07 1.22)."""
+    """Settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
     for node, key, text in _settings(context):
         number = _number(text)

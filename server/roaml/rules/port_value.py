@@ -118,7 +118,8 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
 
 
 def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """What a `Switch` compares is of one type, that of the first variable in it: string or int (spec/02 §7.2)."""
+    """What a `Switch` compares is of one type, that of the first variable in it: string or int
+    (docs/spec/nodes.md#control)."""
     for node, automaton in instances(context):
         assert context.system is not None
         wanted = context.system.any_type(automaton)

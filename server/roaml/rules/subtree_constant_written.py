@@ -12,7 +12,7 @@ from roaml.rules.rule import Rule, TreeContext
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """A subtree writes a variable for which its `<SubTree>` gives a constant (spec/02 §7.1)."""
+    """A subtree writes a variable for which its `<SubTree>` gives a constant (docs/spec/trees.md#subtrees)."""
     for node, automaton in instances(context):
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)

@@ -195,7 +195,8 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
 
 
 def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
-    """The only tree is executed whatever it is called (spec/02 §3.1), but hardly on purpose. See `_no_tree`."""
+    """The only tree is executed whatever it is called (docs/spec/trees.md#main-tree), but hardly on purpose. See
+    `_no_tree`."""
     known = context.system is not None or close_names(wanted.value, [executed])
     if known and not context.missing_includes:
         message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"

@@ -60,7 +60,8 @@ def _mismatch(context: MachineContext, value: TypedValue, wanted: Type) -> Findi
 
 
 def _without_points(context: MachineContext, value: TypedValue, wanted: Type) -> list[TextEdit]:
-    """How to write a real value as the int that the translation makes of it (spec/03 §5.2), if it does."""
+    """How to write a real value as the int that the translation makes of it (docs/spec/expressions.md#whole-reals), if
+    it does."""
     if not isinstance(value.value, Expression):
         return []
     tree = value.value.tree

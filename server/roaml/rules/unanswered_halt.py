@@ -29,7 +29,7 @@ from roaml.xml import Document, Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A plugin whose parent halts it must answer, or the parent waits for ever (spec/01 §11.2)."""
+    """A plugin whose parent halts it must answer, or the parent waits for ever (docs/spec/plugins.md#protocol)."""
     halted = list(_halted(context))
     if not halted:
         return

@@ -31,7 +31,8 @@ def check(context: FileContext) -> Iterator[Finding]:
             message = f"`<{element.name}>` has no condition; test it with an `<if>` inside"
             yield RULE.at(attribute.name_span, message, severity=Severity.ERROR)
             continue
-        # The reference translator refuses unknown attributes of <transition> and overlooks all others (spec/07 1.19).
+        # The reference translator refuses unknown attributes of <transition> and overlooks all others
+        # (docs/spec/differences.md#rejected-machines).
         certain = bool(close) or element.name == "transition"
         message = f"`<{element.name}>` has no attribute `{attribute.name}`{did_you_mean(close)}"
         yield RULE.at(

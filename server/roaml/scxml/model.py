@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML: what HL-SCXML is lowered to, and what becomes JANI (spec/04).
+"""Plain SCXML: what HL-SCXML is lowered to, and what becomes JANI (docs/spec/plain-scxml.md).
 
 - Flat state machines that share nothing and exchange events by name. No ROS, no trees, no structs: variables are
   scalars, strings and arrays of those.
 - Frozen. Everything has an `origin`: the place in the models that it exists for, synthesised parts included.
 - Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans lie
   in the file of the origin around them.
-- Whole numbers are ints outside of initial values, however they were written (spec/03 §5.2).
+- Whole numbers are ints outside of initial values, however they were written (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from roaml.text import Location
 
 
 class Role(enum.Enum):
-    """What an automaton is in the system; the translation to JANI treats some differently (spec/05 §6, §8)."""
+    """What an automaton is in the system; the translation to JANI treats some differently
+    (docs/spec/jani.md#discarding)."""
 
     MACHINE = "machine"
     TREE_ROOT = "root of the behavior tree"
@@ -127,7 +128,7 @@ class Automaton:
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """All automata of a system, in processing order (spec/02 §2.2).
+    """All automata of a system, in processing order (docs/spec/systems.md#processing-order).
 
     Attributes:
         max_array_size: the most elements of an array without a bound, and of every array that is sent.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML as documents that other tools read (spec/04 §9): one for each automaton.
+"""Plain SCXML as documents that other tools read (docs/spec/plain-scxml.md#documents): one for each automaton.
 
 - Every `<data>` has its type in a comment before it, as SCXML itself knows none.
 - A `<send>` is written once for each automaton that receives the event, with that as its target; `NONE` if there is
   none.
 - A transition with several targets becomes a state that draws a number and goes on by it, so every taking of the
-  transition draws anew (spec/07 1.27).
+  transition draws anew (docs/spec/plain-scxml.md#documents).
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML -> JANI (spec/05): every automaton an automaton, every event a buffer of one place.
+"""Plain SCXML -> JANI (docs/spec/jani.md): every automaton an automaton, every event a buffer of one place.
 
 Knows `roaml.scxml` and `roaml.jani`, nothing of HL-SCXML, ROS or files.
 """

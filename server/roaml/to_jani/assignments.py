@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments of plain SCXML -> JANI (spec/05 §5.3): of an array its elements and all its lengths, at once."""
+"""Assignments of plain SCXML -> JANI (docs/spec/jani.md#assignments): of an array its elements and all its lengths, at
+once."""
 
 from __future__ import annotations
 

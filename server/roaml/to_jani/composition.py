@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Event automata, and how all automata synchronise (spec/05 §7).
+"""Event automata, and how all automata synchronise (docs/spec/jani.md#event-automata).
 
 - An event has one buffer: sent, it waits in its automaton until all receivers take it at once.
 - The clock steps, and timers tick, only while no event waits; the blackboard is asked only while no write to it waits.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The moves of one automaton -> locations and edges (spec/05 §4-§6, §9).
+"""The moves of one automaton -> locations and edges (docs/spec/jani.md#edges).
 
 - Probabilities and bounds on steps depend on how many edges a move takes: assignments join the edge before them; a
   `send`, each branch of an `if` and each draw of a random number is an edge of its own.
@@ -79,7 +79,7 @@ def flow_of(behavior: Behavior, table: Mapping[str, Event], max_array_size: int,
     """The flow of an automaton. What waits for an event that nobody sends is left out; its further course stays.
 
     Args:
-        random_values: how many values `Math.random()` has (spec/03 §7).
+        random_values: how many values `Math.random()` has (docs/spec/expressions.md#random).
     """
     return _FlowBuilder(behavior, table, max_array_size, random_values).build()
 
@@ -163,7 +163,7 @@ class _FlowBuilder:
     def discarding(
         self, state: State, handled: Mapping[str, Sequence[Expression | None]], events: Iterable[str]
     ) -> None:
-        """Self-loops that swallow the events which a state does not handle (spec/05 §6)."""
+        """Self-loops that swallow the events which a state does not handle (docs/spec/jani.md#discarding)."""
         if self.behavior.automaton.role in (Role.TREE_ROOT, Role.HANDLER) or None in handled.get("", ()):
             return
         for event in events:

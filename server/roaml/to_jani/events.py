@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All events of a network: who sends them, who receives them, and the types of their parameters (spec/03 §6)."""
+"""All events of a network: who sends them, who receives them, and the types of their parameters
+(docs/spec/jani.md#global-variables)."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an automaton does, transition by transition: everything that runs between two states in one sequence.
 
-The body of a move is `<onexit>` of the source, the transition's own, `<onentry>` of the target (spec/05 §5.1). The
-start is a move, too, if the initial state has an `<onentry>`.
+The body of a move is `<onexit>` of the source, the transition's own, `<onentry>` of the target
+(docs/spec/jani.md#transitions). The start is a move, too, if the initial state has an `<onentry>`.
 """
 
 from __future__ import annotations

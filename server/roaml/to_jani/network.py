@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A network of plain automata -> one JANI model (spec/05)."""
+"""A network of plain automata -> one JANI model (docs/spec/jani.md)."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
 
 
 def _global_shapes(event: Event, max_array_size: int) -> Iterator[tuple[str, tuple[Shape, Location]]]:
-    """The variables of an event: its flag, its parameters and their lengths (spec/05 §3.2)."""
+    """The variables of an event: its flag, its parameters and their lengths (docs/spec/jani.md#global-variables)."""
     yield f"{event.name}.valid", (Shape(BOOL), event.origin)
     for param, type_ in event.params.items():
         name, origin = f"{event.name}__{param}", event.places[param]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as they are checked (spec/05 §10).
+"""Properties as they are checked (docs/spec/jani.md#properties).
 
 - Comparisons with an array literal are spelled out.
 - The clock of the system is a variable: bounds on time, and on rewards, of which there are none, are left out.

@@ -2,7 +2,7 @@
 """How values are stored: scalars as they are, strings and arrays with fixed capacities and lengths beside them.
 
 An array `a` of n dimensions has the companions `a.d1_len`, an int, ..., `a.dn_len`, an array of n - 1 dimensions: its
-element i is the length of row i (spec/05 §3).
+element i is the length of row i (docs/spec/jani.md#array-storage).
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def length_name(array: str, dimension: int) -> str:
 
 
 def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> Shape:
-    """The shape of a variable. What is sent has the capacity `max_array_size` in every dimension (spec/05 §3.2)."""
+    """The shape of a variable. What is sent has the capacity `max_array_size` in every dimension
+    (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
     if isinstance(element, EmptyArray) or is_kind(element, "string"):
         bounds = (*bounds, None)

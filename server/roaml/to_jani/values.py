@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions of plain SCXML -> JANI (spec/03 §4, §8, §9).
+"""Expressions of plain SCXML -> JANI (docs/spec/jani.md#values).
 
 - Strings are arrays of their UTF-8 bytes. An array (`ArrayForm`) is several JANI values: its elements and its lengths.
 - `-x` is `0 - x`, nothing is folded or simplified otherwise.
@@ -158,7 +158,8 @@ def length_of(array: ArrayForm) -> Expression:
 
 
 def elements_as(array: ArrayForm, shape: Shape) -> Expression:
-    """The JANI value of an array, literals padded with zeros to the capacities of `shape` (spec/07 1.28)."""
+    """The JANI value of an array, literals padded with zeros to the capacities of `shape`
+    (docs/spec/jani.md#assignments)."""
     match array:
         case Stored():
             return array.value
@@ -196,7 +197,7 @@ def lengths_as(array: ArrayForm, shape: Shape, dimension: int) -> Expression:
 
 
 def as_base(value: Expression, shape: Shape) -> Expression:
-    """A literal as it is stored: whole numbers among reals are reals (spec/07 1.25)."""
+    """A literal as it is stored: whole numbers among reals are reals (docs/spec/jani.md#values)."""
     if shape.base is not REAL:
         return value
     match value:
@@ -270,7 +271,7 @@ class Scope:
         return None
 
     def element(self, expr: Expr) -> Expression | Listed:
-        """An element of an array literal. Negative numbers are literals here (spec/03 §4)."""
+        """An element of an array literal. Negative numbers are literals here (docs/spec/jani.md#values)."""
         array = self.array(expr)
         if isinstance(array, Listed):
             return array
@@ -347,7 +348,8 @@ class Scope:
 
 
 def equal_arrays(left: ArrayForm, right: ArrayForm) -> Expression:
-    """Equal lengths and equal elements. Storm and others know no equality of arrays (spec/05 §10.1)."""
+    """Equal lengths and equal elements. Storm and others know no equality of arrays
+    (docs/spec/jani.md#array-equality)."""
     if isinstance(left, Chosen):
         return jani.Conditional(left.test, equal_arrays(left.then, right), equal_arrays(left.otherwise, right))
     if isinstance(right, Chosen):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events of a translated system in the words of ROS and BehaviorTree.CPP (spec/04 §2)."""
+"""Events of a translated system in the words of ROS and BehaviorTree.CPP (docs/spec/plain-scxml.md#events)."""
 
 from __future__ import annotations
 

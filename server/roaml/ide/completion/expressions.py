@@ -189,7 +189,7 @@ def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Itera
     type_ = UNKNOWN if findings else infer(tree, scope.get)[0]
     if isinstance(type_, Array) or (isinstance(type_, Scalar) and type_.kind == "string"):
         yield Item("length", ItemKind.MEMBER, detail=str(INT))
-    # The member of an array of structs is the array of the members (spec/01 §3.3).
+    # The member of an array of structs is the array of the members (docs/spec/types.md#leaves).
     inner, bounds = unwrap(type_)
     if not isinstance(inner, Struct):
         return

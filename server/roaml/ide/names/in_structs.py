@@ -27,7 +27,7 @@ def in_xml(declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Oc
 
 
 def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Occurrence]:
-    """A property that is an object names a member and a struct with one word (spec/01 §3.2)."""
+    """A property that is an object names a member and a struct with one word (docs/spec/types.md#json-structs)."""
     found: dict[Occurrence, None] = {}
     names = set()
     for struct in declarations:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of BehaviorTree.CPP as HL-SCXML machines (spec/02 §5, §7.2).
+"""The nodes of BehaviorTree.CPP as HL-SCXML machines (docs/spec/nodes.md).
 
 Each is a document beside this module; `Switch`, whose size varies, is written on demand. Besides the ports that the
 schema describes they have some that are filled in here.

@@ -2,8 +2,9 @@
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
 A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step takes an
-event, or none, runs all that belongs to the transition (spec/01 §4.2) and ends in a configuration. What has happened
-before decides which events may come: a response only after its request, a tick only when the last one is answered.
+event, or none, runs all that belongs to the transition (docs/spec/machines.md#onentry) and ends in a configuration.
+What has happened before decides which events may come: a response only after its request, a tick only when the last one
+is answered.
 
 - The graph contains every path that the chart can take, and it may contain paths that it cannot take.
 - Its size is bounded. Where what is known differs too much, it is forgotten; a chart that is still too large has no
@@ -119,7 +120,8 @@ class Step:
         event: what is received; None for a transition without event.
         handler: that receives it; where no condition holds the last one that was tried.
         choice: which of the handler's targets is taken.
-        ignored: no condition holds, so that the event is consumed without effect (spec/05 §6).
+        ignored: no condition holds, so that the event is consumed without effect
+            (docs/spec/semantics.md#discarded-events).
         sent: what is sent, in order.
         faults: what is wrong in it.
         certain: no condition inside its bodies decides on where it leads.
@@ -496,7 +498,7 @@ class _Explorer:
             self._choose(group, handlers, taken)
 
     def _choose(self, group: _Group, handlers: tuple[Handler, ...], taken: _Path) -> None:
-        """The first handler whose condition holds is executed (spec/01 §5.3)."""
+        """The first handler whose condition holds is executed (docs/spec/machines.md#selection)."""
         facts, event = self.facts, group.event
         ways = [taken.knowledge]
         matters = event is not None and event.part in _ANSWERABLE

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can happen in a system while its clock stands still, and what comes only when time passes (spec/05 §7).
+"""What can happen in a system while its clock stands still, and what comes only when time passes
+(docs/spec/semantics.md#time).
 
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
 So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
@@ -233,7 +234,7 @@ def _below(system: System, plugin: Automaton) -> Iterator[Automaton]:
 
 def comes_again(system: System, receiver: Automaton, chart: int, event: Event, sent: frozenset[Event]) -> bool:
     """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
-    `sent` since. Time may pass meanwhile (spec/05 §7).
+    `sent` since. Time may pass meanwhile (docs/spec/semantics.md#time).
 
     Args:
         chart: its index in the outline; one of several copies of a thread does not hinder the others.
