@@ -21,7 +21,7 @@ from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import entry
 from roaml import __version__
 from roaml.diagnostics import Diagnostic, RelatedPlace, Severity
-from roaml.rules import BY_CODE, RULES, document
+from roaml.rules import BY_CODE, RULES, cited, document
 from roaml.text import Location, SourceFile, Span
 
 FOLDER = "/models, 100%: 字"
@@ -305,7 +305,7 @@ def test_sarif_carries_the_documents_of_rules() -> None:
     rules = log["runs"][0]["tool"]["driver"]["rules"]
     assert [rule["id"] for rule in rules] == sorted(BY_CODE)
     for rule in rules:
-        assert rule["help"]["markdown"] == document(rule["id"])
+        assert rule["help"]["markdown"] == cited(document(rule["id"]))
         assert rule["shortDescription"]["text"] == BY_CODE[rule["id"]].summary
 
 
