@@ -236,8 +236,10 @@ class StatementLowering:
         return Param("status", value, origin)
 
     def call_child(self, statement: CallChild, origin: Location) -> Iterator[Statement]:
-        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children). The place of what it is
-        sent is that of the child in the tree."""
+        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children).
+
+        The place of what the child is sent is that of the child in the tree.
+        """
         assert statement.child is not None
         children = self.children
         verb = "halt" if statement.halts else "tick"

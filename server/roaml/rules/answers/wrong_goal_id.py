@@ -85,7 +85,7 @@ def _fixes(context: MachineContext, step: Step, fault: Fault, statement: Communi
 
 
 def _constants(context: MachineContext) -> Iterator[Finding]:
-    """A constant is the id of one client's goals (spec/01 §10), whoever sent the goal."""
+    """A constant is the id of one client's goals (docs/spec/ros.md#goal-ids), whoever sent the goal."""
     if context.system is None:
         return
     for declaration, _, channel in declared(context, "action-server"):

@@ -13,7 +13,7 @@ from roaml.rules.support.conditions import covered
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """The first branch whose condition holds is executed (spec/01 §6.3)."""
+    """The first branch whose condition holds is executed (docs/spec/machines.md#if)."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if not isinstance(statement, If) or len(statement.branches) < 2:
