@@ -19,11 +19,9 @@ from pathlib import Path
 from typing import IO, Any, TypeAlias
 
 from bench.report import listed
+from patience import PATIENCE
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
-PATIENCE = 60
-"""Seconds to wait for an answer before giving up."""
-
 
 Wanted: TypeAlias = Callable[[dict[str, Any]], bool]
 """Whether a message is waited for."""
