@@ -6,8 +6,8 @@ its standard streams, arguments, folder and environment to the process that has 
 copies. A fork of that runs the program, and the caller ends as it has ended. If the caller is killed, so is the fork.
 
 What the interpreter itself does when it starts and ends is not tested in this way: encoding, buffering and closing of
-the standard streams, signals, what is imported. Tests of these start the real program. `PYTHONUNBUFFERED` is obeyed, and
-so is the limit of the size of files.
+the standard streams, signals, what is imported. Tests of these start the real program. `PYTHONUNBUFFERED` and the limit
+of the size of files are obeyed.
 """
 
 from __future__ import annotations
@@ -164,10 +164,10 @@ def _run(request: dict[str, Any], streams: list[int]) -> None:
         os.environ.update(request["environment"])
         resource.setrlimit(resource.RLIMIT_FSIZE, tuple(request["file size"]))
         is_unbuffered = bool(os.environ.get("PYTHONUNBUFFERED"))
-        sys.stdin = open(0, encoding="utf-8", closefd=False)
+        sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
         sys.stdout, sys.stderr = (
             io.TextIOWrapper(
-                open(stream, "wb", buffering=0 if is_unbuffered else -1, closefd=False),
+                os.fdopen(stream, "wb", buffering=0 if is_unbuffered else -1, closefd=False),
                 encoding="utf-8",
                 errors=errors,
                 line_buffering=stream == 2 or os.isatty(stream),

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, TypeAlias
@@ -33,11 +33,11 @@ class Server:
     capabilities: what it says it can do.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, command: Sequence[str] = COMMAND) -> None:
         pipe = subprocess.PIPE
         self.started = time.perf_counter()
         self.capabilities: dict[str, Any] = {}
-        self._process = subprocess.Popen(COMMAND, stdin=pipe, stdout=pipe)
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe)
         self._answers: queue.Queue[tuple[float, dict[str, Any]]] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -157,8 +157,8 @@ def _bodies(stream: IO[bytes]) -> Iterator[tuple[float, bytes]]:
 
 
 @contextmanager
-def started() -> Iterator[Server]:
-    server = Server()
+def started(command: Sequence[str] = COMMAND) -> Iterator[Server]:
+    server = Server(command)
     try:
         yield server
     finally:
