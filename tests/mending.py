@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.ide.actions import quick_fixes
-from roaml.ide.change import Action, Change
+from roaml.ide.code_actions import quick_fixes
+from roaml.ide.code_actions.action import Action, Change
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import apply_edits

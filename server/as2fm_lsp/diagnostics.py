@@ -24,7 +24,7 @@ from lsprotocol import types
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.session import Moment, Session
-from roaml.ide.occurrences import uses
+from roaml.ide.names.occurrences import uses
 from roaml.project.memo import Interrupted
 from roaml.text import SourceFile
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from lsprotocol import types
 
-from roaml.ide.markdown import plain
+from roaml.ide.describe.markdown import plain
 
 
 def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from roaml.ide.hints import HintKind
+from roaml.ide.inlay_hints import HintKind
 
 _ON = {
     HintKind.TYPES: True,

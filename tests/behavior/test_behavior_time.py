@@ -11,7 +11,7 @@ import pytest
 from fixture import split_files
 from mending import applied, found, workspace_of
 from roaml import api
-from roaml.ide.actions import quick_fixes
+from roaml.ide.code_actions import quick_fixes
 from roaml.rules import document
 from roaml.smc.run import Options
 

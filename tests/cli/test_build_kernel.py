@@ -59,6 +59,18 @@ def test_what_fails_leaves_nothing_behind(
     assert list(source.parent.iterdir()) == [source]
 
 
+def test_an_interrupted_attempt_is_no_answer(
+    source: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    compiler(monkeypatch, tmp_path_factory.mktemp("tools") / "cc", "kill -TERM $$")
+    assert main(source) == 2
+    assert "ended by signal 15" in capsys.readouterr().err
+    assert list(source.parent.iterdir()) == [source]
+
+
 def test_no_compiler(source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sysconfig, "get_config_var", {"LDSHARED": "/nowhere/cc -shared"}.get)
     with pytest.raises(BuildError, match="there is no C compiler"):

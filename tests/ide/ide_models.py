@@ -9,7 +9,7 @@ from pathlib import Path
 from fixture import split_files
 from marked import Case
 from roaml import api
-from roaml.ide.occurrence import Access, Occurrence
+from roaml.ide.names.occurrence import Access, Occurrence
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings
 

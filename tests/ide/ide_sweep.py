@@ -13,8 +13,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml import api
-from roaml.ide.find import Thing, systems_of, thing
-from roaml.ide.occurrences import uses
+from roaml.ide.names.lookup import Thing, systems_of, thing
+from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import Refusal, Renaming, prepare, rename
 from roaml.jani.writer import write
 from roaml.model.system import safe_name, sanitise

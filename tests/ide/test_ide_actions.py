@@ -15,8 +15,8 @@ from ide_models import system_file
 from fixture import split_files
 from mending import applied, found
 from roaml.diagnostics import Severity
-from roaml.ide.actions import actions
-from roaml.ide.change import FIX_ALL, QUICK_FIX, Action
+from roaml.ide.code_actions import actions
+from roaml.ide.code_actions.action import FIX_ALL, QUICK_FIX, Action
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import Span

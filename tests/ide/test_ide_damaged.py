@@ -10,17 +10,18 @@ import pytest
 from ide_models import CORNERS, load
 
 from fixture import split_files
-from roaml.ide import calls, navigate
+from roaml.ide import navigation
+from roaml.ide.hierarchy import calls
 from roaml.ide.rename import Renaming, prepare, rename
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
 QUESTIONS = (
-    navigate.definition,
-    navigate.declaration,
-    navigate.type_definition,
-    navigate.implementation,
-    navigate.references,
+    navigation.definition,
+    navigation.declaration,
+    navigation.type_definition,
+    navigation.implementation,
+    navigation.references,
 )
 
 
@@ -28,7 +29,7 @@ def ask(analysis: Analysis, path: str, offset: int) -> None:
     for question in QUESTIONS:
         for place in question(analysis, path, offset):
             within(analysis, place)
-    for highlight in navigate.highlights(analysis, path, offset):
+    for highlight in navigation.highlights(analysis, path, offset):
         within(analysis, Location(path, highlight.span))
     for item in calls.items_at(analysis, path, offset):
         for call in (*calls.incoming(analysis, item.symbol), *calls.outgoing(analysis, item.symbol)):

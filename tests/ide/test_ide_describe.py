@@ -11,10 +11,10 @@ from ide_models import ROBOT, load
 from fixture import split_files
 from roaml.diagnostics import Symbol
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
-from roaml.ide import describe_language
 from roaml.ide.describe import describe
-from roaml.ide.markdown import file, name, names, plain, prose
-from roaml.ide.remark import remark
+from roaml.ide.describe import language as describe_language
+from roaml.ide.describe.comment import remark
+from roaml.ide.describe.markdown import file, name, names, plain, prose
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
 from roaml.xml import parse
 

@@ -8,8 +8,8 @@ from textwrap import dedent
 import pytest
 from ide_case import analysis_of, marked, one_file, path_of
 
-from roaml.ide.format import can_format, format_edits
-from roaml.ide.layout import Layout
+from roaml.ide.formatting import can_format, format_edits
+from roaml.ide.formatting.layout import Layout
 from roaml.text import apply_edits
 
 

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from examples import examples
 from fuzz.corpus import Model, snippets, systems
 from roaml import api
-from roaml.ide.format import can_format, format_edits
-from roaml.ide.layout import Layout
+from roaml.ide.formatting import can_format, format_edits
+from roaml.ide.formatting.layout import Layout
 from roaml.project.settings import Settings
 from roaml.text import apply_edits
 from roaml.xml import Element, Instruction, Node, Text, parse

@@ -13,9 +13,9 @@ from ide_models import CORNERS, ROBOT, load
 from fixture import split_files
 from fuzz.corpus import systems
 from roaml import api
-from roaml.ide import describe_language
+from roaml.ide.describe import language as describe_language
+from roaml.ide.describe.markdown import plain
 from roaml.ide.hover import hover
-from roaml.ide.markdown import plain
 from roaml.language import HL_SCXML
 from roaml.language.json_schema import PROPERTIES
 from roaml.project.settings import Settings

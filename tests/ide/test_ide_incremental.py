@@ -10,8 +10,8 @@ import pytest
 from ide_models import CORNERS, ROBOT, system_file
 
 from fixture import split_files
-from roaml.ide.find import systems_of
-from roaml.ide.occurrences import occurrences
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.names.occurrences import occurrences
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 

@@ -10,9 +10,9 @@ from ide_case import analysis_of, path_of
 
 from fuzz.corpus import ROOT
 from roaml import api
-from roaml.ide.document_symbol import DocumentSymbol
 from roaml.ide.jani_view import jani_view
-from roaml.ide.symbols import document_symbols
+from roaml.ide.navigation.document_symbol import DocumentSymbol
+from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.jani.writer import write
 
 RANGE = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 9}

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from ide_case import analysis_of, path_of
 from ide_models import CORNERS, ROBOT
@@ -17,10 +17,10 @@ from markdown_it import MarkdownIt
 from fixture import split_files
 from roaml.ide.completion import complete
 from roaml.ide.completion.document import document
-from roaml.ide.hints import explain, inlay_hints
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, plain, prose
 from roaml.ide.hover import hover
-from roaml.ide.markdown import code, file, lines, name, names, paragraphs, plain, prose
-from roaml.ide.signature import signature_help
+from roaml.ide.inlay_hints import explain, inlay_hints
+from roaml.ide.signature_help import signature_help
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import Span
@@ -63,6 +63,8 @@ anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
 
 
 @given(anything, anything, anything)
+@example("`<i>``<i>`", "[x](y)`<i>`", "")
+@example("[x]`(y)<i>`", "", "")
 def test_pieces(first: str, second: str, third: str) -> None:
     """However they are put together."""
     made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))

@@ -12,17 +12,18 @@ import pytest
 from ide_models import ROBOT, load
 
 from fixture import split_files
-from roaml.ide import calls, navigate
-from roaml.ide.search import search
+from roaml.ide import navigation
+from roaml.ide.hierarchy import calls
+from roaml.ide.navigation.workspace_symbols import search
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
 QUESTIONS = {
-    "definition": navigate.definition,
-    "declaration": navigate.declaration,
-    "type": navigate.type_definition,
-    "implementation": navigate.implementation,
-    "references": navigate.references,
+    "definition": navigation.definition,
+    "declaration": navigation.declaration,
+    "type": navigation.type_definition,
+    "implementation": navigation.implementation,
+    "references": navigation.references,
 }
 
 # file, a piece of its text with a caret, question: the places as `file:line:text`
@@ -92,7 +93,7 @@ def test_places(file: str, piece: str, question: str, expected: list[str], tmp_p
 def test_references_without_declaration(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     place = caret(tmp_path, "a.ascxml", 'event="g|o" target')
-    found = navigate.references(analysis, *place, with_declaration=False)
+    found = navigation.references(analysis, *place, with_declaration=False)
     assert shown(analysis, found) == ["a.ascxml:6:go", "properties.jani:1:go", "properties.jani:2:go"]
 
 
@@ -101,7 +102,7 @@ def test_highlights(tmp_path: Path) -> None:
     path, offset = caret(tmp_path, "a.ascxml", 'location="|p.x"')
     source = analysis.source(path)
     assert source is not None
-    found = navigate.highlights(analysis, path, offset)
+    found = navigation.highlights(analysis, path, offset)
     lines = [(source.lines.position(each.span.start).line + 1, each.access.name) for each in found]
     assert lines == [(2, "WRITE"), (5, "READ"), (6, "WRITE")]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from ide_models import found, load, load_marked, system_file
 
-from roaml.ide.frames import Trees
-from roaml.ide.in_properties import names
-from roaml.ide.occurrences import occurrences, trees_of
+from roaml.ide.names.frames import Trees
+from roaml.ide.names.in_properties import names
+from roaml.ide.names.occurrences import occurrences, trees_of
 
 ALONE = {
     "states and variables": """

@@ -9,11 +9,11 @@ import pytest
 from ide_case import analysis_of, marked, one_file, path_of, several_files
 
 from fixture import read_marks, split_files
-from roaml.ide.closing import close_tag
-from roaml.ide.folding import FoldKind, folds
-from roaml.ide.linked import linked_names
-from roaml.ide.links import links
-from roaml.ide.selection import selections
+from roaml.ide.folding_range import FoldKind, folds
+from roaml.ide.linked_editing import linked_names
+from roaml.ide.navigation.document_links import links
+from roaml.ide.on_type import close_tag
+from roaml.ide.selection_range import selections
 from roaml.text import TextEdit, apply_edits
 
 # -------------------------------------------------------------------- folding

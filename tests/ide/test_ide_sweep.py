@@ -12,17 +12,17 @@ import pytest
 from fuzz.strategies.files import make
 from roaml import api
 from roaml.diagnostics import Severity
-from roaml.ide.actions import actions
-from roaml.ide.change import FIX_ALL, Change
-from roaml.ide.closing import close_tag
-from roaml.ide.document_symbol import DocumentSymbol
-from roaml.ide.folding import folds
-from roaml.ide.format import format_edits
-from roaml.ide.linked import linked_names
-from roaml.ide.links import links
-from roaml.ide.selection import selections
-from roaml.ide.symbols import document_symbols
-from roaml.ide.tokens import semantic_tokens
+from roaml.ide.code_actions import actions
+from roaml.ide.code_actions.action import FIX_ALL, Change
+from roaml.ide.folding_range import folds
+from roaml.ide.formatting import format_edits
+from roaml.ide.linked_editing import linked_names
+from roaml.ide.navigation.document_links import links
+from roaml.ide.navigation.document_symbol import DocumentSymbol
+from roaml.ide.navigation.document_symbols import document_symbols
+from roaml.ide.on_type import close_tag
+from roaml.ide.selection_range import selections
+from roaml.ide.semantic_tokens import semantic_tokens
 from roaml.project.settings import Settings
 from roaml.text import Span
 

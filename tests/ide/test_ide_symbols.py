@@ -9,8 +9,8 @@ from textwrap import dedent
 import pytest
 from ide_case import one_file
 
-from roaml.ide.document_symbol import DocumentSymbol
-from roaml.ide.symbols import document_symbols
+from roaml.ide.navigation.document_symbol import DocumentSymbol
+from roaml.ide.navigation.document_symbols import document_symbols
 
 CASES = {
     "machine": """

@@ -14,7 +14,7 @@ from ide_case import analysis_of, marked, one_file, path_of
 
 from fuzz.corpus import snippets, systems
 from roaml import api
-from roaml.ide.tokens import Modifier, Token, semantic_tokens
+from roaml.ide.semantic_tokens import Modifier, Token, semantic_tokens
 from roaml.project.settings import Settings
 from roaml.text import SourceFile
 

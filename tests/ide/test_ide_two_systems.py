@@ -7,8 +7,8 @@ import pytest
 from ide_case import path_of
 from ide_models import system_file
 
-from roaml.ide.hints import inlay_hints
-from roaml.ide.lenses import counted, lenses
+from roaml.ide.code_lens import counted, lenses
+from roaml.ide.inlay_hints import inlay_hints
 from roaml.ide.system_names import grouped, system_names
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings

@@ -202,9 +202,9 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert first["uri"] == arm
     line = (robot / "arm.ascxml").read_text().splitlines()[first["range"]["start"]["line"]]
     assert line[first["range"]["start"]["character"] :].startswith("<")
-    lit = [each["node"] for step in steps for each in step["lit"] if each["uri"] == arm]
-    assert "/still" in lit
-    assert {each["kind"] for step in steps for each in step["lit"]} == {"machine", "tree"}
+    nodes = [each["node"] for step in steps for each in step["highlights"] if each["uri"] == arm]
+    assert "/still" in nodes
+    assert {each["kind"] for step in steps for each in step["highlights"]} == {"machine", "tree"}
     assert all(step["time"].endswith(" s") for step in steps if step["who"])
 
 
@@ -220,9 +220,9 @@ async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
         tree = await ask(client, "as2fm/picture", params)
     # It holds, which is what must not be: the story is that of a trace in which it does.
     assert (found["verdict"], found["expected"]) == ("passed", "≤ 0.5")
-    lit = {each["node"] for step in found["steps"] for each in step["lit"] if each["kind"] == "tree"}
-    assert lit
-    assert lit <= {node["id"] for node in tree["nodes"]}
+    nodes = {each["node"] for step in found["steps"] for each in step["highlights"] if each["kind"] == "tree"}
+    assert nodes
+    assert nodes <= {node["id"] for node in tree["nodes"]}
 
 
 async def test_progress_tells_the_estimate(robot: Path) -> None:
@@ -337,7 +337,7 @@ async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) ->
                 "Fetch (bt_1002)",
                 "Pharmacy",
             ]
-            assert found["steps"][-1]["lit"][0]["node"] == "/busy"
+            assert found["steps"][-1]["highlights"][0]["node"] == "/busy"
         silent = await verify(client, main, ["delivered"], {**QUICK, "stuck": "error"})
         assert silent["stuck"]["level"] == "error"
         asked = await verify(client, main, ["stuck"], QUICK)

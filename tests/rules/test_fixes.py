@@ -15,7 +15,7 @@ from test_documents import WITH_EXAMPLE, examples
 from fixture import read_marks, split_files
 from mending import applied, broken_promises, found, workspace_of
 from roaml.diagnostics import Diagnostic, Fix
-from roaml.ide.actions import quick_fixes
+from roaml.ide.code_actions import quick_fixes
 from roaml.project.fixing import fix_all
 from roaml.rules import RULES, document
 from roaml.rules.rule import Rule

@@ -11,7 +11,7 @@ import pytest
 import conformance
 from mending import applied, broken_promises, found, workspace_of
 from roaml.diagnostics import Severity
-from roaml.ide.actions import quick_fixes
+from roaml.ide.code_actions import quick_fixes
 from roaml.text import apply_edits
 
 MISTAKES = conformance.mistakes()

@@ -11,13 +11,15 @@ import signal
 import tracemalloc
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from threading import Barrier
 from typing import Any
 
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.smc.batch import Outcome, Task, run
+from roaml.smc.batch import Outcome, Task, kernel_of, run
 from roaml.smc.fault import FaultError
+from roaml.smc.kernel import Kernel
 from roaml.smc.model import Checker
 from roaml.smc.pool import ATTEMPTS, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
@@ -84,6 +86,21 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
     assert numbers(ask(options, pool=Pool(jobs, patience=0))) == numbers(alone)
     with ThreadPoolExecutor(jobs) as executor:
         assert numbers(ask(options, pool=Pool(jobs, executor))) == numbers(alone)
+
+
+def test_threads_do_not_share_a_kernel() -> None:
+    """Else one thread would continue the trace of another."""
+    checker = Checker(model(coin()))
+    payload = checker.payload(checker.asked[0])
+    together = Barrier(2)
+
+    def kernel(_: int) -> Kernel:
+        together.wait()
+        return kernel_of(payload)
+
+    with ThreadPoolExecutor(2) as executor:
+        first, second = executor.map(kernel, range(2))
+    assert first is not second
 
 
 def test_going_on_after_an_interruption() -> None:

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { setTimeout as wait } from "node:timers/promises";
+import * as fs from "node:fs";
+import * as path from "node:path";
 import { sample, type Stage } from "./support/stage";
+
+/** Wait until it is known whether the kernel can be compiled. */
+async function kernelMark(home: string): Promise<void> {
+    const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
+    const isKnown = () =>
+        fs.readdirSync(environments).some((name) => fs.existsSync(path.join(environments, name, "kernel.json")));
+    const limit = Date.now() + 600_000;
+    while (!isKnown()) {
+        assert.ok(Date.now() < limit, "the kernel has not been compiled");
+        await wait(200);
+    }
+}
 
 export function firstStart(stage: Stage): void {
     stage.use();
@@ -29,5 +44,7 @@ export function firstStart(stage: Stage): void {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+        // The first start ended while the kernel of the model checker was being compiled.
+        await kernelMark(stage.workbench.home);
     });
 }

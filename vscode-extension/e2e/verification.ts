@@ -58,26 +58,26 @@ export function verification(stage: Stage): void {
         await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
         await window.statusItem("Ln 18, Col 9").waitFor();
-        await tree.locator('.node.lit[data-label="BatteryAbove"]').waitFor();
+        await tree.locator('.node.highlighted[data-label="BatteryAbove"]').waitFor();
         await window.screenshot("counterexample");
         // What has come of it stands below the step.
         await step(window, "battery: 100 → 40").waitFor();
         await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
         await step(window, "ReactiveFallback (bt_1001): answers SUCCESS").first().click();
-        await tree.locator('.node.lit[data-label="ReactiveFallback"]').waitFor();
+        await tree.locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
         await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
-        assert.equal(await tree.locator(".node.lit").count(), 1);
-        // A picture that is opened later is lit as well.
+        assert.equal(await tree.locator(".node.highlighted").count(), 1);
+        // A picture that is opened later is highlighted as well.
         await window.page.locator(".tab", { hasText: "Behavior Tree: " }).locator(".codicon-close").click();
         await button(window, "Show Behavior Tree").click();
-        await (await window.picture()).locator('.node.lit[data-label="ReactiveFallback"]').waitFor();
+        await (await window.picture()).locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
         // The machine that takes the step is drawn, in the state that it is then in.
         await window.openFile("building.ascxml");
         await button(window, "Show State Machine").click();
         const machine = await window.picture('.node[data-label="open"]');
         await step(window, "Battery: receives").first().click();
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
-        await machine.locator('.node.lit[data-label="driving"]').waitFor();
+        await machine.locator('.node.highlighted[data-label="driving"]').waitFor();
         await window.screenshot("counterexample-machine");
     });
 

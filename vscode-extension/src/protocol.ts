@@ -134,7 +134,7 @@ export interface VerifiableSystem {
 }
 
 /** A node of a picture. */
-export interface Lit {
+export interface Highlight {
     readonly kind: PictureKind;
     readonly uri: string;
     readonly node: string;
@@ -150,7 +150,7 @@ export interface Step extends Partial<Place> {
     readonly place: string;
     /** What has come of it: what has changed, what was sent. */
     readonly details: readonly string[];
-    readonly lit: readonly Lit[];
+    readonly highlights: readonly Highlight[];
 }
 
 export interface Counterexample {

@@ -48,14 +48,41 @@ test("an environment is made, the wheel installed and the mark written last", as
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
 });
 
-test("what is compiled is compiled in the environment, and what is said of it is told", async () => {
-    const on = new FakeMachine({ [INSIDE]: () => ({ status: 1, err: "there is no C compiler" }) });
-    let said = "";
-    await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").compile(
-        (text) => (said += text),
-    );
-    assert.deepEqual(on.ran, [`${INSIDE} -I -m as2fm_lsp.cli.build_kernel`]);
-    assert.equal(said, "there is no C compiler");
+/** An environment that has been made, in which the attempt to compile ends like this. */
+function made(ended: Partial<Ended>): { on: FakeMachine; environment: PrivateEnvironment } {
+    const on = new FakeMachine({ [INSIDE]: () => ended });
+    on.files.set(`${HOME}/ready.json`, '{"version": "0.1.0"}');
+    return { on, environment: new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2") };
+}
+
+const COMPILE = `${INSIDE} -I -m as2fm_lsp.cli.build_kernel`;
+
+test("the kernel is compiled in the environment, once", async () => {
+    const { on, environment } = made({ status: 0, out: "the kernel was compiled" });
+    let output = "";
+    for (let start = 0; start < 2; start++) await environment.compile((text) => (output += text));
+    assert.deepEqual(on.ran, [COMPILE]);
+    assert.equal(output, "the kernel was compiled");
+});
+
+test("without a C compiler it is tried once", async () => {
+    const { on, environment } = made({ status: 1, err: "there is no C compiler" });
+    for (let start = 0; start < 2; start++) await environment.compile(() => undefined);
+    assert.deepEqual(on.ran, [COMPILE]);
+});
+
+test("an attempt that was interrupted is repeated at the next start", async () => {
+    for (const status of [2, null]) {
+        const { on, environment } = made({ status });
+        for (let start = 0; start < 2; start++) await environment.compile(() => undefined);
+        assert.deepEqual(on.ran, [COMPILE, COMPILE]);
+    }
+});
+
+test("nothing is compiled where no environment was made", async () => {
+    const on = machine();
+    await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").compile(() => undefined);
+    assert.deepEqual(on.ran, []);
 });
 
 test("the preferred interpreter comes first", async () => {

@@ -34,6 +34,7 @@ def build(source: Path = SOURCE) -> Path:
 
     Raises:
         BuildError: it cannot be compiled here.
+        InterruptedError: the compiler was ended by a signal.
     """
     if not source.exists():
         raise BuildError("this installation does not carry the kernel as C")
@@ -50,6 +51,8 @@ def build(source: Path = SOURCE) -> Path:
             done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
         except OSError as error:
             raise BuildError(f"there is no C compiler: {error}") from None
+        if done.returncode < 0:
+            raise InterruptedError(f"{linker[0]} was ended by signal {-done.returncode}")
         if done.returncode != 0:
             reason = next((line for line in done.stderr.splitlines() if "error" in line), f"{linker[0]} failed")
             raise BuildError(f"the kernel does not compile: {reason}")
@@ -58,8 +61,16 @@ def build(source: Path = SOURCE) -> Path:
 
 
 def main(source: Path = SOURCE) -> int:
+    """
+    Returns:
+        The exit status: 0 if the kernel was compiled, 1 if it cannot be compiled here, 2 if the attempt was
+            interrupted.
+    """
     try:
         build(source)
+    except InterruptedError as error:
+        print(f"{error}; the kernel is compiled another time", file=sys.stderr)
+        return 2
     except (BuildError, OSError) as error:
         print(f"{error}; verification runs as plain Python", file=sys.stderr)
         return 1

@@ -13,7 +13,7 @@ from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.write import write_file
 from roaml.disk import Problem
-from roaml.ide.format import can_format, format_edits, is_ours
+from roaml.ide.formatting import can_format, format_edits, is_ours
 from roaml.language import HL_SCXML
 from roaml.model.dialect import dialect_of
 from roaml.model.kinds import FileKind

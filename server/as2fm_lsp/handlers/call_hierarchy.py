@@ -11,7 +11,7 @@ from lsprotocol import types
 from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, symbol_kind, unpack
 from roaml.diagnostics import Symbol
-from roaml.ide import calls
+from roaml.ide.hierarchy import calls
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 

@@ -16,8 +16,8 @@ from lsprotocol import types
 
 from as2fm_lsp.handlers import translate
 from roaml.diagnostics import Diagnostic
-from roaml.ide.actions import actions
-from roaml.ide.change import FIX_ALL, KINDS, Action, Change
+from roaml.ide.code_actions import actions
+from roaml.ide.code_actions.action import FIX_ALL, KINDS, Action, Change
 from roaml.project.workspace import Snapshot
 from roaml.text import Span
 

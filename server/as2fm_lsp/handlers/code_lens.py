@@ -17,7 +17,7 @@ from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.first_error import errors_of
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.shown import shown
-from roaml.ide.lenses import counted, lenses
+from roaml.ide.code_lens import counted, lenses
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from roaml.ide.format import format_edits
-from roaml.ide.layout import Layout
+from roaml.ide.formatting import format_edits
+from roaml.ide.formatting.layout import Layout
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

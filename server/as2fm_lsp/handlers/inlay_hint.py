@@ -12,7 +12,7 @@ from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import content
 from as2fm_lsp.shown import shown
-from roaml.ide.hints import HintKind, InlayHint, explain, inlay_hints
+from roaml.ide.inlay_hints import HintKind, InlayHint, explain, inlay_hints
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

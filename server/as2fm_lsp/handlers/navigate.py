@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from roaml.ide import navigate
-from roaml.ide.occurrence import Access
+from roaml.ide import navigation
+from roaml.ide.names.occurrence import Access
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -38,25 +38,25 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(params: types.DefinitionParams) -> list[types.Location]:
-        return locations(params.text_document, params.position, navigate.definition)
+        return locations(params.text_document, params.position, navigation.definition)
 
     @server.feature(types.TEXT_DOCUMENT_DECLARATION)
     def declaration(params: types.DeclarationParams) -> list[types.Location]:
-        return locations(params.text_document, params.position, navigate.declaration)
+        return locations(params.text_document, params.position, navigation.declaration)
 
     @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
     def type_definition(params: types.TypeDefinitionParams) -> list[types.Location]:
-        return locations(params.text_document, params.position, navigate.type_definition)
+        return locations(params.text_document, params.position, navigation.type_definition)
 
     @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
     def implementation(params: types.ImplementationParams) -> list[types.Location]:
-        return locations(params.text_document, params.position, navigate.implementation)
+        return locations(params.text_document, params.position, navigation.implementation)
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(params: types.ReferenceParams) -> list[types.Location]:
         def find(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
             with_declaration = params.context.include_declaration
-            return navigate.references(analysis, path, offset, with_declaration=with_declaration)
+            return navigation.references(analysis, path, offset, with_declaration=with_declaration)
 
         return locations(params.text_document, params.position, find)
 
@@ -65,5 +65,5 @@ def register(server: Server) -> None:
         on = asked(server, params.text_document)
         if on is None:
             return []
-        found = navigate.highlights(on.analysis, on.path, on.offset(params.position))
+        found = navigation.highlights(on.analysis, on.path, on.offset(params.position))
         return [types.DocumentHighlight(on.range(each.span), _HIGHLIGHTS[each.access]) for each in found]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.handlers.parameters import document_uri, string
-from roaml.ide.pictures import Picture, machine_picture, ros_picture, tree_picture
+from roaml.ide.diagrams import Picture, machine_picture, ros_picture, tree_picture
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 

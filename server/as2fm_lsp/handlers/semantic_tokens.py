@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import Asked, asked
-from roaml.ide.tokens import Modifier, Token, TokenKind, semantic_tokens
+from roaml.ide.semantic_tokens import Modifier, Token, TokenKind, semantic_tokens
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.markup import documentation
-from roaml.ide.signature import TRIGGERS, Signature, signature_help
+from roaml.ide.signature_help import TRIGGERS, Signature, signature_help
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

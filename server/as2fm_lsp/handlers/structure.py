@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import Asked, asked
-from roaml.ide.document_symbol import DocumentSymbol, SymbolKind
-from roaml.ide.folding import FoldKind, folds
-from roaml.ide.links import links
-from roaml.ide.selection import selections
-from roaml.ide.symbols import document_symbols
+from roaml.ide.folding_range import FoldKind, folds
+from roaml.ide.navigation.document_links import links
+from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.navigation.document_symbols import document_symbols
+from roaml.ide.selection_range import selections
 from roaml.text import Span
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from lsprotocol import types
 
 from roaml.diagnostics import Symbol
-from roaml.ide.occurrence import HANDLES
+from roaml.ide.names.occurrence import HANDLES
 
 _KINDS = {
     "machine": types.SymbolKind.Class,

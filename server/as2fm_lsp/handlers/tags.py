@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
-from roaml.ide.closing import TRIGGERS, close_tag
-from roaml.ide.linked import NAME_PATTERN, linked_names
+from roaml.ide.linked_editing import NAME_PATTERN, linked_names
+from roaml.ide.on_type import TRIGGERS, close_tag
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server

@@ -11,7 +11,7 @@ from lsprotocol import types
 from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.symbols import pack, unpack
 from roaml.diagnostics import Symbol
-from roaml.ide.parts import TypeItem, holders_of, members_of, types_at
+from roaml.ide.hierarchy.types import TypeItem, holders_of, members_of, types_at
 from roaml.project.analysis import Analysis
 
 if TYPE_CHECKING:

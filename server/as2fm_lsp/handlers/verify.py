@@ -32,7 +32,7 @@ from as2fm_lsp.verification.verified import Known, missed, short
 from as2fm_lsp.verification.wishes import Wishes, wishes
 from roaml import api
 from roaml.diagnostics import Diagnostic
-from roaml.ide.pictures import lit
+from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
@@ -364,7 +364,7 @@ def _property(server: Server, analysis: Analysis, system: str, each: Verifiable)
 
 def _step(server: Server, known: Known, system: str, line: Line) -> Json:
     origin = line.origin
-    nodes = lit(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
+    nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
     convert = server.session.convert
     return {
         "step": line.step,
@@ -374,7 +374,7 @@ def _step(server: Server, known: Known, system: str, line: Line) -> Json:
         "place": line.place,
         "details": list(line.details),
         **(_place(server, known.analysis, origin) if origin is not None else {}),
-        "lit": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
+        "highlights": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
     }
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.symbols import symbol_kind
-from roaml.ide.search import search
+from roaml.ide.navigation.workspace_symbols import search
 from roaml.text import Location
 
 if TYPE_CHECKING:

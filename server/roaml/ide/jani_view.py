@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from roaml.ide.document_symbol import DocumentSymbol
-from roaml.ide.format_json import gaps
-from roaml.ide.jani_symbols import jani_symbols
-from roaml.ide.layout import Layout, edits
+from roaml.ide.formatting.json import gaps
+from roaml.ide.formatting.layout import Layout, edits
+from roaml.ide.navigation.document_symbol import DocumentSymbol
+from roaml.ide.navigation.jani_symbols import jani_symbols
 from roaml.json import parse
 from roaml.text import apply_edits
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.ide.document_symbol import SymbolKind
-from roaml.ide.symbols import document_symbols
+from roaml.ide.navigation.document_symbol import SymbolKind
+from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.text import Span

@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     used = {key.value for key in (*reads(context.machine, context.typed), *writes(context.machine))}
     for port in context.machine.ports:
         if port.key is not None and port.key.value not in used and port.key.value != CHILDREN_COUNT:
-            # Of a port that the tree sets, roaml.ide.repairs tells, for it must go there as well.
+            # Of a port that the tree sets, roaml.ide.code_actions.quick_fixes tells, for it must go there as well.
             is_set = any(automaton.port(port.key.value) is not None for automaton in context.automata)
             fixes = [] if is_set else [remove(context.document, port.element, "Remove the port", preferred=True)]
             message = f"the port `{port.key.value}` is never used"

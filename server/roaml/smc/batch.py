@@ -75,16 +75,24 @@ def pack(compiled: Compiled) -> Payload:
     return Payload(digest.hexdigest(), pickle.dumps(compiled))
 
 
-_kernels: dict[str, Kernel] = {}
+class _Kernels(threading.local):
+    """The last kernel of each thread: a kernel walks one trace at a time, and some executors run batches in threads."""
+
+    digest = ""
+    kernel: Kernel | None = None
+
+
+_kernels = _Kernels()
 
 
 def kernel_of(payload: Payload) -> Kernel:
-    """The kernel of a payload; the last one is kept."""
-    if payload.digest not in _kernels:
+    """The kernel of a payload in this thread; the last one is kept."""
+    kernel = _kernels.kernel
+    if kernel is None or payload.digest != _kernels.digest:
         compiled: Compiled = pickle.loads(payload.data)
-        _kernels.clear()
-        _kernels[payload.digest] = Kernel(compiled.program, compiled.goal)
-    return _kernels[payload.digest]
+        _kernels.kernel = kernel = Kernel(compiled.program, compiled.goal)
+        _kernels.digest = payload.digest
+    return kernel
 
 
 def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:

@@ -544,13 +544,14 @@ class Kernel:
         state = self.scheduler
         if (self.scheduler >> 56) & 1 != 0:
             state = self._mixed((state + self.vector + 2) & MASK)
+        # One multiplication for each part: there are hundreds of parts, and plain Python calls no function for them.
         for i in range(self.instances):
-            state = self._mixed((state + self.place[i] * GOLDEN) & MASK)
+            state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & MASK
         for i in range(self.int_count):
-            state = self._mixed((state + (self.ints[i] & MASK)) & MASK)
+            state = ((state ^ (state >> 32)) + (self.ints[i] & MASK)) * MIX_1 & MASK
         for i in range(self.real_count):
-            state = self._mixed((state + (hash(self.reals[i]) & MASK)) & MASK)
-        return state
+            state = ((state ^ (state >> 32)) + (hash(self.reals[i]) & MASK)) * MIX_1 & MASK
+        return self._mixed(state)
 
     def _take(self, vector: int, rest: int, apart: int) -> None:
         """Take combination number `rest` of a vector; with `apart`, draw the edge of each slot by itself."""

@@ -87,9 +87,9 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         for (const each of this.subscriptions) each.dispose();
     }
 
-    private async showStep({ uri, range, lit }: Step): Promise<void> {
+    private async showStep({ uri, range, highlights }: Step): Promise<void> {
         if (uri === undefined || !range) return;
         await jump({ uri, range }, false, true);
-        await this.pictures.light(lit);
+        await this.pictures.highlight(highlights);
     }
 }

@@ -5,7 +5,7 @@ import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/here";
-import { picture as pictureRequest, type Lit } from "../protocol";
+import { picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
 
 const PAUSE = 200;
@@ -14,7 +14,7 @@ export class PicturePanels implements vscode.Disposable {
     private readonly panels = new Map<PictureKind, PicturePanel>();
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
-    private lit: readonly Lit[] = [];
+    private highlights: readonly Highlight[] = [];
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -41,7 +41,7 @@ export class PicturePanels implements vscode.Disposable {
         let panel = this.panels.get(kind);
         if (!panel) {
             panel = new PicturePanel(kind, this.context, this.server, this.log);
-            panel.lit = this.lit.find((each) => each.kind === kind);
+            panel.highlighted = this.highlights.find((each) => each.kind === kind);
             this.panels.set(kind, panel);
             panel.onDispose(() => this.panels.delete(kind));
         }
@@ -49,9 +49,9 @@ export class PicturePanels implements vscode.Disposable {
     }
 
     /** Light nodes in the pictures that are open, and in those that will be; those of an earlier time go out. */
-    async light(lit: readonly Lit[]): Promise<void> {
-        this.lit = lit;
-        for (const [kind, panel] of this.panels) await panel.light(lit.find((each) => each.kind === kind));
+    async highlight(highlights: readonly Highlight[]): Promise<void> {
+        this.highlights = highlights;
+        for (const [kind, panel] of this.panels) await panel.highlight(highlights.find((each) => each.kind === kind));
     }
 
     dispose(): void {
@@ -77,8 +77,8 @@ class PicturePanel implements vscode.Disposable {
     private uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
-    /** What the last step has lit, in whichever file. */
-    lit: Lit | undefined;
+    /** What the last step highlights, in whichever file. */
+    highlighted: Highlight | undefined;
     private shownUri = "";
     private ready = false;
     private asked = 0;
@@ -141,17 +141,19 @@ class PicturePanel implements vscode.Disposable {
     }
 
     /** Of a machine, the picture changes to the one that has the node. */
-    async light(lit: Lit | undefined): Promise<void> {
-        this.lit = lit;
-        if (lit && this.kind === "machine" && this.shownUri !== lit.uri) {
-            this.uri = vscode.Uri.parse(lit.uri);
+    async highlight(highlighted: Highlight | undefined): Promise<void> {
+        this.highlighted = highlighted;
+        if (highlighted && this.kind === "machine" && this.shownUri !== highlighted.uri) {
+            this.uri = vscode.Uri.parse(highlighted.uri);
             await this.refresh();
-        } else this.post({ type: "light", node: this.litNode });
+        } else this.post({ type: "highlight", node: this.highlightedNode });
     }
 
     /** States of two machines may be called alike. */
-    private get litNode(): string {
-        return this.lit && (this.kind !== "machine" || this.lit.uri === this.shownUri) ? this.lit.node : "";
+    private get highlightedNode(): string {
+        return this.highlighted && (this.kind !== "machine" || this.highlighted.uri === this.shownUri)
+            ? this.highlighted.node
+            : "";
     }
 
     dispose(): void {
@@ -169,7 +171,8 @@ class PicturePanel implements vscode.Disposable {
     }
 
     private draw(): void {
-        if (this.picture) this.post({ type: "show", picture: this.picture, here: this.here, lit: this.litNode });
+        if (this.picture)
+            this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
         else this.post({ type: "none", reason: nothingOf(this.kind) });
     }
 

@@ -27,6 +27,7 @@ export class LanguageServer implements vscode.Disposable {
     private readonly recall: Recall;
     private readonly wheel: string;
     private readonly states = new vscode.EventEmitter<State>();
+    private compiling: Promise<void> | undefined;
     private connection: Connection | undefined;
 
     /** Fires with each change of the state. */
@@ -128,7 +129,17 @@ export class LanguageServer implements vscode.Disposable {
         const [server, interpreter] = [path("server.path"), path("interpreter")];
         const active = trusted && server === "" && interpreter === "" ? await this.active(hurry) : [];
         const found = await findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
-        return isFailure(found) && found.kind === "no-server" ? this.renewed(found) : found;
+        const usable = isFailure(found) && found.kind === "no-server" ? await this.renewed(found) : found;
+        if (!isFailure(usable) && usable.origin === "private") this.compileKernel();
+        return usable;
+    }
+
+    /** Nobody waits for it: a server that runs uses the compiled kernel with its next verification. */
+    private compileKernel(): void {
+        const onOutput = (text: string) => {
+            this.log.append(text);
+        };
+        this.compiling ??= this.environment.compile(onOutput).finally(() => (this.compiling = undefined));
     }
 
     private active(hurry: boolean): Promise<readonly string[]> {
@@ -177,8 +188,7 @@ export class LanguageServer implements vscode.Disposable {
                 },
             });
         });
-        // Nobody waits for it: a server that runs makes use of it with its next verification.
-        if (!isFailure(installed)) void this.environment.compile(onOutput);
+        if (!isFailure(installed)) this.compileKernel();
         return installed;
     }
 }

@@ -97,10 +97,10 @@ export interface Words {
 
 export type ToView =
     | { readonly type: "words"; readonly words: Words }
-    | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly lit: string }
+    | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly highlighted: string }
     | { readonly type: "here"; readonly here: Part | null }
     /** Light a node by its id; "" for none. */
-    | { readonly type: "light"; readonly node: string }
+    | { readonly type: "highlight"; readonly node: string }
     | { readonly type: "none"; readonly reason: string };
 
 export type FromView =

@@ -14,6 +14,10 @@ import { pythons, type Python } from "./python";
 import type { Failure, Server } from "./server";
 
 const MARK = "ready.json";
+/** Written when it is known whether the kernel of the model checker can be compiled here. */
+const KERNEL_MARK = "kernel.json";
+/** The exit status of `build_kernel` if the kernel cannot be compiled here. */
+const CANNOT_COMPILE = 1;
 
 /** What is being done, for the user to see. */
 export type Step = "python" | "venv" | "packages";
@@ -88,11 +92,15 @@ export class PrivateEnvironment {
     }
 
     /**
-     * Compile the kernel of the model checker in the environment that has been made. Without a C compiler nothing
-     * changes: properties are then verified more slowly.
+     * Compile the kernel of the model checker in the environment that has been made, unless an earlier attempt came to
+     * its end. Without a C compiler nothing changes: properties are then verified more slowly.
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
-        await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
+        const mark = path.join(this.home, KERNEL_MARK);
+        if ((await this.server()) === undefined || (await this.machine.read(mark)) !== undefined) return;
+        const ended = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
+        if (ended.status !== 0 && ended.status !== CANNOT_COMPILE) return; // interrupted: the next start tries again
+        await this.machine.write(mark, JSON.stringify({ compiled: ended.status === 0 }));
     }
 
     /** What pip is told to install, one after the other. */

@@ -10,7 +10,7 @@ from roaml.ide.completion.elements import likely
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.ports import ports_to_add
 from roaml.ide.completion.request import Request, Subject
-from roaml.ide.frames import names_in
+from roaml.ide.names.frames import names_in
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType
 from roaml.model.tree import EXPLICIT, SUBTREES

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 from roaml.diagnostics import Symbol
 from roaml.expr.operators import FUNCTIONS
-from roaml.ide import describe_language
 from roaml.ide.describe import describe
+from roaml.ide.describe import language as describe_language
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
 from roaml.project.analysis import Analysis
 

@@ -13,7 +13,7 @@ from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.completion.values import candidates
-from roaml.ide.occurrence import HANDLES
+from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES

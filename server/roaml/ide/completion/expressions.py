@@ -18,7 +18,7 @@ from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, Type, fi
 from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
-from roaml.ide.occurrence import variable
+from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.typing import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
 from roaml.text import Decoded, Span

@@ -9,8 +9,8 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank
 from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import Request, Subject
-from roaml.ide.occurrence import HANDLES
-from roaml.ide.occurrences import uses
+from roaml.ide.names.occurrence import HANDLES
+from roaml.ide.names.occurrences import uses
 from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name

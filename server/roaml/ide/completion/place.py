@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.ide.closing import open_element
+from roaml.ide.on_type import open_element
 from roaml.ide.syntax import Typed, XmlFile, path_at
 from roaml.text import Span
 from roaml.xml import Attribute, CData, Comment, Document, Element, Instruction, Text

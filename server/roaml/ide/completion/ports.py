@@ -10,8 +10,8 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import channels, plugins
 from roaml.ide.completion.request import Request, Subject
-from roaml.ide.frames import names_in
-from roaml.ide.in_machine import INTERFACE_SYMBOLS
+from roaml.ide.names.frames import names_in
+from roaml.ide.names.in_machine import INTERFACE_SYMBOLS
 from roaml.language import ElementType
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from roaml.ide.find import systems_of
-from roaml.ide.frames import Trees
-from roaml.ide.occurrences import trees_of
+from roaml.ide.names.frames import Trees
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.names.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
 from roaml.model.machine import Chart, Communicate, Handler, Machine

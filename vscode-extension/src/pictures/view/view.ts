@@ -46,13 +46,13 @@ class View {
                 this.fillBar(message.words);
                 break;
             case "show":
-                void this.show(message.picture, message.here, message.lit);
+                void this.show(message.picture, message.here, message.highlighted);
                 break;
             case "here":
                 this.mark(message.here);
                 break;
-            case "light":
-                this.light(message.node);
+            case "highlight":
+                this.highlight(message.node);
                 break;
             case "none":
                 this.asked++;
@@ -62,7 +62,7 @@ class View {
         }
     }
 
-    private async show(picture: Picture, here: Part | null, lit: string): Promise<void> {
+    private async show(picture: Picture, here: Part | null, highlighted: string): Promise<void> {
         const { words } = this;
         if (!words) return;
         const asked = ++this.asked;
@@ -81,7 +81,7 @@ class View {
         else this.look(this.sight);
         if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.mark(here);
-        this.light(lit);
+        this.highlight(highlighted);
         if (this.input.value !== "") this.search();
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
@@ -147,10 +147,11 @@ class View {
     }
 
     /** Where a trace is. */
-    private light(id: string): void {
-        const lit = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
-        for (const [index, node] of this.scene?.nodes ?? []) node.classList.toggle("lit", index === lit);
-        if (lit >= 0) this.reveal(lit);
+    private highlight(id: string): void {
+        const highlighted = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
+        for (const [index, node] of this.scene?.nodes ?? [])
+            node.classList.toggle("highlighted", index === highlighted);
+        if (highlighted >= 0) this.reveal(highlighted);
     }
 
     private part(part: Part | null): SVGGElement | undefined {

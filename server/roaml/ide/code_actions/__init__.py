@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is offered at a place: quick fixes of what is wrong there, refactorings, and all fixes of a kind at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from roaml.diagnostics import Diagnostic, Fix
+from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, Action, Change, known, whole
+from roaml.ide.code_actions.quick_fixes import repairs
+from roaml.ide.code_actions.refactorings import refactorings
+from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
+from roaml.project.workspace import Snapshot
+from roaml.text import Span
+
+
+def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]) -> Iterator[Action]:
+    """All that is offered at a place, of the kinds that are wanted.
+
+    Args:
+        snapshot: what is known.
+        path: of the file.
+        place: the selection, or the caret as an empty span.
+        is_wanted: whether a kind of action is asked for.
+    """
+    if is_wanted(QUICK_FIX):
+        everything = snapshot.checker.diagnostics(path)
+        found = [d for d in everything if d.span.start <= place.end and place.start <= d.span.end]
+        for diagnostic in found:
+            yield from quick_fixes(snapshot, path, diagnostic)
+        for code in dict.fromkeys(diagnostic.code for diagnostic in found):
+            yield from _fix_all_of(snapshot, path, everything, code)
+    if is_wanted(EXTRACT) or is_wanted(REWRITE):
+        yield from (each for each in refactorings(snapshot, path, place) if is_wanted(each.kind))
+    if is_wanted(FIX_ALL):
+        yield from _fix_file(snapshot, path)
+
+
+def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
+    """All that mends a diagnostic: first what its rule offers, then what reaches further."""
+    for fix in diagnostic.fixes:
+        yield Action(fix.title, QUICK_FIX, known(Change({path: fix.edits})), diagnostic, fix.preferred)
+    titles = {fix.title for fix in diagnostic.fixes}
+    for action in repairs(snapshot, diagnostic):
+        if action.title not in titles:
+            yield action
+
+
+def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[Action]:
+    """All that a rule finds in the file, if there is more than one thing with an obvious mend."""
+    mendable = [diagnostic for diagnostic in found if diagnostic.code == code and preferred_fix(diagnostic)]
+    if len(mendable) > 1:
+
+        def choose(diagnostic: Diagnostic) -> Fix | None:
+            return preferred_fix(diagnostic) if diagnostic.code == code else None
+
+        yield Action(
+            f"Fix all `{code}` in this file",
+            QUICK_FIX,
+            lambda: _all(snapshot, path, choose, careful=False),
+            mendable[0],
+        )
+
+
+def _fix_file(snapshot: Snapshot, path: str) -> Iterator[Action]:
+    """All safe fixes of the file."""
+    if any(safe_fix(diagnostic) for diagnostic in snapshot.checker.diagnostics(path)):
+        title = "Make all safe fixes in this file"
+        yield Action(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))
+
+
+def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> Change:
+    source = snapshot.analysis.source(path)
+    after = fix_all(snapshot, (path,), choose, careful=careful)
+    return Change({path: whole(source.text, after[path])}) if source and path in after else Change()

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Moving the systems of a file to the current dialect, as an action."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.ide.code_actions.action import REWRITE, Action, Change, whole
+from roaml.project.migrate import CODES, migrate
+from roaml.project.workspace import Snapshot
+from roaml.text import Span
+
+TITLE = "Convert the system to the current dialect"
+
+
+def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]:
+    """Offered at what only the older dialect has, in a file of a system of that dialect."""
+    analysis = snapshot.analysis
+    systems = analysis.memberships.get(path, ())
+    if not any((system := analysis.system(each)) is not None and system.older for each in systems):
+        return
+    found = (d for d in snapshot.checker.diagnostics(path) if d.code in CODES)
+    if any(d.span.start <= place.end and place.start <= d.span.end for d in found):
+        yield Action(TITLE, REWRITE, lambda: _convert(snapshot, path), resources=("rename",))
+
+
+def _convert(snapshot: Snapshot, path: str) -> Change:
+    """Of all systems that share a file with those of `path`, for a file cannot be of two dialects."""
+    analysis = snapshot.analysis
+    systems = list(analysis.memberships.get(path, ()))
+    for system in systems:
+        for file in analysis.files_of(system):
+            systems += [each for each in analysis.memberships.get(file, ()) if each not in systems]
+    found = migrate(systems, snapshot.with_texts)
+    return Change(
+        {each.path: edits for each in found if (edits := whole(each.before, each.after))},
+        renamed={each.path: each.new_path for each in found if each.new_path != each.path},
+    )

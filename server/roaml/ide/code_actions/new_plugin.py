@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A new plugin for a node of the tree that has none: a file, listed in every system that the tree belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from roaml.ide.code_actions import new_file
+from roaml.ide.code_actions.action import Change
+from roaml.ide.code_actions.inputs import add_input
+from roaml.model.system import System, safe_name
+from roaml.model.tree import PortSetting, TreeNode
+from roaml.project.analysis import Analysis
+from roaml.project.paths import folder_of, name_of
+
+
+def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], Change]]]:
+    """The title and the change, if there can be such a plugin: none ticks several children."""
+    systems = analysis.memberships.get(path, ())
+    if (
+        not systems
+        or node.plugin is None
+        or len(node.children) > 1
+        or safe_name(node.plugin.value) != node.plugin.value
+    ):
+        return
+    name = node.plugin.value
+    target = free_path(analysis, systems[0], name)
+    yield (
+        f"Create the plugin `{name}` in `{name_of(target)}`",
+        lambda: _create(analysis, systems, node, target),
+    )
+
+
+def free_path(analysis: Analysis, system: str, name: str) -> str:
+    """Beside the other plugins of the system, else beside the system file."""
+    plugins = [
+        f.path for f in analysis.listed(system) if f.input.section == "behavior_tree" and f.path.endswith("cxml")
+    ]
+    folder = folder_of(plugins[0] if plugins else system)
+    return new_file.free_path(analysis, folder, new_file.file_name(name))
+
+
+def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target: str) -> Change:
+    assert node.plugin is not None
+    linked = analysis.system(systems[0])
+    ports = [(*port_of(linked, setting),) for setting in node.ports]
+    text = new_file.plugin(node.plugin.value, ports, child=bool(node.children))
+    edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", target) for s in systems}
+    return Change({s: each for s, each in edits.items() if each}, {target: text})
+
+
+def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
+    """Direction, key and type that a setting suggests: a variable that somebody else sets is read, another is set."""
+    variable = setting.variable
+    if variable is None:
+        return "in", setting.key.value, _type_of(setting.value.value)
+    bound = system.blackboard.get(variable.removeprefix("@"), ()) if system else ()
+    types = [each.port.type for each in bound if each.port.type != "any"]
+    direction = "in" if any(each.port.written for each in bound) else "out"
+    return direction, setting.key.value, types[0] if types else "int32"
+
+
+def _type_of(text: str) -> str:
+    text = text.strip()
+    if text in ("true", "false"):
+        return "bool"
+    for convert, name in ((int, "int32"), (float, "float64")):
+        try:
+            convert(text)
+        except ValueError:
+            continue
+        return name
+    return "string"

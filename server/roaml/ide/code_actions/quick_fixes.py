@@ -1,0 +1,390 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Quick fixes that a rule cannot offer, because they reach into other files or make new ones.
+
+Each is a function from a diagnostic to actions; what it finds in other files is looked up when it is asked for, so it
+is never out of date.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+
+from roaml.diagnostics import Diagnostic
+from roaml.ide.code_actions import new_file
+from roaml.ide.code_actions.action import QUICK_FIX, Action, Change, known
+from roaml.ide.code_actions.inputs import add_input, move_input
+from roaml.ide.code_actions.new_plugin import port_of, skeletons
+from roaml.ide.rename import Renaming, rename
+from roaml.model.kinds import FileKind
+from roaml.model.machine import Machine
+from roaml.model.system import CHILDREN_COUNT
+from roaml.model.system_file import ListedFile
+from roaml.model.tree import TreeNode, nodes
+from roaml.project.analysis import Analysis
+from roaml.project.edits import in_layout
+from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
+from roaml.project.workspace import Snapshot
+from roaml.rules.elements import removal
+from roaml.rules.layout import after, first_in
+from roaml.rules.rule import close_names
+from roaml.text import SourceFile, Span, TextEdit
+
+_MOST = 3
+"""So many files are offered in place of one that is not there."""
+
+_Edits = dict[str, tuple[TextEdit, ...]]
+
+
+def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """What can be done about a diagnostic, apart from what its rule offers."""
+    repair = _REPAIRS.get(diagnostic.code)
+    if repair is not None:
+        yield from repair(snapshot, diagnostic)
+
+
+def _action(
+    diagnostic: Diagnostic, title: str, make: Callable[[], Change], *, preferred: bool = False, creates: bool = False
+) -> Action:
+    return Action(title, QUICK_FIX, make, diagnostic, preferred, ("create",) if creates else ())
+
+
+# --------------------------------------------------------- files that are missing
+
+
+def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """A file of a like name, or a new one."""
+    analysis, system = snapshot.analysis, diagnostic.path
+    listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
+    if listed is None:
+        return
+    there = {f.path for f in analysis.listed(system)}
+    of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.wanted)
+    yield from _other_files(analysis, diagnostic, listed.path, of_kind)
+    text = _NEW.get(listed.input.type.value if listed.input.type else "")
+    if text is not None and listed.problem == "there is no such file" and is_on_disk(listed.path):
+        yield from _create(diagnostic, listed, text)
+
+
+def _create(diagnostic: Diagnostic, listed: ListedFile, text: Callable[[str], str]) -> Iterator[Action]:
+    path, stem = listed.path, new_file.stem_of(listed.path)
+    if split_name(path)[1] and stem:
+        content = text(new_file.camel_case(stem))
+        yield _action(diagnostic, f"Create `{name_of(path)}`", known(Change(created={path: content})), creates=True)
+
+
+_NEW: dict[str, Callable[[str], str]] = {
+    "node-ascxml": new_file.node,
+    "bt-plugin-ascxml": new_file.plugin,
+    "bt.cpp-xml": lambda _: new_file.tree(),
+    "jani": lambda _: new_file.properties(),
+}
+
+
+def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    analysis = snapshot.analysis
+    file = analysis.tree(diagnostic.path)
+    include = next((i for i in file.includes if i.path and i.path.span == diagnostic.span), None) if file else None
+    if include is None or include.path is None:
+        return
+    target = analysis.include_path(diagnostic.path, include.path.value)
+    if not isinstance(analysis.files.read(target), SourceFile):
+        trees = (p for p in snapshot.listed if analysis.kind(p) is FileKind.TREE and p != diagnostic.path)
+        trees = (p for p in trees if diagnostic.path not in analysis.trees_from(p))
+        yield from _other_files(analysis, diagnostic, target, trees)
+
+
+def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[Action]:
+    """Files that may be meant in place of `path`: of the same name elsewhere, or of a like one."""
+    written = _text_at(analysis, diagnostic)
+    by_name: dict[str, list[str]] = {}
+    for other in others:
+        if other != path:
+            by_name.setdefault(name_of(other), []).append(other)
+    name = name_of(path)
+    close = dict.fromkeys((*([name] if name in by_name else []), *close_names(name, by_name)))
+    found = [other for each in close for other in by_name[each]]
+    for number, other in enumerate(found[:_MOST]):
+        new = new_file.relative(other, diagnostic.path, [written])
+        change = Change({diagnostic.path: (TextEdit(diagnostic.span, _attribute(new)),)})
+        yield _action(diagnostic, f"Change to `{new}`", known(change), preferred=number == 0)
+
+
+# ------------------------------------------------------------ plugins and inputs
+
+
+def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """List the file that has the plugin, or make one."""
+    analysis = snapshot.analysis
+    node = _node_at(analysis, diagnostic)
+    if node is None or node.plugin is None or (node.type is not None and not node.type.translated):
+        return
+    name = node.plugin.value
+    systems = analysis.memberships.get(diagnostic.path, ())
+    for system in systems[:1]:
+        as_node = next(
+            (
+                f
+                for f in analysis.listed(system)
+                if f.input.section == "node_models" and f.usable and _is_machine(analysis, f.path, name)
+            ),
+            None,
+        )
+        if as_node is not None:
+            yield _move(analysis, diagnostic, system, as_node)
+            return
+        for path in snapshot.listed:
+            if analysis.kind(path) is FileKind.MACHINE and _is_machine(analysis, path, name):
+                title = f"List `{name_of(path)}` in `{name_of(system)}`"
+                yield _action(diagnostic, title, partial(_list, analysis, systems, path), preferred=True)
+                return
+    for title, make in skeletons(analysis, diagnostic.path, node):
+        yield _action(diagnostic, title, make, creates=True)
+
+
+def _is_machine(analysis: Analysis, path: str, name: str) -> bool:
+    machine = analysis.machine(path)
+    return machine is not None and machine.name is not None and machine.name.value == name
+
+
+def _list(analysis: Analysis, systems: Iterable[str], path: str) -> Change:
+    edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", path) for s in systems}
+    return Change({system: edit for system, edit in edits.items() if edit})
+
+
+def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """What is listed as a node and is a plugin is listed in the wrong section."""
+    analysis = snapshot.analysis
+    for system in analysis.memberships.get(diagnostic.path, ()):
+        if not analysis.tree_paths(system):
+            continue  # it would have plugins and no tree
+        for listed in analysis.listed(system):
+            if listed.path == diagnostic.path and listed.input.section == "node_models":
+                yield _move(analysis, diagnostic, system, listed)
+                return
+
+
+def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: ListedFile) -> Action:
+    title = f"List `{name_of(listed.path)}` as a plugin in `{name_of(system)}`"
+
+    def make() -> Change:
+        edits = move_input(analysis, system, listed, "behavior_tree", "bt-plugin-ascxml")
+        return Change({system: edits}) if edits else Change()
+
+    return _action(diagnostic, title, make, preferred=True)
+
+
+def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    if diagnostic.message.startswith("there are plugins"):
+        yield from _list_file(snapshot, diagnostic, "behavior_tree", "bt.cpp-xml", FileKind.TREE)
+
+
+def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """A system without properties, whose folder has a file of them."""
+    if snapshot.analysis.kind(diagnostic.path) is FileKind.SYSTEM and "`<properties>`" in diagnostic.message:
+        yield from _list_file(snapshot, diagnostic, "properties", "jani", FileKind.PROPERTIES)
+
+
+def _list_file(
+    snapshot: Snapshot, diagnostic: Diagnostic, section: str, type_: str, kind: FileKind
+) -> Iterator[Action]:
+    """List a file that lies in the folder of the system file, or below it."""
+    analysis, system = snapshot.analysis, diagnostic.path
+    folder = folder_of(system)
+    for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
+        if number < _MOST:
+            title = f"List `{new_file.relative(path, system)}`"
+            edits = add_input(analysis, system, section, type_, path)
+            change = Change({system: edits}) if edits else Change()
+            if change:
+                yield _action(diagnostic, title, known(change), preferred=number == 0)
+
+
+# --------------------------------------------------------------------- ports
+
+
+def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """Take a port away, and what the trees set it to."""
+    if any(fix.edits for fix in diagnostic.fixes):
+        return
+    machine = snapshot.analysis.machine(diagnostic.path)
+    port = next((p for p in machine.ports if p.key and p.key.span == diagnostic.span), None) if machine else None
+    if machine is None or port is None or port.key is None:
+        return
+    key, element = port.key.value, port.element
+
+    def make() -> Change:
+        edits = _settings(snapshot.analysis, machine, diagnostic.path, key)
+        source = snapshot.analysis.source(diagnostic.path)
+        assert source is not None
+        return Change({**edits, diagnostic.path: (removal(source.text, element.span),)})
+
+    yield _action(diagnostic, f"Remove the port `{key}` here and in the tree", make, preferred=True)
+
+
+def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:
+    """The edits that take away all settings of a port of a plugin."""
+    name = machine.name.value if machine.name else ""
+    found: dict[str, list[TextEdit]] = {}
+    for tree_path in _trees(analysis, path):
+        file, source = analysis.tree(tree_path), analysis.source(tree_path)
+        if file is None or source is None:
+            continue
+        spans = [
+            s.attribute.span
+            for n in _all_nodes(analysis, tree_path)
+            if n.plugin and n.plugin.value == name
+            for s in n.ports
+            if s.key.value == key
+        ]
+        models = [m for m in file.models if m.id and m.id.value == name]
+        spans += [p.element.span for m in models for p in m.ports if p.name and p.name.value == key]
+        if spans:
+            found[tree_path] = [removal(source.text, span) for span in spans]
+    return {each: tuple(edits) for each, edits in found.items()}
+
+
+def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """Declare a port in the plugin, if all its nodes set it."""
+    if any(fix.preferred for fix in diagnostic.fixes):
+        return
+    analysis = snapshot.analysis
+    node = _node_at(analysis, diagnostic)
+    setting = next((s for s in node.ports if s.key.span == diagnostic.span), None) if node else None
+    for path in analysis.memberships.get(diagnostic.path, ())[:1]:
+        system = analysis.system(path)
+        if system is None or node is None or node.plugin is None or setting is None:
+            return
+        plugin = system.plugin(node.plugin.value)[0]
+        machine, document = (analysis.machine(plugin), analysis.document(plugin)) if plugin else (None, None)
+        source = analysis.source(plugin) if plugin else None
+        same = [
+            n
+            for t in analysis.tree_paths(path)
+            for n in _all_nodes(analysis, t)
+            if n.plugin and n.plugin.value == node.plugin.value
+        ]
+        everywhere = all(n.element.get(setting.key.value) is not None for n in same)
+        if (
+            machine is None
+            or document is None
+            or source is None
+            or not everywhere
+            or setting.key.value == CHILDREN_COUNT
+        ):
+            return
+        way, key, type_ = port_of(system, setting)
+        text = f'<bt_declare_port_{way} key="{key}" type="{type_}" />'
+        edit = (
+            after(document, machine.ports[-1].element, text)
+            if machine.ports
+            else first_in(document, machine.element, text)
+        )
+        change = Change({plugin: tuple(in_layout(source, (edit,)))})
+        yield _action(diagnostic, f"Declare the port `{key}` in `{node.plugin.value}`", known(change))
+
+
+def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """Unless a tree that is not executed has it."""
+    analysis, system = snapshot.analysis, diagnostic.path
+    source = analysis.source(system)
+    listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
+    machine = analysis.machine(listed.path) if listed else None
+    if source is None or listed is None or machine is None or machine.name is None:
+        return
+    used = (n.plugin.value for tree in analysis.tree_paths(system) for n in _all_nodes(analysis, tree) if n.plugin)
+    if machine.name.value not in used:
+        change = Change({system: (removal(source.text, listed.input.element.span),)})
+        yield _action(diagnostic, "Remove this `<input>`", known(change), preferred=True)
+
+
+def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """Declare a port with the type that the other port has at the same variable."""
+    analysis = snapshot.analysis
+    found = _CONFLICT.search(diagnostic.message)
+    node = _node_at(analysis, diagnostic)
+    if found is None or node is None or node.plugin is None:
+        return
+    key, other = found["key"], found["other"]
+    for system in analysis.memberships.get(diagnostic.path, ())[:1]:
+        linked = analysis.system(system)
+        path = linked.plugin(node.plugin.value)[0] if linked else ""
+        machine = analysis.machine(path) if path else None
+        port = next((p for p in machine.ports if p.key and p.key.value == key), None) if machine else None
+        if port is not None and port.type is not None:
+            change = Change({path: (TextEdit(port.type.span, other),)})
+            yield _action(diagnostic, f"Declare `{key}` of `{node.plugin.value}` as {other}", known(change))
+
+
+_CONFLICT = re.compile(r"at the port `(?P<key>[^`]+)` and `(?P<other>[^`]+)` at ")
+
+
+# --------------------------------------------------------------------- names
+
+
+def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+    """A name that cannot be is changed wherever it stands."""
+    if diagnostic.fixes:
+        return
+    analysis = snapshot.analysis
+    new = re.sub(r"\W", "_", _text_at(analysis, diagnostic), flags=re.ASCII).strip("_")
+    if not new:
+        return
+    new = new if not new[0].isdigit() else f"n{new}"
+    found = rename(analysis, diagnostic.path, diagnostic.span.start, new)
+    if not isinstance(found, Renaming):
+        new = f"{new}_value"
+        found = rename(analysis, diagnostic.path, diagnostic.span.start, new)
+    if isinstance(found, Renaming):
+        change = Change(found.edits)
+        yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
+
+
+# -------------------------------------------------------------------- helpers
+
+
+def _text_at(analysis: Analysis, diagnostic: Diagnostic) -> str:
+    source = analysis.source(diagnostic.path)
+    return source.text[slice(*diagnostic.span)] if source else ""
+
+
+def _attribute(text: str) -> str:
+    return text.replace("&", "&amp;").replace('"', "&quot;").replace("'", "&apos;").replace("<", "&lt;")
+
+
+def _all_nodes(analysis: Analysis, path: str) -> Iterator[TreeNode]:
+    file = analysis.tree(path)
+    for tree in file.trees if file else ():
+        yield from nodes(tree)
+
+
+def _node_at(analysis: Analysis, diagnostic: Diagnostic) -> TreeNode | None:
+    """The innermost node around a diagnostic."""
+    around = [n for n in _all_nodes(analysis, diagnostic.path) if _holds(n.element.span, diagnostic.span)]
+    return min(around, key=lambda n: n.element.span.end - n.element.span.start, default=None)
+
+
+def _holds(outer: Span, inner: Span) -> bool:
+    return outer.start <= inner.start and inner.end <= outer.end
+
+
+def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
+    """The tree files of all systems of a file."""
+    return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
+
+
+_REPAIRS: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
+    "blackboard-type-conflict": _type_conflict,
+    "input-count": _no_tree,
+    "invalid-name": _name,
+    "machine-name": _name,
+    "missing-element": _no_section,
+    "missing-file": _missing_file,
+    "missing-include": _missing_include,
+    "tree-element-in-node": _element_in_node,
+    "unknown-plugin": _unknown_plugin,
+    "unknown-port": _unknown_port,
+    "unused-plugin": _unused_plugin,
+    "unused-port": _unused_port,
+}

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is written above a declaration: how often, and by how many, it is used.
+
+Where the lenses stand is told at once, what they say only when they come into sight (`counted`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.ide.describe.system import is_clock, is_main
+from roaml.ide.hierarchy.calls import interfaces_of
+from roaml.ide.names.lookup import Use, systems_of, thing
+from roaml.ide.names.occurrence import HANDLES, Access
+from roaml.ide.names.occurrences import uses
+from roaml.ide.system_names import MOST, grouped
+from roaml.model.kinds import FileKind
+from roaml.model.machine import Machine
+from roaml.model.system import System
+from roaml.project.analysis import Analysis
+from roaml.text import Location, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Lens:
+    """`span` is the line's reason; `symbol` what is counted."""
+
+    span: Span
+    symbol: Symbol
+
+
+@dataclass(frozen=True, slots=True)
+class Counted:
+    """What a lens says, and the places that it speaks of."""
+
+    title: str
+    places: tuple[Location, ...]
+
+
+def lenses(analysis: Analysis, path: str) -> tuple[Lens, ...]:
+    """Where lenses stand in a file, in the order of the text."""
+    kind, machine = analysis.kind(path), analysis.machine(path)
+    found: Iterable[Lens] = ()
+    if kind is FileKind.MACHINE and machine is not None:
+        found = _machine(analysis, path, machine)
+    elif kind is FileKind.TREE:
+        found = _defined(analysis, path, "tree")
+    elif kind in (FileKind.STRUCTS, FileKind.JSON_STRUCTS):
+        found = _defined(analysis, path, "struct")
+    return tuple(sorted(dict.fromkeys(found), key=lambda each: each.span))
+
+
+def _machine(analysis: Analysis, path: str, machine: Machine) -> Iterator[Lens]:
+    owner = _owner(analysis, path)
+    if machine.name is not None and (machine.ports or _is_plugin(analysis, path)):
+        yield Lens(machine.name.span, Symbol(path, "machine", machine.name.value))
+    for port in machine.ports:
+        if port.key is not None:
+            yield Lens(port.key.span, Symbol(path, "port", port.key.value))
+    for declaration in machine.declarations:
+        if declaration.handle is not None:
+            symbol = Symbol(path, declaration.kind, declaration.handle.value)
+            yield Lens(declaration.element.name_span, symbol)
+    seen: set[Symbol] = set()
+    for each in uses(analysis, path, owner if owner != path else None).all:
+        if each.symbol.kind == "event" and each.symbol not in seen:
+            seen.add(each.symbol)
+            yield Lens(each.span, each.symbol)
+
+
+def _defined(analysis: Analysis, path: str, kind: str) -> Iterator[Lens]:
+    """Definitions of one kind."""
+    owner = _owner(analysis, path)
+    for each in uses(analysis, path, owner if owner != path else None).all:
+        if each.defines and each.symbol.kind == kind:
+            yield Lens(each.span, each.symbol)
+
+
+def _owner(analysis: Analysis, path: str) -> str:
+    return next(iter(analysis.memberships.get(path, ())), path)
+
+
+def _is_plugin(analysis: Analysis, path: str) -> bool:
+    systems = (analysis.system(each) for each in analysis.memberships.get(path, ()))
+    return any(path == plugin for system in systems if system for plugin, _ in system.plugins)
+
+
+# ---------------------------------------------------------------------- counting
+
+
+def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
+    """How much a symbol of a file is used, and where. Systems that share the file are counted one by one, and named
+    where they differ."""
+    systems = systems_of(analysis, path)
+    by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
+    said = grouped({system: found.title for system, found in by_system.items()})
+    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MOST])
+    places = tuple(sorted({place for found in by_system.values() for place in found.places}))
+    return Counted(f"{title} / …" if len(said) > MOST else title, places)
+
+
+def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
+    """The same in one system, or in the file alone."""
+    if symbol.kind in HANDLES:
+        return _handle(analysis, symbol, system)
+    found = _within(analysis, thing(analysis, (symbol,)).uses, system)
+    in_trees = [use for use in found if analysis.tree(use.path) is not None]
+    match symbol.kind:
+        case "event":
+            return _event(analysis, found)
+        case "machine":
+            return Counted(f"{_count(in_trees, 'use')} in trees", _locations(in_trees))
+        case "port":
+            return Counted(f"set {_times(in_trees)} in trees", _locations(in_trees))
+        case "tree":
+            places = [use for use in in_trees if not use.occurrence.defines]
+            executed = "executed · " if is_main(analysis, symbol) else ""
+            return Counted(f"{executed}{_count(places, 'use')}", _locations(places))
+    places = [use for use in found if not use.occurrence.defines]
+    return Counted(_count(places, "use"), _locations(places))
+
+
+def _within(analysis: Analysis, found: Iterable[Use], system: str | None) -> list[Use]:
+    """The uses in the files of a system; all if there is none."""
+    files = frozenset(analysis.files_of(system)) if system else None
+    return [use for use in found if files is None or use.path in files]
+
+
+def _event(analysis: Analysis, found: Iterable[Use]) -> Counted:
+    in_machines = [use for use in found if analysis.machine(use.path) is not None]
+    sent = [use for use in in_machines if use.occurrence.access is Access.WRITE]
+    received = [use for use in in_machines if use.occurrence.access is Access.READ]
+    return Counted(f"sent {_times(sent)} · received {_times(received)}", _locations(in_machines))
+
+
+_SIDES = {
+    "topic": ("publisher", "subscriber"),
+    "service": ("server", "client"),
+    "action": ("server", "client"),
+}
+
+
+def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
+    """Both sides of a topic, service or action; of a timer its callbacks."""
+    own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
+    linked = analysis.system(system) if system else None
+    interfaces = tuple(dict.fromkeys(each for each in interfaces_of(analysis, symbol) if each.path == system))
+    if not interfaces or linked is None:
+        return Counted(_count(own, "use"), _locations(own))
+    shown = [_sides(linked, interface) for interface in interfaces]
+    places = [use for interface in interfaces for use in _within(analysis, thing(analysis, (interface,)).uses, system)]
+    title = " / ".join(dict.fromkeys(shown))
+    if len(interfaces) > 1:
+        title = f"{len(interfaces)} {interfaces[0].kind}s: {title}"
+    in_models = (use for use in places if analysis.machine(use.path) or analysis.tree(use.path))
+    return Counted(title, _locations((*in_models, *own)))
+
+
+def _sides(system: System, interface: Symbol) -> str:
+    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[interface.kind]
+    channel = channels.get(interface.name)
+    source, user = _SIDES[interface.kind]
+    sources, users = (channel.sources, channel.users) if channel else ([], [])
+    if is_clock(system, interface):
+        return f"the clock · {_count(users, user)}"
+    return f"{_count(sources, source)} · {_count(users, user)}"
+
+
+def _count(found: Iterable[object], what: str) -> str:
+    count = len(list(found))
+    return f"{count} {what}" if count == 1 else f"{count or 'no'} {what}s"
+
+
+def _times(found: Iterable[object]) -> str:
+    count = len(list(found))
+    return {0: "nowhere", 1: "once", 2: "twice"}.get(count, f"{count} times")
+
+
+def _locations(found: Iterable[Use]) -> tuple[Location, ...]:
+    return tuple(sorted(dict.fromkeys(use.location for use in found)))

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the languages themselves say, as Markdown: elements, attributes, values, functions, operators.
+
+Everything is a pure function of an entry of a grammar or of a table, so completion, hover and signature help say the
+same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.expr.operators import FUNCTIONS, Function, Operator, UnaryOperator
+from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, Scalar, Struct, Type, unwrap
+from roaml.ide.describe.markdown import code, lines, name, names, paragraphs
+from roaml.language import AttributeType, ElementType, PortType, ValueChoice
+
+_WANTED = {
+    "expression": "an expression",
+    "constant": "a constant expression",
+    "location": "what is written to",
+}
+_ROS = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
+
+
+def element(type_: ElementType) -> str:
+    """An element: how it begins, what it does, which event variables are known in it."""
+    if type_.node and type_.node != "subtree":
+        return builtin_node(type_)
+    required = "".join(f' {a.name}="…"' for a in type_.attributes.values() if a.required)
+    known = names(binding.name for binding in type_.binds)
+    return paragraphs(
+        code(f"<{type_.name}{required}>", "xml"),
+        type_.documentation,
+        lines(_successor(type_.use), f"Known in it: {known}" if known else ""),
+    )
+
+
+def builtin_node(type_: ElementType) -> str:
+    """A node that BehaviorTree.CPP brings along: its ports and what it does."""
+    ports = "".join(f"\n  {port(each.name, each.port)}" for each in type_.ports if each.port)
+    cannot = "" if type_.translated else "It cannot be translated."
+    kind = "node" if type_.node == "subtree" else f"{type_.node} node".strip()
+    return paragraphs(
+        code(f"{kind} {type_.name}{ports}"),
+        type_.documentation,
+        lines(_successor(type_.use), cannot),
+        "" if type_.name in ("Action", "Condition", "Control", "Decorator") else "*BehaviorTree.CPP*",
+    )
+
+
+def port(key: str, type_: PortType) -> str:
+    """A port of such a node, in one line of code."""
+    default = f" = {type_.default}" if type_.default else ""
+    return f"{type_.direction} {key} : {type_.type}{default}"
+
+
+def attribute(type_: AttributeType) -> str:
+    """An attribute: what its value is, what it means, which values there are if there are few."""
+    if type_.port:
+        must = "must be set" if type_.port.required else ""
+        constant = "must be a constant" if type_.port.constant else ""
+        return paragraphs(
+            code(f"{port(type_.name, type_.port)}"),
+            type_.documentation,
+            " · ".join(filter(None, (must, constant))),
+        )
+    facts = [f"{wanted}" if (wanted := _wanted(type_)) else "", "required" if type_.required else ""]
+    shown = " · ".join(filter(None, facts))
+    return paragraphs(
+        code(f'{type_.name}="…"', "xml"),
+        type_.documentation,
+        lines(
+            *(f"{name(each.value)}: {each.documentation}" for each in type_.simple.choices if not each.use),
+            shown[:1].upper() + shown[1:],
+            _successor(type_.use),
+        ),
+    )
+
+
+def _wanted(type_: AttributeType) -> str:
+    """What the value of an attribute is, in words."""
+    if type_.value == "ros-type":
+        return _ROS.get(type_.value_type, "")
+    wanted = _WANTED.get(type_.value, "")
+    if type_.value == "expression" and type_.value_type not in ("", "any"):
+        wanted = f"{wanted} of type {name(type_.value_type)}"
+    simple = type_.simple
+    if simple.above is not None:
+        wanted = f"a number above {simple.above:g}"
+    if simple.least is not None and simple.most is not None:
+        wanted = f"a number from {simple.least:g} to {simple.most:g}"
+    return wanted
+
+
+def choice(value: ValueChoice) -> str:
+    """One of the few values that an attribute may have."""
+    return paragraphs(code(value.value), value.documentation, _successor(value.use))
+
+
+def _successor(use: str) -> str:
+    return f"Older spelling of {name(use)}" if use else ""
+
+
+# ----------------------------------------------------------------- expressions
+
+
+def function(found: Function) -> str:
+    """A function of `Math`."""
+    return paragraphs(code(signature(found)), found.documentation)
+
+
+def signature(found: Function) -> str:
+    """A function of `Math` with its parameters, those that may be left out with `?`, and its result."""
+    needed = len(found.parameters) - found.optional
+    parameters = (f"{each}{'?' if i >= needed else ''}" for i, each in enumerate(found.parameters))
+    result = {"same": "int or float", "real": "float"}.get(found.result, found.result)
+    return f"Math.{found.name}({', '.join(parameters)}) : {result}"
+
+
+def math() -> str:
+    """`Math` itself."""
+    return paragraphs(code("Math"), f"Functions: {names(FUNCTIONS, len(FUNCTIONS))}")
+
+
+_OPERATORS: Mapping[Operator | UnaryOperator, tuple[str, str]] = {
+    Operator.OR: ("bool || bool : bool", "True if one of both is."),
+    Operator.AND: ("bool && bool : bool", "True if both are."),
+    Operator.EQUAL: ("x == y : bool", "Whether both are equal."),
+    Operator.NOT_EQUAL: ("x != y : bool", "Whether both differ."),
+    Operator.LESS: ("number < number : bool", "Whether the left one is less."),
+    Operator.LESS_EQUAL: ("number <= number : bool", "Whether the left one is less or equal."),
+    Operator.GREATER: ("number > number : bool", "Whether the left one is greater."),
+    Operator.GREATER_EQUAL: ("number >= number : bool", "Whether the left one is greater or equal."),
+    Operator.ADD: ("number + number : int or float", "The sum: an int if both are."),
+    Operator.SUBTRACT: ("number - number : int or float", "The difference: an int if both are."),
+    Operator.MULTIPLY: ("number * number : int or float", "The product: an int if both are."),
+    Operator.DIVIDE: ("number / number : float", "The quotient, never rounded: `1 / 2` is `0.5`."),
+    Operator.REMAINDER: ("number % number : int or float", "The remainder of the division."),
+    UnaryOperator.NEGATE: ("-number : int or float", "The negative."),
+    UnaryOperator.PLUS: ("+number : int or float", "The number itself."),
+    UnaryOperator.NOT: ("!bool : bool", "True if the operand is not."),
+}
+
+
+def operator(found: Operator | UnaryOperator) -> str:
+    """An operator of expressions: what it takes and gives."""
+    head, text = _OPERATORS[found]
+    return paragraphs(code(head), text)
+
+
+def conditional() -> str:
+    """`? :`"""
+    return paragraphs(code("bool ? x : y"), "The first of both where the condition holds, else the second.")
+
+
+EVENT_VARIABLES = {
+    "_msg": "The message that has arrived.",
+    "_req": "The request that has arrived.",
+    "_res": "The response that has arrived.",
+    "_goal": "The goal that has arrived.",
+    "_feedback": "The feedback that has arrived.",
+    "_wrapped_result": "The result that has arrived, with its code.",
+    "_action": "The goal that this is about.",
+    "_event": "The event that has arrived.",
+    "_bt": "The answer of the child.",
+}
+
+
+def event_variable(called: str, type_: Type) -> str:
+    """An event variable, `_msg` for example, with what is in it where it is used."""
+    inner, _ = unwrap(type_)
+    of = f" : {inner.name}" if isinstance(inner, Struct) and inner.name else ""
+    rows = _rows(inner) if isinstance(inner, Struct) else []
+    return paragraphs(code("\n".join((f"{called}{of}", *rows))), EVENT_VARIABLES.get(called, ""))
+
+
+def event_data(found: Struct) -> str:
+    """`_event.data` with the parameters of the event."""
+    return paragraphs(code("\n".join(("_event.data", *_rows(found)))), "The parameters of the event.")
+
+
+def status(called: str, value: int) -> str:
+    """An answer of a tree node, where it stands for a number."""
+    return paragraphs(code(f"{called} = {value}"), "An answer of a node of the tree.")
+
+
+def length(of: str) -> str:
+    """`.length`"""
+    return paragraphs(
+        code("length : int"),
+        f"How many elements {name(of)} has now. Assigning a smaller number shortens it, 0 empties it.",
+    )
+
+
+# ----------------------------------------------------------------------- types
+
+
+def value_range(type_: Type) -> str:
+    """The least and greatest value of the numbers in a type, as a clause; "" if it has no such."""
+    inner, _ = unwrap(type_)
+    if not isinstance(inner, Scalar) or inner.name not in INTEGER_RANGES:
+        return ""
+    least, most = INTEGER_RANGES[inner.name]
+    return f"from {number(least)} to {number(most)}"
+
+
+def number(value: int) -> str:
+    """With a thin gap between groups of three digits, as physicists write it."""
+    return f"{value:,}".replace(",", "\u202f").replace("-", "−") if abs(value) >= 10000 else str(value)
+
+
+def type_(type_: Type) -> str:
+    """A type of values: its range, its members."""
+    inner, bounds = unwrap(type_)
+    if isinstance(inner, Struct):
+        return code(members(inner))
+    rest = value_range(type_)
+    facts = " · ".join(filter(None, (rest, array_size(bounds))))
+    return paragraphs(code(str(type_)), f"{facts[:1].upper()}{facts[1:]}")
+
+
+def array_size(bounds: tuple[int | None, ...]) -> str:
+    """How many elements an array has, as a clause; "" of no array."""
+    if not bounds:
+        return ""
+    size = " times ".join("`max_array_size`" if bound is None else str(bound) for bound in bounds)
+    return f"up to {size} elements"
+
+
+def members(struct: Struct, most: int = 24) -> str:
+    """The members of a struct, message or event, each in a line."""
+    head = " ".join(filter(None, (struct.what, struct.name if struct.name not in struct.what else "")))
+    return "\n".join([head, *_rows(struct, most)])
+
+
+def _rows(struct: Struct, most: int = 24) -> list[str]:
+    found = [f"  {key} : {type_}" for key, type_ in struct.members]
+    return [*found[:most], f"  … {len(found) - most} more"] if len(found) > most + 1 else found
+
+
+def base_type(written: str) -> str:
+    """A base type by its name; "" if it is none."""
+    found = BASE_TYPES.get(written)
+    return type_(found) if found is not None else ""

@@ -1,0 +1,427 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names that belong to one state machine, as Markdown: variables, states, handles, ports, the machine itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.expr.tree import access_path
+from roaml.expr.types import UNKNOWN, EmptyArray, Type, join, leaves, unwrap
+from roaml.ide.describe.comment import remark
+from roaml.ide.describe.language import array_size, value_range
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, prose
+from roaml.ide.describe.system import channel
+from roaml.ide.names.in_machine import interface_symbol
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.names.occurrence import Access
+from roaml.ide.names.occurrences import uses
+from roaml.language import ElementType
+from roaml.model.expand import Constant
+from roaml.model.machine import Chart, Data, Declaration, Handler
+from roaml.model.outline import MachineOutline
+from roaml.model.syntax import Expression, Name, PortRead, Value
+from roaml.model.system import Automaton, System, sanitise
+from roaml.model.typing import TypedMachine, Use
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+from roaml.xml import Element
+
+_OCCASIONS = {
+    "": "by itself",
+    "message": "a message on",
+    "request": "a request to",
+    "response": "the response of",
+    "goal": "a goal for",
+    "goal-response": "the answer to a goal of",
+    "feedback": "feedback of",
+    "result": "the result of",
+    "tick": "the timer",
+    "thread-start": "the start of a thread of",
+    "thread-free": "the end of a thread of",
+    "bt-tick": "a tick",
+    "bt-halt": "a halt",
+    "child-status": "the answer of child",
+    "child-halted": "the halt of child",
+}
+
+_KINDS = {
+    "service-client": "service client",
+    "service-server": "service server",
+    "action-client": "action client",
+    "action-server": "action server",
+}
+
+
+def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
+    """The automata that a machine, or one of its threads, becomes in all its systems."""
+    machine = analysis.machine(path)
+    threads = [thread for thread in machine.threads if thread.chart.scope == scope] if machine and scope else []
+    found: dict[str, None] = {}
+    for system in linked_systems(analysis, path):
+        for automaton in system.automata_of(path):
+            if not scope:
+                found[automaton.name] = None
+            for thread in threads:
+                action = _action(automaton, thread.server.value if thread.server else "")
+                found.update((f"{sanitise(action)}_thread_{k}", None) for k in range(thread.count or 0) if action)
+    return tuple(found)
+
+
+def _action(automaton: Automaton, handle: str) -> str:
+    found = (use for use in automaton.outline.interfaces if (use.kind, use.handle) == ("action-server", handle))
+    return next((automaton.interface_name(use) or "" for use in found), "")
+
+
+def linked_systems(analysis: Analysis, path: str) -> Iterator[System]:
+    for each in systems_of(analysis, path):
+        system = analysis.system(each) if each else None
+        if system is not None:
+            yield system
+
+
+def _remark(analysis: Analysis, path: str, element: Element) -> str:
+    document = analysis.document(path)
+    return prose(remark(document, element)) if document else ""
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+# ------------------------------------------------------------------- variables
+
+
+def variable(analysis: Analysis, symbol: Symbol) -> str:
+    """A variable: type, range, initial value, what it gets, how often it is used, what it becomes."""
+    machine = analysis.machine(symbol.path)
+    found = {(c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id}
+    data = found.get((symbol.scope, symbol.name))
+    parts: dict[str, None] = {}
+    for system in systems_of(analysis, symbol.path):
+        typed = analysis.typed_in(symbol.path, system) if machine else None
+        if typed is not None:
+            parts[_variable(analysis, symbol, data, typed)] = None
+    return paragraphs(*parts)
+
+
+def _variable(analysis: Analysis, symbol: Symbol, data: Data | None, typed: TypedMachine) -> str:
+    type_ = typed.variables.get(symbol.scope, {}).get(symbol.name, UNKNOWN)
+    inferred = data is None or data.type is None
+    if inferred:
+        type_ = inferred_type(typed, symbol.scope, symbol.name)
+    _, bounds = unwrap(type_)
+    initial = _initial(data.value if data else None)
+    around = _bounds(data) or value_range(type_)
+    facts = (around, array_size(bounds), f"starts as {initial}" if initial else "")
+    unknown = "not declared" if data is None else "type inferred from its values"
+    shown = _sentence(" · ".join(filter(None, (unknown if inferred else "", *facts))))
+    return paragraphs(
+        code(f"{symbol.name} : {type_}"),
+        _remark(analysis, symbol.path, data.element) if data else "",
+        lines(shown, _gets(typed, symbol), _counted(analysis, symbol), _becomes(analysis, symbol, type_)),
+    )
+
+
+def inferred_type(typed: TypedMachine, scope: str, name: str) -> Type:
+    """The type that the values assigned to a variable have; unknown if there are none or they do not agree."""
+    found: Type = UNKNOWN
+    for value in typed.values:
+        if value.use is Use.ASSIGNED and value.place.chart.scope == scope and value.target == name:
+            joined = join(found, value.type)
+            if joined is None:
+                return UNKNOWN
+            found = joined
+    return UNKNOWN if isinstance(found, EmptyArray) else found
+
+
+def _initial(value: Value | None) -> str:
+    if isinstance(value, PortRead):
+        return f"port {name(value.key.value)}" if value.key else ""
+    return name(_short(value.text)) if value and value.text.strip() else ""
+
+
+def _short(text: str, most: int = 40) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= most else f"{text[:most].rpartition(' ')[0] or text[:most]} …"
+
+
+def _bounds(data: Data | None) -> str:
+    lower, upper = (
+        (each.text if isinstance(each, Expression) else "" for each in (data.lower, data.upper)) if data else ("", "")
+    )
+    if lower and upper:
+        return f"meant from {name(lower)} to {name(upper)}"
+    return f"meant from {name(lower)} up" if lower else f"meant up to {name(upper)}" if upper else ""
+
+
+def _gets(typed: TypedMachine, symbol: Symbol) -> str:
+    """What is assigned to a variable or to a part of it."""
+    found: dict[str, None] = {}
+    target: Expression | None = None
+    for value in typed.values:
+        if value.place.chart.scope != symbol.scope:
+            continue
+        if value.use is Use.LOCATION:
+            target = value.value if isinstance(value.value, Expression) else None
+        elif value.use is Use.ASSIGNED and target is not None:
+            path = access_path(target.tree)
+            if path is not None and path[0] == symbol.name:
+                found[_source(value.value)] = None
+            target = None
+    return f"Gets {names(found, 4)}" if found else ""
+
+
+def _source(value: Value) -> str:
+    if isinstance(value, Expression):
+        return _short(value.text)
+    return f"port {value.key.value}" if value.key else "a port"
+
+
+def _counted(analysis: Analysis, symbol: Symbol) -> str:
+    reads: set[Span] = set()
+    writes: set[Span] = set()
+    for system in systems_of(analysis, symbol.path):
+        for each in uses(analysis, symbol.path, system).by_symbol.get(symbol, ()):
+            if not each.defines:
+                (writes if each.access is Access.WRITE else reads).add(each.span)
+    counts = [f"{verb} {_times(len(places))}" for verb, places in (("read", reads), ("written", writes)) if places]
+    return _sentence(", ".join(counts)) or "Never used"
+
+
+def _times(count: int) -> str:
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")
+
+
+def _becomes(analysis: Analysis, symbol: Symbol, type_: Type) -> str:
+    owners = automata(analysis, symbol.path, symbol.scope)
+    if not owners:
+        return ""
+    flat = ["__".join((symbol.name, *path)) for path, _ in leaves(type_)]
+    return f"In JANI {names(flat, 4)} of {names(owners, 3)}"
+
+
+# ---------------------------------------------------------------------- states
+
+
+def state(analysis: Analysis, symbol: Symbol) -> str:
+    """A state: where its machine is when it comes here, and where it goes, on which occasions."""
+    machine = analysis.machine(symbol.path)
+    chart = next((each for each in machine.charts if each.scope == symbol.scope), None) if machine else None
+    if machine is None or chart is None:
+        return ""
+    found = next((each for each in chart.states if each.id and each.id.value == symbol.name), None)
+    incoming, outgoing = _edges(chart, symbol.name, into=True), _edges(chart, symbol.name, into=False)
+    initial = chart.initial is not None and chart.initial.value == symbol.name
+    owners = automata(analysis, symbol.path, symbol.scope)
+    return paragraphs(
+        code(f"{'initial ' if initial else ''}state {symbol.name}"),
+        _remark(analysis, symbol.path, found.element) if found else "Not defined",
+        lines(
+            f"**From** {incoming}" if incoming else "" if initial else "Nothing leads here",
+            f"**To** {outgoing}" if outgoing else "Nothing leads away",
+            f"In JANI location {name(symbol.name)} of {names(owners, 3)}" if owners and found else "",
+        ),
+    )
+
+
+def _edges(chart: Chart, of: str, *, into: bool) -> str:
+    """The other ends of a state's transitions, each with the occasions."""
+    ends: dict[str, dict[str, None]] = {}
+    for each in chart.states:
+        source = each.id.value if each.id else ""
+        for handler in each.handlers:
+            for target in handler.targets:
+                to = target.state.value if target.state else ""
+                if (to if into else source) == of and source and to:
+                    share = f" ({target.probability.value})" if target.probability else _rest(handler)
+                    ends.setdefault(source if into else to, {})[f"{occasion(handler)}{share}"] = None
+    return " · ".join(f"{name(end)} on {_any(found)}" for end, found in ends.items()).replace(
+        " on by itself", " by itself"
+    )
+
+
+def _rest(handler: Handler) -> str:
+    return " (the rest)" if handler.is_probabilistic else ""
+
+
+def _any(occasions: Iterable[str]) -> str:
+    found = list(occasions)
+    return ", ".join(found[:3]) + (f" and {len(found) - 3} more" if len(found) > 3 else "")
+
+
+def occasion(handler: Handler) -> str:
+    """What a transition waits for, in words."""
+    if handler.event is not None:
+        return name(handler.event.value)
+    words = _OCCASIONS.get(handler.trigger, handler.trigger)
+    about = handler.handle or handler.child
+    return (
+        f"{words} {name(about.value)}" if about else words.removesuffix(" on").removesuffix(" of").removesuffix(" to")
+    )
+
+
+_PROTOCOL = {"bt-tick": "tick", "bt-halt": "halt", "bt-status": "response", "bt-halted": "halt_response"}
+"""What a plugin receives from its parent, and answers -> the end of the event's name."""
+
+
+def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
+    """The events of plain SCXML that an element of the tree protocol becomes; "" for other elements."""
+    end = _PROTOCOL.get(type_.receives or type_.sends)
+    nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
+    events = names((f"{node_id(each)}_{end}" for each in nodes), 4)
+    return f"In plain SCXML {events}" if events else ""
+
+
+# -------------------------------------------------------- handles, ports, machines
+
+
+def handle(analysis: Analysis, symbol: Symbol) -> str:
+    """A declared ROS interface or timer: what it is connected with in the systems of its machine."""
+    found = declaration(analysis, symbol)
+    if found is None:
+        return ""
+    kind = _KINDS.get(symbol.kind, symbol.kind)
+    head = f"{kind} {symbol.name}" + (f" : {found.type.value}" if found.type else "")
+    return paragraphs(code(head), _remark(analysis, symbol.path, found.element), *_connections(analysis, symbol, found))
+
+
+def declaration(analysis: Analysis, symbol: Symbol) -> Declaration | None:
+    """The declaration that a handle stands for."""
+    machine = analysis.machine(symbol.path)
+    wanted = (each for each in machine.declarations if each.kind == symbol.kind) if machine else iter(())
+    return next((each for each in wanted if each.handle and each.handle.value == symbol.name), None)
+
+
+def _connections(analysis: Analysis, symbol: Symbol, found: Declaration) -> Iterator[str]:
+    if found.kind == "timer":
+        yield rate(found.rate.value) if isinstance(found.rate, Name) else _from_port(found.rate, "rate")
+        return
+    yield _from_port(found.interface, "name")
+    done: dict[str, None] = {}
+    for system in linked_systems(analysis, symbol.path):
+        for automaton in system.automata_of(symbol.path):
+            for use in automaton.outline.interfaces:
+                interface = (
+                    automaton.interface_name(use) if (use.kind, use.handle) == (symbol.kind, symbol.name) else None
+                )
+                if interface:
+                    done[channel(analysis, interface_symbol(system.path, use.kind, interface), interface, system)] = (
+                        None
+                    )
+    yield from done
+    if not done and isinstance(found.interface, Name):
+        yield f"{_sentence(interface_symbol('', found.kind, '').kind)} {name(found.interface.value)}"
+
+
+def _from_port(value: Name | PortRead | None, what: str) -> str:
+    return f"Its {what} comes from port {name(value.key.value)}" if isinstance(value, PortRead) and value.key else ""
+
+
+def rate(text: str) -> str:
+    """How often a timer ticks, from its rate in Hz as written."""
+    try:
+        hertz = float(text)
+    except ValueError:
+        return ""
+    if not 0 < hertz < float("inf"):
+        return ""
+    return f"{hertz:g} Hz: every {duration(1 / hertz)}"
+
+
+def duration(seconds: float) -> str:
+    """A time with the unit that makes it readable."""
+    for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
+        if seconds * factor >= 1:
+            return f"{seconds * factor:.4g} {unit}"
+    return f"{seconds * 1e9:.4g} ns"
+
+
+def port(analysis: Analysis, symbol: Symbol) -> str:
+    """A port of a plugin: type, default, and what the nodes of the tree put there."""
+    machine = analysis.machine(symbol.path)
+    declared = next((p for p in machine.ports if p.key and p.key.value == symbol.name), None) if machine else None
+    if declared is None:
+        return ""
+    type_ = f" : {declared.type.text}" if declared.type else ""
+    bound: dict[str, list[str]] = {}
+    for system in linked_systems(analysis, symbol.path):
+        for automaton in system.automata_of(symbol.path):
+            value = automaton.port(symbol.name)
+            shown = "" if value is None else value.text if isinstance(value, Constant) else f"{{{value.variable}}}"
+            bound.setdefault(shown, []).append(node_id(automaton))
+    found = [
+        f"{name(value) if value else 'not set'} in {names(nodes, 3)}" for value, nodes in list(bound.items())[:_MOST]
+    ]
+    rest = f" and {len(bound) - _MOST} other values" if len(bound) > _MOST else ""
+    return paragraphs(
+        code(f"{declared.direction} {symbol.name}{type_}"),
+        _remark(analysis, symbol.path, declared.element),
+        lines(
+            f"Port of {name(machine.name.value)}" if machine and machine.name else "",
+            f"**Holds** {' · '.join(found)}{rest}" if found else "",
+        ),
+    )
+
+
+_MOST = 5
+
+
+def node_id(automaton: Automaton) -> str:
+    """A node of the executed tree as its events call it, with its name."""
+    assert automaton.instance is not None
+    return f"bt_{automaton.instance.number}"
+
+
+def machine(analysis: Analysis, symbol: Symbol) -> str:
+    """A machine: its ports and interfaces, who it is in its systems, its file."""
+    found = analysis.machine(symbol.path)
+    if found is None:
+        return ""
+    outlines = [a.outline for s in linked_systems(analysis, symbol.path) for a in s.automata_of(symbol.path)]
+    listed = [o for s in linked_systems(analysis, symbol.path) for p, o in (*s.nodes, *s.plugins) if p == symbol.path]
+    plugins = {p for s in linked_systems(analysis, symbol.path) for p, _ in s.plugins}
+    is_plugin = symbol.path in plugins or bool(found.ports)
+    nodes = [a for s in linked_systems(analysis, symbol.path) for a in s.automata_of(symbol.path)]
+    ports = "".join(
+        f"\n  {each.direction} {each.key.value}{f' : {each.type.text}' if each.type else ''}"
+        for each in found.ports
+        if each.key
+    )
+    outline = next(iter((*outlines, *listed)), None)
+    return paragraphs(
+        code(f"{'plugin' if is_plugin else 'node'} {symbol.name}{ports}"),
+        _remark(analysis, symbol.path, found.element),
+        lines(
+            *(_talk(outline) if outline else ()),
+            _instances(nodes) if is_plugin else f"In JANI automaton {names(a.name for a in nodes)}" if nodes else "",
+            file(symbol.path),
+        ),
+    )
+
+
+_TALK = {
+    "publisher": "Publishes",
+    "subscriber": "Listens to",
+    "service-server": "Serves",
+    "service-client": "Calls",
+    "action-server": "Offers",
+    "action-client": "Pursues",
+}
+
+
+def _talk(outline: MachineOutline) -> Iterator[str]:
+    for kind, verb in _TALK.items():
+        found = [use.name or f"port {use.port}" for use in outline.interfaces if use.kind == kind]
+        yield f"{verb} {names(found)}" if found else ""
+    sent, received = (each.event for each in outline.sent), (each.event for each in outline.received)
+    yield f"Sends {found_names}" if (found_names := names(sent)) else ""
+    yield f"Receives {found_names}" if (found_names := names(received)) else ""
+
+
+def _instances(nodes: list[Automaton]) -> str:
+    if not nodes:
+        return "No node of the tree uses it"
+    trees = names(dict.fromkeys(a.instance.source.tree for a in nodes if a.instance and a.instance.source.tree))
+    count = "One node" if len(nodes) == 1 else f"{len(nodes)} nodes"
+    return f"{count}{f' in {trees}' if trees else ''}: {names((a.name for a in nodes), 4)}"

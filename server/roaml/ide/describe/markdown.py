@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pieces of Markdown, and Markdown for those who cannot show it.
+
+Names and comments may hold anything that somebody typed: they are always put so that they cannot change what is around
+them. There are editors that show HTML in Markdown, load its pictures and follow its links; so no text of a file becomes
+a tag, a picture or a link.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_MOST = 6
+"""More names than this are counted, not listed."""
+
+_TICKS = re.compile(r"`+")
+_FENCE = re.compile(r"^(`{3,})[^`\n]*\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
+_SPAN = re.compile(r"(?<![\\`])(`+)(?!`)( ?)(.+?)\2(?<!`)\1(?!`)", re.DOTALL)
+_LINK = re.compile(r"\[((?:\\.|[^\]\\\n])*)\]\([^)\n]*\)")
+_EMPHASIS = re.compile(r"(?<![\\*\w])\*(?=[^\s*])((?:\\.|[^*\\\n])+)(?<!\s)\*(?![*\w])")
+_RULE = re.compile(r"^---$", re.MULTILINE)
+_NAME_MARKS = re.compile(r"([\\*_`!\[\]])")
+_ESCAPE = r"\\\1"
+_ESCAPED = re.compile(r"\\([\\<*_`#~!\[\]])")
+_ENTITY = re.compile(r"&(?=#?\w+;)")
+_ENTITIES = (("&lt;", "<"), ("&amp;", "&"))
+_USERS_CODE = re.compile(r"(?<![\\`])(`+)(?!`)(.+?)(?<!`)\1(?!`)")
+_USERS_MARKS = re.compile(r"\\(?=[!-/:-@\[-`{-~])|`|!(?=\[)|\](?=[(\[:])")
+_USERS_BLOCK = re.compile(r"^(?=#|~~~)")
+
+
+def code(text: str, language: str = "") -> str:
+    """A block of code."""
+    ticks = "`" * max(3, 1 + max((len(found[0]) for found in _TICKS.finditer(text)), default=0))
+    return f"{ticks}{language}\n{text}\n{ticks}"
+
+
+def name(text: str) -> str:
+    """A name in a sentence."""
+    text = " ".join(text.split())
+    if not text:
+        return "` `"
+    ticks = "`" * (1 + max((len(found[0]) for found in _TICKS.finditer(text)), default=0))
+    space = " " if text.startswith("`") or text.endswith("`") else ""
+    return f"{ticks}{space}{text}{space}{ticks}"
+
+
+def names(found: Iterable[str], most: int = _MOST) -> str:
+    """Names with commas, each once; the last of very many are only counted. "" if there are none."""
+    different = list(dict.fromkeys(found))
+    shown = different[:most] if len(different) > most + 1 else different
+    rest = len(different) - len(shown)
+    return ", ".join(map(name, shown)) + (f" and {rest} more" if rest else "")
+
+
+def file(path: str) -> str:
+    """The name of a file."""
+    shown = path.replace("\\", "/").rpartition("/")[2]
+    return f"*{_without_tags(_NAME_MARKS.sub(_ESCAPE, shown))}*"
+
+
+def prose(text: str) -> str:
+    """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, a picture or a link."""
+    paragraphs = re.split(r"\n\s*\n", text.strip())
+    return "\n\n".join(_tame(" ".join(each.split())) for each in paragraphs)
+
+
+def _tame(paragraph: str) -> str:
+    """A paragraph of a user. Escapes would be seen in code, so code that needs them is shown as text."""
+    parts: list[str] = []
+    text = ""
+    done = 0
+    for found in _USERS_CODE.finditer(paragraph):
+        text += paragraph[done : found.start()]
+        if "<" in found[2] or "&" in found[2]:
+            text += found[2]
+        else:
+            parts += (_without_marks_of_users(text), found[0])
+            text = ""
+        done = found.end()
+    parts.append(_without_marks_of_users(text + paragraph[done:]))
+    return _USERS_BLOCK.sub(r"\\", _without_tags("".join(parts)))
+
+
+def _without_marks_of_users(text: str) -> str:
+    return _USERS_MARKS.sub(r"\\\g<0>", text)
+
+
+def _without_tags(text: str) -> str:
+    """As an entity: a backslash before `<` is not known to all readers of Markdown."""
+    return _ENTITY.sub("&amp;", text).replace("<", "&lt;")
+
+
+def lines(*parts: str) -> str:
+    """One below the other; empty ones are left out."""
+    return "  \n".join(filter(None, parts))
+
+
+def paragraphs(*parts: str) -> str:
+    """With an empty line between; empty ones are left out."""
+    return "\n\n".join(filter(None, parts))
+
+
+def plain(markdown: str) -> str:
+    """The same as text without markup, for clients that show no Markdown."""
+    found: list[str] = []
+    done = 0
+    for block in _FENCE.finditer(markdown):
+        found += [_without_marks(markdown[done : block.start()]), block[2]]
+        done = block.end()
+    return "".join([*found, _without_marks(markdown[done:])]).strip()
+
+
+def _without_marks(text: str) -> str:
+    text = _LINK.sub(r"\1", text.replace("  \n", "\n").replace("**", ""))
+    text = _RULE.sub("", _EMPHASIS.sub(r"\1", text))
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    parts: list[str] = []
+    done = 0
+    for found in _SPAN.finditer(text):
+        parts += (_unescaped(text[done : found.start()]), found[3])
+        done = found.end()
+    return "".join([*parts, _unescaped(text[done:])])
+
+
+def _unescaped(text: str) -> str:
+    text = _ESCAPED.sub(r"\1", text)
+    for written, meant in _ENTITIES:
+        text = text.replace(written, meant)
+    return text

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Property files as Markdown: operators, members, formulas in the usual notation, global variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from roaml.ide.describe.markdown import code, lines, name, paragraphs
+from roaml.ide.json_tree import members
+from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
+from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.language.json_schema import PROPERTIES, Key
+from roaml.model.globals import GlobalVariable
+from roaml.model.typing import STATUSES
+
+_DEPTH = 12
+_LENGTH = 400
+
+_SAYS: Mapping[str, str] = {
+    "∨": "At least one of both holds.",
+    "∧": "Both hold.",
+    "⇒": "If the left one holds, the right one does.",
+    "¬": "The operand does not hold.",
+    "=": "Both are equal.",
+    "≠": "Both differ.",
+    "<": "The left one is less.",
+    "≤": "The left one is less or equal.",
+    ">": "The left one is greater.",
+    "≥": "The left one is greater or equal.",
+    "+": "The sum.",
+    "-": "The difference.",
+    "*": "The product.",
+    "min": "The lesser of both.",
+    "max": "The greater of both.",
+    "abs": "The number without its sign.",
+    "floor": "The greatest integer that is not greater.",
+    "ceil": "The smallest integer that is not less.",
+    "%": "The remainder, never negative.",
+    "/": "The quotient, a real number.",
+    "pow": "`left` to the power of `right`.",
+    "log": "The logarithm of `left` to the base `right`.",
+    "sgn": "−1, 0 or 1, as the number is below, at or above 0.",
+    "trc": "The number without what stands behind its point.",
+    "F": "`exp` holds at some time.",
+    "G": "`exp` holds always.",
+    "X": "`exp` holds after the next step.",
+    "U": "`right` holds at some time and `left` until then.",
+    "W": "`right` holds at some time and `left` until then, or `left` holds for ever.",
+    "R": "`right` holds up to and including the time at which `left` does, or for ever.",
+    "Pmin": "The least probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
+    "Pmax": "The greatest probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
+    "initial": "Holds in the initial states.",
+    "deadlock": "Holds where nothing can happen any more.",
+    "timelock": "Holds where time cannot pass any more.",
+}
+"""Where one object of the schema stands for several operators: what each of them says."""
+
+
+def operator(symbol: str) -> str:
+    """An operator as it is written behind `op`; "" if there is none such."""
+    described = dict(PROPERTIES.operators("formula")).get(symbol)
+    if described is None:
+        return ""
+    known = BINARY_OPERATORS.get(symbol) or UNARY_OPERATORS.get(symbol)
+    usual = known.symbol if known else symbol
+    is_function = symbol in UNARY_OPERATORS
+    text = "The function of that name; angles in radians." if is_function else PROPERTIES.text(described)
+    return paragraphs(
+        _SAYS.get(usual, text),
+        lines(
+            f"Takes {known.signature.value}".replace("->", "→") if known else "",
+            f"Another spelling of {name(usual)}" if usual != symbol else "",
+        ),
+    )
+
+
+def member(key: Key) -> str:
+    """A key of a JSON object."""
+    title = PROPERTIES.title(key.schema)
+    head = (f"**{title}**" if title else "", name(key.name), "required" if key.required else "")
+    return paragraphs(" · ".join(filter(None, head)), PROPERTIES.text(key.schema))
+
+
+_STATUS = re.compile(r"bt_\d+_response__status")
+_CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
+_CODES: Mapping[str, str] = {"4": "STATUS_SUCCEEDED", "5": "STATUS_CANCELED", "6": "STATUS_ABORTED"}
+"""`action_msgs/GoalStatus` of ROS 2, as far as results have it."""
+
+_COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
+
+
+def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
+    """What a number stands for that is compared with the status of a node or the code of a result; "" if nothing.
+
+    Args:
+        around: the members of the comparison.
+    """
+    operator = around.get("op")
+    known = BINARY_OPERATORS.get(operator.value) if isinstance(operator, JsonString) else None
+    sides = [around.get("left"), around.get("right")]
+    if known is None or known.symbol not in _COMPARISONS or written not in sides:
+        return ""
+    variable = next((each.value for each in sides if isinstance(each, JsonString)), "")
+    if _STATUS.fullmatch(variable):
+        called = next((name for name, value in STATUSES.items() if str(value) == written.text), "")
+        every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
+        return paragraphs(code(f"{written.text} = {called}") if called else "", f"Answers of tree nodes: {every}")
+    if _CODE.fullmatch(variable):
+        every = ", ".join(f"{value} = {name}" for value, name in _CODES.items())
+        called = _CODES.get(written.text, "")
+        head = code(f"{written.text} = {called}") if called else ""
+        return paragraphs(head, f"Codes of action results (`action_msgs/GoalStatus`): {every}")
+    return ""
+
+
+def global_variable(variable: GlobalVariable) -> str:
+    """A global variable of the translated system, as properties name it."""
+    if variable.parameter == "valid" and variable.name.endswith(".valid"):
+        what = f"Whether event {name(variable.event)} was ever sent"
+    elif variable.name.endswith("_len"):
+        what = f"How many elements {name(variable.name.rpartition('.')[0])} has"
+    else:
+        what = f"What event {name(variable.event)} carried last"
+    return paragraphs(code(f"{variable.name} : {variable.type}"), what)
+
+
+def formula(value: JsonValue) -> str:
+    """A formula in the usual notation, in one line."""
+    text = _formula(value, 0)
+    return text if len(text) <= _LENGTH else f"{text[: _LENGTH - 1]}…"
+
+
+def _formula(value: JsonValue | None, depth: int) -> str:
+    if depth > _DEPTH:
+        return "…"
+    match value:
+        case JsonString():
+            return value.value or "…"
+        case JsonNumber():
+            return value.text
+        case JsonBool():
+            return str(value.value).lower()
+        case JsonArray():
+            return f"[{', '.join(_formula(each, depth + 1) for each in value.items)}]"
+        case JsonObject():
+            return _operation(members(value), depth)
+    return "…"
+
+
+def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
+    def part(key: str) -> str:
+        return _formula(parts.get(key), depth + 1)
+
+    def inner(key: str) -> str:
+        """In parentheses if something binds looser there."""
+        value = parts.get(key)
+        has_two = isinstance(value, JsonObject) and value.get("left") is not None
+        text = part(key)
+        return f"({text})" if has_two and " " in text else text
+
+    operator = parts.get("op")
+    op = operator.value if isinstance(operator, JsonString) else ""
+    if op in BINARY_OPERATORS and BINARY_OPERATORS[op].symbol.isalpha():
+        return f"{op}({part('left')}, {part('right')})"
+    if "left" in parts and "right" in parts:
+        return f"{inner('left')} {op} {inner('right')}"
+    match op:
+        case "filter":
+            fun = part("fun")
+            return part("values") if fun == "values" else f"{fun} {inner('values')} in {part('states')}"
+        case "ite":
+            return f"{inner('if')} ? {inner('then')} : {inner('else')}"
+        case "aa":
+            return f"{inner('exp')}[{part('index')}]"
+        case "av":
+            return part("elements")
+        case "Pmin" | "Pmax" | "Emin" | "Emax" | "Smin" | "Smax":
+            return f"{op}({part('exp')})"
+        case "F" | "G" | "X" | "¬" | "!" | "∀" | "∃":
+            return f"{op} {inner('exp')}" if op.isalpha() else f"{op}{inner('exp')}"
+    if not op:
+        return part("constant") if "constant" in parts else "…"
+    return f"{op}({part('exp')})" if "exp" in parts else op

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ROS 2 definitions as Markdown: the definition with its comments, as its file would say it."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+
+from roaml.ide.describe.markdown import code, name, paragraphs
+from roaml.interfaces.registry import NotFound, Registry
+from roaml.interfaces.types import SECTION_NAMES, Constant, Definition, Field, Kind, Section
+
+LANGUAGE = "rosmsg"
+_MOST = 40
+_WIDTH = 88
+
+
+def ros_type(registry: Registry, kind: Kind, type_name: str) -> str:
+    """The definition of a type, `package/Name`; "" if there is none."""
+    found = registry.resolve(kind, type_name)
+    return "" if isinstance(found, NotFound) else definition(found)
+
+
+def definition(found: Definition) -> str:
+    """A message, service or action: its fields and constants with their comments."""
+    rows: list[str] = [f"# {found.full_name}"]
+    for title, section in zip(SECTION_NAMES[found.kind], found.sections, strict=True):
+        if title != SECTION_NAMES[found.kind][0]:
+            rows.append("---")
+        rows += _section(section)
+    if len(rows) > _MOST + 1:
+        rows = [*rows[:_MOST], f"# … {len(rows) - _MOST} more lines"]
+    return code("\n".join(rows), LANGUAGE)
+
+
+def _section(section: Section) -> Iterator[str]:
+    yield from _comment(section.comment)
+    parts: list[Field | Constant] = sorted((*section.constants, *section.fields), key=lambda each: each.name_span)
+    rows = [(_declared(each), each.comment) for each in parts]
+    width = max((len(row) for row, comment in rows if _is_short(comment)), default=0)
+    for row, comment in rows:
+        if _is_short(comment):
+            yield f"{row:{width}}  # {comment}" if comment else row
+        else:
+            yield from _comment(comment)
+            yield row
+
+
+def _is_short(comment: str) -> bool:
+    """Whether a comment has room beside its field."""
+    return "\n" not in comment and len(comment) < _WIDTH // 2
+
+
+def _comment(text: str) -> Iterator[str]:
+    for line in text.splitlines():
+        yield from (f"# {part}" for part in textwrap.wrap(line, _WIDTH) or [""])
+
+
+def _declared(each: Field | Constant) -> str:
+    if isinstance(each, Constant):
+        return f"{each.type} {each.name}={each.value_text}"
+    return f"{each.type} {each.name} {each.default_text}".rstrip()
+
+
+def field(registry: Registry, struct: str, field_name: str) -> str:
+    """A field of a message or of a part of a service or action.
+
+    Args:
+        registry: where definitions are looked up.
+        struct: as `roaml.model.ros` calls it: `package/Name`, or `package/Name request`.
+        field_name: its name. A dotted path is followed.
+    """
+    head, _, rest = field_name.partition(".")
+    found, section = section_of(registry, struct)
+    known = found.section(section).field(head) if found else None
+    if found is None or known is None:
+        return ""
+    if rest and not known.type.is_primitive:
+        return field(registry, known.type.name, rest)
+    of = f"of {name(found.full_name)}" if found.kind == "msg" else f"in the {section} of {name(found.full_name)}"
+    comment = list(_comment(known.comment))
+    nested = registry.resolve("msg", known.type.name) if not known.type.is_primitive else None
+    inside = definition(nested) if isinstance(nested, Definition) else ""
+    return paragraphs(code("\n".join((*comment, _declared(known))), LANGUAGE), f"Field {of}", inside)
+
+
+def section_of(registry: Registry, struct: str) -> tuple[Definition | None, str]:
+    """The definition and the section that a struct of `roaml.model.ros` is made of; see `field`."""
+    type_name, _, section = struct.partition(" ")
+    section = section or "message"
+    kind: Kind = next((kind for kind, sections in SECTION_NAMES.items() if section in sections), "msg")
+    found = registry.resolve(kind, type_name)
+    return (None if isinstance(found, NotFound) else found), section

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names that several files share, as Markdown: events, topics, services, actions, blackboard, trees, structs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
+from roaml.ide.describe.language import builtin_node, members, value_range
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
+from roaml.ide.names.lookup import systems_of, thing
+from roaml.ide.names.occurrence import Access
+from roaml.ide.names.occurrences import trees_of
+from roaml.ide.names.translated import global_variables
+from roaml.language import BEHAVIOR_TREE
+from roaml.model.expand import Reference
+from roaml.model.globals import GlobalVariable
+from roaml.model.structs import StructDeclaration, resolve_structs
+from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
+from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
+from roaml.model.tree import nodes
+from roaml.project.analysis import Analysis
+
+
+def _system(analysis: Analysis, symbol: Symbol) -> System | None:
+    """The system that a symbol belongs to; None if it is looked at alone."""
+    return analysis.system(symbol.path) if symbol.path in analysis.system_paths else None
+
+
+def _who(automata: Iterable[Automaton]) -> str:
+    """Nodes by their names, nodes of the tree by their plugins."""
+    return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _in_properties(variables: Iterable[GlobalVariable]) -> str:
+    found = [each.name for each in variables]
+    return f"In properties {names(found, 3)}" if found else ""
+
+
+# ---------------------------------------------------------------------- events
+
+
+def event(analysis: Analysis, symbol: Symbol) -> str:
+    """A plain event: its parameters, who sends and who receives it, what properties can look at."""
+    system = _system(analysis, symbol)
+    found = system.events.get(symbol.name) if system else None
+    if found is None:
+        return paragraphs(code(f"event {symbol.name}"), _in_files(analysis, symbol))
+    parameters = ", ".join(f"{key} : {type_}" for key, type_ in found.data.members)
+    senders, receivers = _who(a for a, _ in found.senders), _who(a for a, _ in found.receivers)
+    return paragraphs(
+        code(f"event {symbol.name}({parameters})" if parameters else f"event {symbol.name}"),
+        lines(
+            f"**Sent by** {senders or 'nobody'} · **received by** {receivers or 'nobody'}",
+            _in_properties(global_variables(analysis, symbol)),
+        ),
+    )
+
+
+def _in_files(analysis: Analysis, symbol: Symbol) -> str:
+    """What the file itself does with an event."""
+    found = thing(analysis, (symbol,)).uses
+    counts = [
+        f"{verb} {count} times" if count != 1 else f"{verb} once"
+        for verb, access in (("sent", Access.WRITE), ("received", Access.READ))
+        if (count := sum(use.occurrence.access is access for use in found))
+    ]
+    return _sentence(", ".join(counts))
+
+
+def parameter(analysis: Analysis, symbol: Symbol) -> str:
+    """A parameter of an event; `symbol.scope` is the event."""
+    system = _system(analysis, symbol)
+    found = system.events.get(symbol.scope) if system else None
+    type_ = found.data.member(symbol.name) if found else None
+    senders = [a for a, sent in found.senders if any(p.name == symbol.name for p in sent.params)] if found else []
+    readers = [a for a, received in found.receivers if symbol.name in received.reads] if found else []
+    return paragraphs(
+        code(f"{symbol.name} : {type_ or UNKNOWN}"),
+        lines(
+            _sentence(
+                " · ".join(filter(None, (f"parameter of event {name(symbol.scope)}", value_range(type_ or UNKNOWN))))
+            ),
+            f"**Sent by** {_who(senders) or 'nobody'} · **read by** {_who(readers) or 'nobody'}" if system else "",
+            _in_properties(global_variables(analysis, symbol)),
+        ),
+    )
+
+
+# -------------------------------------------------------------------- interfaces
+
+_VERBS = {
+    "topic": ("published by", "heard by"),
+    "service": ("served by", "called by"),
+    "action": ("offered by", "pursued by"),
+}
+
+
+def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
+    """A topic, service or action, called as it is `written`: its type, both sides, what it becomes."""
+    system = _system(analysis, symbol)
+    found = find_channel(system, symbol) if system else None
+    shown = written or symbol.name
+    if system is None or found is None:
+        return code(f"{symbol.kind} {shown}")
+    types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in found.endpoints))
+    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found, system))
+
+
+def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
+    """The same in fewer words, for those who take part."""
+    found = find_channel(system, symbol)
+    head = f"{_sentence(symbol.kind)} {name(written)}"
+    return head if found is None else lines(head, _sides(analysis, symbol, found, system))
+
+
+def find_channel(system: System, symbol: Symbol) -> Channel | None:
+    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[symbol.kind]
+    return channels.get(symbol.name)
+
+
+def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -> str:
+    given, taken = _VERBS[symbol.kind]
+    sources = "the clock of the system" if is_clock(system, symbol) else _ends(found.sources)
+    return lines(
+        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(found.users)}",
+        _plain_events(symbol, found),
+        _in_properties(global_variables(analysis, symbol)),
+    )
+
+
+def is_clock(system: System, symbol: Symbol) -> bool:
+    """Whether a topic is that of the simulated time, which the translation publishes."""
+    return symbol.kind == "topic" and symbol.name == CLOCK_TOPIC and system.has_timer
+
+
+def _ends(endpoints: Iterable[Endpoint]) -> str:
+    return _who(endpoint.automaton for endpoint in endpoints) or "nobody"
+
+
+def _plain_events(symbol: Symbol, found: Channel) -> str:
+    if symbol.kind == "topic":
+        return f"In plain SCXML event {name(f'topic_{symbol.name}_msg')}"
+    called = sanitise(symbol.name)
+    if symbol.kind == "action":
+        return f"In plain SCXML events {name(f'action_{called}_…')}"
+    there = ("req_client_…", "request") if found.users else ()
+    back = ("response", "response_client_…") if found.sources else ()
+    return f"In plain SCXML {' → '.join(name(f'srv_{called}_{each}') for each in (*there, *back))}"
+
+
+# -------------------------------------------------------------------- blackboard
+
+
+def blackboard(analysis: Analysis, symbol: Symbol) -> str:
+    """A blackboard variable: its type, and the ports that write and read it."""
+    variables = global_variables(analysis, symbol)
+    full = dict.fromkeys(_full_name(each) for each in variables)
+    bound: list[BoundPort] = []
+    types: dict[str, None] = {}
+    for each in systems_of(analysis, symbol.path):
+        system = analysis.system(each) if each else None
+        for variable in full if system else ():
+            assert system is not None
+            ports = system.blackboard.get(variable, ())
+            bound += ports
+            types.update({system.variable_type(variable): None} if ports else {})
+    type_ = f" : {', '.join(types)}" if types else ""
+    return paragraphs(
+        code(f"{{{symbol.name}}}{type_}"),
+        lines(
+            f"Blackboard variable of tree {name(symbol.scope)}" if symbol.scope else "Blackboard variable",
+            f"**Written by** {_ports(bound, 'out')} · **read by** {_ports(bound, 'in')}" if bound else "",
+            _in_properties(variables),
+        ),
+    )
+
+
+def _full_name(variable: GlobalVariable) -> str:
+    """The name on the whole blackboard, from that of a global variable."""
+    return (
+        variable.event.removeprefix(BLACKBOARD_WRITE_PREFIX)
+        if variable.event != BLACKBOARD_ANSWER
+        else variable.parameter
+    )
+
+
+def _ports(bound: Iterable[BoundPort], direction: str) -> str:
+    found = (f"{b.automaton.outline.name}.{b.port.key}" for b in bound if b.port.direction == direction)
+    return names(found) or "nobody"
+
+
+# ------------------------------------------------------------------------- trees
+
+
+def plugin(symbol: Symbol) -> str:
+    """A node that no machine of the system declares: one of BehaviorTree.CPP, or an unknown one."""
+    known = BEHAVIOR_TREE.elements.get(symbol.name)
+    if known is not None and known.node:
+        return builtin_node(known)
+    return paragraphs(code(f"plugin {symbol.name}"), "No plugin of the system has this name")
+
+
+def tree(analysis: Analysis, symbol: Symbol) -> str:
+    """A behavior tree: how large it is, where it stands in others."""
+    for place in thing(analysis, (symbol,)).definitions:
+        trees = analysis.tree(place.path)
+        for each in trees.trees if trees else ():
+            if each.id is not None and each.id.span == place.span:
+                count = sum(1 for _ in nodes(each))
+                size = "one node" if count == 1 else f"{count} nodes"
+                return paragraphs(
+                    code(f"tree {symbol.name}"),
+                    lines(_sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol)),
+                )
+    return paragraphs(code(f"tree {symbol.name}"), "No tree has this name")
+
+
+def _use(analysis: Analysis, symbol: Symbol) -> str:
+    if is_main(analysis, symbol):
+        return "The tree that is executed"
+    uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind == "tree"]
+    count = sum(not use.occurrence.defines and analysis.tree(use.path) is not None for use in uses)
+    return f"Named {count} times" if count > 1 else "Named once" if count else "Never named"
+
+
+def is_main(analysis: Analysis, symbol: Symbol) -> bool:
+    """Whether a tree is the one that is executed."""
+    system = symbol.path if symbol.path in analysis.system_paths else None
+    main = trees_of(analysis, symbol.path, system).main
+    return main is not None and (main[1].id.value if main[1].id else "") == symbol.name
+
+
+def tree_node(analysis: Analysis, symbol: Symbol) -> str:
+    """A named node of a tree: what it becomes."""
+    inside, _, position = symbol.scope.rpartition(":")
+    return paragraphs(code(f"node {symbol.name}"), becomes(analysis, symbol.path, inside, int(position or 0)))
+
+
+def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
+    """What a node of a file becomes where its tree is executed."""
+    told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
+    rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
+    return paragraphs(*told[:_MOST], rest)
+
+
+_MOST = 3
+
+
+def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
+    """The nodes of executed trees that a node of a file becomes, in all systems of the file."""
+    for each in systems_of(analysis, path):
+        system = analysis.system(each) if each else None
+        for automaton in system.automata if system else ():
+            source = automaton.instance.source if automaton.instance else None
+            if system and source and (source.path, source.tree, source.position) == (path, tree, position):
+                yield system, automaton
+
+
+def node(system: System, automaton: Automaton) -> str:
+    """A node of the executed tree: what it is called, what its ports are bound to."""
+    instance = automaton.instance
+    assert instance is not None
+    ports = [(key, value) for key, value in instance.ports if automaton.outline.port(key) is not None]
+    bound = (f"{key} ← {{{v.variable}}}" if isinstance(v, Reference) else f"{key} = {v.text}" for key, v in ports)
+    return lines(f"In JANI automaton {name(automaton.name)}", names(bound))
+
+
+# ----------------------------------------------------------------------- structs
+
+
+def struct(analysis: Analysis, symbol: Symbol) -> str:
+    """A struct with its members, and its file."""
+    type_ = _struct(analysis, symbol, symbol.name)
+    if type_ is None:
+        return ""
+    files = dict.fromkeys(file(place.path) for place in thing(analysis, (symbol,)).definitions)
+    return paragraphs(code(members(type_)), ", ".join(files))
+
+
+def member(analysis: Analysis, symbol: Symbol) -> str:
+    """A member of a struct; `symbol.scope` is the struct."""
+    owner = _struct(analysis, symbol, symbol.scope)
+    type_: Type | None = owner.member(symbol.name) if owner else None
+    if type_ is None:
+        return ""
+    inner, _ = unwrap(type_)
+    return paragraphs(
+        code(f"{symbol.name} : {type_}"),
+        _sentence(" · ".join(filter(None, (f"member of struct {name(symbol.scope)}", value_range(type_))))),
+        code(members(inner)) if isinstance(inner, Struct) else "",
+    )
+
+
+def _struct(analysis: Analysis, symbol: Symbol, wanted: str) -> Struct | None:
+    """From the system that a symbol belongs to, or from the file itself."""
+    if symbol.path in analysis.system_paths:
+        found = analysis.structs(symbol.path).types.get(wanted)
+        return found if isinstance(found, Struct) else None
+    declared: tuple[StructDeclaration, ...] = analysis.struct_declarations(symbol.path)
+    outlines = tuple(outline for each in declared if (outline := each.outline) is not None)
+    found = resolve_structs(outlines).get(wanted)
+    return found if isinstance(found, Struct) else None

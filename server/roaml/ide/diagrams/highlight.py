@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes to highlight in diagrams when an automaton of the translation has done something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.ide.diagrams.machine import state_id
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+
+@dataclass(frozen=True, slots=True)
+class Highlight:
+    """A node of a picture: `picture` is "machine" or "tree", `path` the file that it shows, `node` its id there."""
+
+    picture: str
+    path: str
+    node: str
+
+
+def highlights(
+    analysis: Analysis, system: str, automaton: str, origin: Location, location: str
+) -> tuple[Highlight, ...]:
+    """
+    Args:
+        automaton: its name in the translation.
+        origin: what it has done, in the models.
+        location: where it is after that; a state, or something between two states.
+    """
+    return (*_state(analysis, origin, location), *_tree_node(analysis, system, automaton))
+
+
+def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[Highlight]:
+    """The state that the machine is in; between two states, the one that it leaves."""
+    machine = analysis.machine(origin.path)
+    for chart in machine.charts if machine else ():
+        named = [state for state in chart.states if state.id]
+        around = [
+            s for s in named if s.element.span.start <= origin.span.start and origin.span.end <= s.element.span.end
+        ]
+        if not around:
+            continue
+        innermost = min(around, key=lambda state: state.element.span.end - state.element.span.start)
+        reached = next((state for state in named if state.id and state.id.value == location), innermost)
+        if reached.id is not None:
+            yield Highlight("machine", origin.path, state_id(chart, reached.id.value))
+            return
+
+
+def _tree_node(analysis: Analysis, system: str, automaton: str) -> Iterator[Highlight]:
+    linked = analysis.system(system)
+    for instance in linked.instances if linked else ():
+        if instance.automaton == automaton:
+            yield Highlight("tree", system, str(instance.number))

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ROS graph of a system: its nodes and plugins, and who publishes, serves, calls and sends what.
+
+A plugin is drawn once, however often the tree has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
+from roaml.model.system import Automaton, Channel, Endpoint, System
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+_ROLES: Mapping[str, EdgeKind] = {
+    "publisher": EdgeKind.PUBLISHES,
+    "subscriber": EdgeKind.SUBSCRIBES,
+    "service-server": EdgeKind.SERVES,
+    "service-client": EdgeKind.CALLS,
+    "action-server": EdgeKind.SERVES,
+    "action-client": EdgeKind.CALLS,
+}
+_TO_CHANNEL = (EdgeKind.PUBLISHES, EdgeKind.CALLS)
+
+
+def ros_picture(analysis: Analysis, path: str) -> Picture | None:
+    """None if `path` is no system file."""
+    system = analysis.system(path)
+    if system is None:
+        return None
+    title = path.replace("\\", "/").rpartition("/")[2]
+    nodes = dict(_machines(analysis, system))
+    edges: dict[Edge, None] = {}
+    for kind, channels in (
+        (NodeKind.TOPIC, system.topics),
+        (NodeKind.SERVICE, system.services),
+        (NodeKind.ACTION_INTERFACE, system.actions),
+    ):
+        for channel in channels.values():
+            ends = [each for each in channel.endpoints if _id(each.automaton) in nodes]
+            node = _channel(analysis, kind, channel, ends)
+            nodes[node.id] = node
+            edges.update(dict.fromkeys(_edge(analysis, node, end) for end in ends))
+    edges.update(dict.fromkeys(_events(system, nodes)))
+    return Picture(title, tuple(nodes.values()), tuple(edges))
+
+
+def _id(automaton: Automaton) -> str:
+    kind = "node" if automaton.instance is None else "plugin"
+    return f"{kind} {automaton.index} {automaton.path}"
+
+
+def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, Node]]:
+    for automaton in system.automata:
+        machine = analysis.machine(automaton.path) if automaton.path else None
+        if machine is not None:
+            kind = NodeKind.ROS_NODE if automaton.instance is None else NodeKind.PLUGIN
+            place = Location(automaton.path, machine.element.span)
+            yield _id(automaton), Node(_id(automaton), kind, automaton.outline.name, place=place)
+
+
+def _channel(analysis: Analysis, kind: NodeKind, channel: Channel, ends: list[Endpoint]) -> Node:
+    names = [name for end in ends if (name := end.automaton.interface_name(end.use))]
+    types = tuple(dict.fromkeys(end.use.type for end in ends if end.use.type))
+    place = next((place for end in ends if (place := _declared(analysis, end))), None)
+    return Node(f"{kind.value} {channel.name}", kind, names[0] if names else channel.name, types, place=place)
+
+
+def _edge(analysis: Analysis, channel: Node, end: Endpoint) -> Edge:
+    role, machine = _ROLES[end.use.kind], _id(end.automaton)
+    source, target = (machine, channel.id) if role in _TO_CHANNEL else (channel.id, machine)
+    return Edge(source, target, role, place=_declared(analysis, end))
+
+
+def _declared(analysis: Analysis, end: Endpoint) -> Location | None:
+    machine, wanted = analysis.machine(end.automaton.path), (end.use.kind, end.use.handle)
+    for declaration in machine.declarations if machine else ():
+        if wanted == (declaration.kind, declaration.handle.value if declaration.handle else ""):
+            return Location(end.automaton.path, declaration.element.span)
+    return None
+
+
+def _events(system: System, nodes: Mapping[str, Node]) -> Iterator[Edge]:
+    """Plain events that go from one machine to another; all of one pair are one edge."""
+    between: dict[tuple[str, str], dict[str, None]] = {}
+    for event in system.events.values():
+        for sender, _ in event.senders:
+            for receiver, _ in event.receivers:
+                ends = _id(sender), _id(receiver)
+                if ends[0] != ends[1] and ends[0] in nodes and ends[1] in nodes:
+                    between.setdefault(ends, {})[event.name] = None
+    for (source, target), names in between.items():
+        yield Edge(source, target, EdgeKind.SENDS, tuple(names))

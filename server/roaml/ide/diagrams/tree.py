@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executed behavior tree with its ports, and the variables of the blackboard that tie them together.
+
+A tree file is drawn by itself while no system names it; only a system knows which ports are written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
+from roaml.ide.names.lookup import systems_of
+from roaml.model.expand import Instance, Reference, expand, node_at
+from roaml.model.kinds import FileKind
+from roaml.model.system import System, builtin_plugins
+from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+from roaml.views.tree import ports_of, title_of
+
+_KINDS: Mapping[str, NodeKind] = {
+    "control": NodeKind.CONTROL,
+    "decorator": NodeKind.DECORATOR,
+    "action": NodeKind.ACTION,
+    "condition": NodeKind.CONDITION,
+}
+
+
+def tree_picture(analysis: Analysis, path: str) -> Picture | None:
+    """The tree of a system, given by its system file or any other of its files; None if there is none."""
+    system = next((found for s in systems_of(analysis, path) if s and (found := analysis.system(s))), None)
+    if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
+        paths, instances = system.tree_paths, system.instances
+    else:
+        paths = analysis.trees_from(path)
+        instances = expand(analysis.outlines_from(path))
+    if not paths:
+        return None
+    drawn = _Tree(analysis, paths, instances, system)
+    title = paths[0].replace("\\", "/").rpartition("/")[2]
+    return Picture(title, tuple(drawn.nodes()), tuple(drawn.edges()))
+
+
+class _Tree:
+    def __init__(
+        self, analysis: Analysis, paths: tuple[str, ...], instances: tuple[Instance, ...], system: System | None
+    ) -> None:
+        self.instances = instances
+        self.system = system
+        self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
+        self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
+        self.written = {each.number: self.node(each) for each in instances}
+
+    def node(self, instance: Instance) -> TreeNode | None:
+        file = self.files.get(instance.source.path)
+        return node_at(file, instance.source) if file else None
+
+    def nodes(self) -> Iterator[Node]:
+        for instance in self.instances:
+            node = self.written[instance.number]
+            place = Location(instance.source.path, node.element.span) if node else None
+            initial = instance.parent is None
+            kind = self.kind(instance, node)
+            yield Node(str(instance.number), kind, title_of(instance), ports_of(instance), "", initial, place)
+        variables: dict[str, Location | None] = {}
+        for instance, key, variable in self.bound():
+            variables.setdefault(variable, self.place(instance, key))
+        for variable, place in variables.items():
+            yield Node(f"{{{variable}}}", NodeKind.VARIABLE, variable, place=place)
+
+    def edges(self) -> Iterator[Edge]:
+        for instance in self.instances:
+            for child in instance.children:
+                yield Edge(str(instance.number), str(child), EdgeKind.CHILD)
+        for instance, key, variable in self.bound():
+            node, name = str(instance.number), f"{{{variable}}}"
+            place = self.place(instance, key)
+            direction = self.direction(instance, key)
+            if direction != "in":
+                yield Edge(node, name, EdgeKind.WRITES, (key,), place=place)
+            if direction != "out":
+                yield Edge(name, node, EdgeKind.READS, (key,), place=place)
+
+    def bound(self) -> Iterator[tuple[Instance, str, str]]:
+        """Every port that is bound to a variable: instance, port, variable."""
+        for instance in self.instances:
+            for key, value in instance.ports:
+                if isinstance(value, Reference):
+                    yield instance, key, value.variable
+
+    def place(self, instance: Instance, key: str) -> Location | None:
+        """Where a port is set; a default stands elsewhere."""
+        node = self.written[instance.number]
+        setting = next((port for port in node.ports if port.key.value == key), None) if node else None
+        return Location(instance.source.path, setting.attribute.span) if setting else None
+
+    def direction(self, instance: Instance, key: str) -> str:
+        """Which way a port works: "in", "out" or "inout"; where that is not known, in."""
+        outline = self.system.plugin(instance.plugin)[1] if self.system else builtin_plugins().get(instance.plugin)
+        port = outline.port(key) if outline else None
+        return port.direction if port else "in"
+
+    def kind(self, instance: Instance, node: TreeNode | None) -> NodeKind:
+        written = node.element.name if node else ""
+        described = self.described.get(instance.plugin, "")
+        if node is not None and node.type is not None and node.type.node and node.type.name not in EXPLICIT:
+            word = node.type.node
+        else:
+            word = (written if written in EXPLICIT else described).lower()
+        return _KINDS.get(word, NodeKind.CONTROL if instance.children else NodeKind.ACTION)

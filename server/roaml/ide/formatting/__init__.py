@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The layout of a file of ours, as edits.
+
+- Changes white space between tokens and nothing else, so never the model; the result is formatted already.
+- A file whose form is not sound is left alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.ide.formatting import json as format_json
+from roaml.ide.formatting import xml as format_xml
+from roaml.ide.formatting.layout import Gap, Layout, edits
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.text import SourceFile, Span, TextEdit
+
+DEFAULT = Layout()
+
+_XML = (FileKind.MACHINE, FileKind.SYSTEM, FileKind.TREE, FileKind.STRUCTS)
+_JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
+
+
+def can_format(analysis: Analysis, path: str) -> bool:
+    """Whether a file is of a kind that is formatted, and its form is sound."""
+    return next(_gaps(analysis, path, DEFAULT), None) is not None
+
+
+def is_ours(analysis: Analysis, path: str) -> bool:
+    """Whether a file is of a kind that is formatted."""
+    return analysis.kind(path) in (*_XML, *_JSON)
+
+
+def format_edits(
+    analysis: Analysis, path: str, layout: Layout = DEFAULT, within: Span | None = None
+) -> tuple[TextEdit, ...]:
+    """The edits that lay a file out, in the order of the text.
+
+    Args:
+        analysis: what is known.
+        path: the file.
+        layout: how; a property file keeps its width of two or four columns.
+        within: only edits inside of the lines that this touches.
+    """
+    source = analysis.source(path)
+    if source is None:
+        return ()
+    found = sorted(edits(source.text, _gaps(analysis, path, layout)))
+    if within is not None:
+        start, end = _lines_around(source, within)
+        last = end if end == len(source.text) else end - 1  # an insertion behind the line end is one in the next line
+        found = [edit for edit in found if start <= edit.span.start <= last and edit.span.end <= end]
+    return tuple(found)
+
+
+def _gaps(analysis: Analysis, path: str, layout: Layout) -> Iterator[Gap]:
+    kind, source = analysis.kind(path), analysis.source(path)
+    if kind in _XML and (document := analysis.document(path)) is not None:
+        yield from format_xml.gaps(document, layout)
+    elif kind in _JSON and source is not None and (json := analysis.json(path)) is not None:
+        _, findings = json
+        if all(finding.code != "json-syntax" for finding in findings):
+            yield from format_json.gaps(source.text, layout)
+
+
+def _lines_around(source: SourceFile, span: Span) -> Span:
+    """The whole lines that a span touches; one that ends where a line begins does not touch it."""
+    lines = source.lines
+    end = max(span.start, span.end - 1)
+    return Span(lines.line_start(lines.position(span.start).line), lines.line_end(lines.position(end).line))

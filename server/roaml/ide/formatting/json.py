@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How JSON is laid out: one member or item a line, two or four columns a level, as the file has it.
+
+- An object or list that is written on one line stays on one line if it fits. Of blank lines one is kept.
+- Works on tokens, not on the tree: JSON may nest deeper than functions can.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import accumulate, pairwise
+
+from roaml.ide.formatting.layout import Gap, Layout, breaks, new_line
+from roaml.text import Span
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{},:]|[^\s\[\]{},:"]+')
+_FIRST_INDENT = re.compile(r"[\n\r]([ ]+|\t+)\S")
+_WIDTHS = (2, 4)
+
+
+def gaps(text: str, layout: Layout) -> Iterator[Gap]:
+    """What the white space of a text that is sound JSON is to be."""
+    spans = [Span(*match.span()) for match in _TOKEN.finditer(text)]
+    if not spans:
+        return
+    layout = _like(text, layout)
+    tokens = [text[span.start : span.end] for span in spans]
+    closers = _closers(tokens)
+    flat = [0, *accumulate(len(token) + _flat_space(tokens, i) for i, token in enumerate(tokens))]
+    spaces = [Span(before.end, after.start) for before, after in pairwise(spans)]
+    lines = [0, *accumulate(breaks(text[space.start : space.end]) for space in spaces)]
+    yield Gap(Span(0, spans[0].start), "")
+    open_flat: list[bool] = []
+    column = 0
+    for i, (token, space) in enumerate(zip(tokens, spaces, strict=False)):
+        if token in ("{", "["):
+            end = closers[i]
+            # What follows the bracket that closes, a comma at most, must fit, too.
+            length = flat[end] - flat[i] + 1 + (tokens[end + 1 : end + 2] == [","])
+            fits = lines[end] == lines[i] and column + length <= layout.line_length
+            open_flat.append(end == i + 1 or fits or (bool(open_flat) and open_flat[-1]))
+        following = tokens[i + 1]
+        if following in ("}", "]"):
+            is_flat = open_flat.pop()
+            wanted = _flat_gap(tokens, i) if is_flat else f"\n{layout.indent(len(open_flat))}"
+        elif token in ("{", "[", ",") and not open_flat[-1]:
+            wanted = new_line(text[space.start : space.end] if token == "," else "", layout.indent(len(open_flat)))
+        else:
+            wanted = _flat_gap(tokens, i)
+        yield Gap(space, wanted)
+        if wanted.startswith("\n"):
+            column = layout.column(len(open_flat))
+        else:
+            column += len(token) + len(wanted)
+    yield Gap(Span(spans[-1].end, len(text)), "\n")
+
+
+def _like(text: str, layout: Layout) -> Layout:
+    """The layout with the width that the first indented line has, if that is one of the usual ones."""
+    found = _FIRST_INDENT.search(text)
+    if found is None or len(found[1]) not in _WIDTHS or found[1][0] == "\t":
+        return layout
+    return replace(layout, width=len(found[1]), tabs=False)
+
+
+def _closers(tokens: list[str]) -> dict[int, int]:
+    """Index of each opening bracket -> index of the one that closes it."""
+    found: dict[int, int] = {}
+    opened: list[int] = []
+    for i, token in enumerate(tokens):
+        if token in ("{", "["):
+            opened.append(i)
+        elif token in ("}", "]"):
+            found[opened.pop()] = i
+    return found
+
+
+def _flat_gap(tokens: list[str], i: int) -> str:
+    """What stands behind token `i` if all is on one line."""
+    return " " * _flat_space(tokens, i)
+
+
+def _flat_space(tokens: list[str], i: int) -> int:
+    following = tokens[i + 1] if i + 1 < len(tokens) else ""
+    if tokens[i] == "{":
+        return following != "}"
+    return tokens[i] in (",", ":") or (following == "}" and tokens[i] != "{")

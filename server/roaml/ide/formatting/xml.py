@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How XML is laid out.
+
+- Comments, instructions, CDATA sections, character data and the elements around it stay as they are, and so does all
+  below `xml:space="preserve"`. Only the tags of such elements are laid out.
+- Each child has a line of its own, except that an element written on one line with one child in it stays on one line,
+  and a comment behind something stays there. Of blank lines one is kept.
+- Attributes that are on several lines get one line each, below the first one or one level deeper, as they were begun. A
+  tag that is too long is wrapped one level deeper.
+- `<else />` and `<elseif />` stand below their `<if>`, or below its other children if they were written so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from roaml.ide.formatting.layout import Gap, Layout, breaks, new_line
+from roaml.text import Span
+from roaml.xml import CData, Comment, Document, Element, Instruction, Node, Text
+from roaml.xml.names import SPACE
+
+_HARMLESS = {"duplicate-attribute", "undefined-entity", "document-type"}
+_MARKERS = {"else", "elseif"}
+
+
+def gaps(document: Document, layout: Layout) -> Iterator[Gap]:
+    """What the white space of a document is to be; nothing if its form is not sound."""
+    if document.root is not None and all(finding.code in _HARMLESS for finding in document.findings):
+        yield from _Formatter(document.text, layout).document(document)
+
+
+class _Formatter:
+    def __init__(self, text: str, layout: Layout) -> None:
+        self.text = text
+        self.layout = layout
+
+    def document(self, document: Document) -> Iterator[Gap]:
+        items = _items(document.nodes)
+        yield Gap(Span(0, items[0].span.start), "")
+        yield from self.lines(items, 0)
+        yield Gap(Span(items[-1].span.end, len(self.text)), "\n")
+
+    def lines(self, items: Sequence[Node], depth: int, markers: int | None = None) -> Iterator[Gap]:
+        """The gaps between and inside of some siblings; `markers` is the depth of those that divide an `<if>`."""
+        last = items[0]
+        for item in items:
+            here = depth if markers is None or not _is_marker(item) else markers
+            if item is not last:
+                yield self.before(last.span.end, item, here)
+            if isinstance(item, Element):
+                yield from self.element(item, here)
+            last = item
+
+    def before(self, end: int, item: Node, depth: int) -> Gap:
+        """The gap between `end` and a child."""
+        space = Span(end, item.span.start)
+        written = self.text[space.start : space.end]
+        if isinstance(item, Comment) and not breaks(written):
+            return Gap(space, " ")
+        return Gap(space, new_line(written, self.layout.indent(depth)))
+
+    # -------------------------------------------------------------- elements
+
+    def element(self, element: Element, depth: int) -> Iterator[Gap]:
+        flat = self.flat_length(element)
+        if flat is not None and self.layout.column(depth) + flat <= self.layout.line_length:
+            yield from self.flat(element)
+            return
+        yield from self.tag(element, depth)
+        if element.close_span is not None:
+            yield from self.end_tag(element)
+            if not self.is_verbatim(element):
+                yield from self.content(element, depth, element.close_span)
+
+    def content(self, element: Element, depth: int, close: Span) -> Iterator[Gap]:
+        items = _items(element.nodes)
+        inside = element.content_span
+        indent = self.layout.indent(depth)
+        if not items:
+            yield Gap(inside, f"\n{indent}" if breaks(self.raw(inside)) else "")
+            return
+        markers = depth if element.name == "if" and self.is_level(element) else None
+        first = depth if markers is not None and _is_marker(items[0]) else depth + 1
+        yield self.before(inside.start, items[0], first)
+        yield from self.lines(items, depth + 1, markers)
+        end = Span(items[-1].span.end, close.start)
+        yield Gap(end, new_line(self.raw(end), indent))
+
+    def is_verbatim(self, element: Element) -> bool:
+        """Whether white space inside an element means something."""
+        space = element.get("xml:space")
+        if space is not None and space.value == "preserve":
+            return True
+        return any(
+            isinstance(node, CData) or (isinstance(node, Text) and self.raw(node.span).strip(SPACE))
+            for node in element.nodes
+        )
+
+    def is_level(self, element: Element) -> bool:
+        """Whether the markers of an `<if>` are to begin where it begins; the first one tells."""
+        marker = next((child for child in element.elements if _is_marker(child)), None)
+        if marker is None:
+            return False
+        before, indent = self.line_before(marker.span.start)
+        return bool(before.strip()) or indent <= self.line_before(element.span.start)[1]
+
+    def line_before(self, offset: int) -> tuple[str, int]:
+        """What stands on a line before an offset, and in which column the line's text begins."""
+        start = max(self.text.rfind("\n", 0, offset), self.text.rfind("\r", 0, offset)) + 1
+        before = self.text[start:offset].expandtabs(self.layout.width)
+        return before, len(before) - len(before.lstrip(SPACE))
+
+    # ------------------------------------------------------------------ tags
+
+    def tag(self, element: Element, depth: int) -> Iterator[Gap]:
+        """The gaps in a start tag."""
+        attributes = element.attributes
+        between = self.between(element)
+        written = [self.raw(space) for space in between]
+        if any(map(breaks, written)):
+            below = len(self.raw(Span(element.open_span.start, element.name_span.end))) + 1
+            aligned = not breaks(written[0])
+        elif len(attributes) > 1 and self.layout.column(depth) + self.tag_length(element) > self.layout.line_length:
+            below, aligned = 0, False
+        else:
+            yield from self.flat_tag(element)
+            return
+        indent = self.layout.indent(depth) + " " * below if aligned else self.layout.indent(depth + 1)
+        for number, space in enumerate(between):
+            yield Gap(space, " " if aligned and number == 0 else f"\n{indent}")
+        yield from self.tag_rest(element)
+
+    def flat_tag(self, element: Element) -> Iterator[Gap]:
+        for space in self.between(element):
+            yield Gap(space, " ")
+        yield from self.tag_rest(element)
+
+    def tag_rest(self, element: Element) -> Iterator[Gap]:
+        """The gaps around `=` and at the end of a start tag."""
+        for attribute in element.attributes:
+            equals = self.text.index("=", attribute.name_span.end)
+            yield Gap(Span(attribute.name_span.end, equals), "")
+            yield Gap(Span(equals + 1, attribute.value_span.start - 1), "")
+        last = element.attributes[-1].span.end if element.attributes else element.name_span.end
+        slash = " " if element.self_closing else ""
+        yield Gap(Span(last, element.open_span.end - (2 if element.self_closing else 1)), slash)
+
+    def end_tag(self, element: Element) -> Iterator[Gap]:
+        if element.close_span is not None and element.close_name_span is not None:
+            yield Gap(Span(element.close_name_span.end, element.close_span.end - 1), "")
+
+    def between(self, element: Element) -> list[Span]:
+        """The gaps before the attributes."""
+        ends = [element.name_span.end, *(attribute.span.end for attribute in element.attributes)]
+        return [Span(end, each.span.start) for end, each in zip(ends, element.attributes, strict=False)]
+
+    # ----------------------------------------------------------- on one line
+
+    def flat(self, element: Element) -> Iterator[Gap]:
+        """The gaps of an element that is to stand on one line."""
+        yield from self.flat_tag(element)
+        yield from self.end_tag(element)
+        if element.close_span is None or self.is_verbatim(element):
+            return
+        at = element.open_span.end
+        for item in _items(element.nodes):
+            yield Gap(Span(at, item.span.start), "")
+            if isinstance(item, Element):
+                yield from self.flat(item)
+            at = item.span.end
+        yield Gap(Span(at, element.close_span.start), "")
+
+    def flat_length(self, element: Element) -> int | None:
+        """How many columns an element takes on one line; None if it is not written on one or has several children."""
+        if any(end in self.raw(element.span) for end in "\r\n"):
+            return None
+        length = self.tag_length(element)
+        if element.close_span is None or element.close_name_span is None:
+            return length
+        length += len(self.raw(element.close_name_span)) + 3
+        if self.is_verbatim(element):
+            inside = element.content_span
+            return length + inside.end - inside.start
+        items = _items(element.nodes)
+        if len(items) > 1:
+            return None
+        for item in items:
+            inner = self.flat_length(item) if isinstance(item, Element) else item.span.end - item.span.start
+            if inner is None:
+                return None
+            length += inner
+        return length
+
+    def tag_length(self, element: Element) -> int:
+        """How many columns a start tag takes if all of its attributes are on one line."""
+        length = element.name_span.end - element.open_span.start + (3 if element.self_closing else 1)
+        for attribute in element.attributes:
+            name, value = attribute.name_span, attribute.value_span
+            length += name.end - name.start + value.end - value.start + 4
+        return length
+
+    def raw(self, span: Span) -> str:
+        return self.text[span.start : span.end]
+
+
+def _items(nodes: Sequence[Node]) -> list[Element | CData | Comment | Instruction]:
+    """All but the text."""
+    return [node for node in nodes if not isinstance(node, Text)]
+
+
+def _is_marker(node: Node) -> bool:
+    return isinstance(node, Element) and node.name in _MARKERS

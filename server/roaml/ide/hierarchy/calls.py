@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Who talks to whom, as a graph that an editor can walk.
+
+Machines call what they send: events, topics, services, actions; these call the machines that receive them. A client
+calls a service, and that its server. Trees call the machines of their nodes, and other trees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from roaml.diagnostics import Symbol
+from roaml.ide.names.in_machine import interface_symbol
+from roaml.ide.names.lookup import Use, occurrences_at, systems_of, thing
+from roaml.ide.names.occurrence import HANDLES, Access
+from roaml.ide.names.occurrences import uses
+from roaml.model.outline import InterfaceUse
+from roaml.model.system import Automaton, System
+from roaml.model.tree import nodes
+from roaml.project.analysis import Analysis
+from roaml.text import Location, Span
+
+_SENDING = frozenset(("publisher", "service-client", "action-client"))
+_INTERFACES = ("topic", "service", "action")
+_CALLABLE = ("event", *_INTERFACES, "machine", "tree")
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A node of the graph. `span` is the whole of it, `name_span` its name."""
+
+    symbol: Symbol
+    path: str
+    span: Span
+    name_span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """An edge of the graph: its other end, and the places in the caller's file at which it calls."""
+
+    item: Item
+    places: tuple[Span, ...]
+
+
+def items_at(analysis: Analysis, path: str, offset: int) -> tuple[Item, ...]:
+    """What can be asked about at a caret. A handle stands for its topic, service or action."""
+    symbols: dict[Symbol, None] = {}
+    for occurrence in occurrences_at(analysis, path, offset):
+        symbol = occurrence.symbol
+        if symbol.kind in HANDLES:
+            symbols.update(dict.fromkeys(interfaces_of(analysis, symbol)))
+        elif symbol.kind in _CALLABLE:
+            symbols[symbol] = None
+    found = (_item(analysis, symbol) for symbol in symbols)
+    return tuple(item for item in found if item is not None)
+
+
+def incoming(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
+    """What calls a thing."""
+    calls = _calls(analysis, _edges(analysis, symbol, into=True))
+    return tuple(
+        replace(call, places=(call.item.name_span,)) if _is_message(call.item.symbol) else call for call in calls
+    )
+
+
+def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
+    """What a thing calls."""
+    calls = _calls(analysis, _edges(analysis, symbol, into=False))
+    item = _item(analysis, symbol) if _is_message(symbol) else None
+    return tuple(replace(call, places=(item.name_span,)) for call in calls) if item else calls
+
+
+def _is_message(symbol: Symbol) -> bool:
+    """Whether what is called goes on to call by itself: its places are those of its name."""
+    return symbol.kind == "event" or symbol.kind in _INTERFACES
+
+
+_Edge = tuple[Symbol, Span]
+
+
+def _calls(analysis: Analysis, edges: Iterable[_Edge]) -> tuple[Call, ...]:
+    places: dict[Symbol, dict[Span, None]] = {}
+    for symbol, span in edges:
+        places.setdefault(symbol, {})[span] = None
+    found = ((_item(analysis, symbol), tuple(sorted(spans))) for symbol, spans in places.items())
+    return tuple(Call(item, spans) for item, spans in found if item is not None)
+
+
+def _item(analysis: Analysis, symbol: Symbol) -> Item | None:
+    found = thing(analysis, (symbol,))
+    own = [use for use in found.uses if use.occurrence.symbol == symbol]
+    use = next((use for use in own if use.occurrence.defines), own[0] if own else None)
+    if use is None:
+        return None
+    span = use.occurrence.span
+    return Item(symbol, use.path, _whole(analysis, use), span)
+
+
+def _whole(analysis: Analysis, use: Use) -> Span:
+    """The element that a name stands in."""
+    document = analysis.document(use.path) if analysis.kind(use.path).name in ("MACHINE", "TREE") else None
+    around = document.path_at(use.occurrence.span.start) if document else []
+    return around[-1].span if around else use.occurrence.span
+
+
+def _edges(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
+    match symbol.kind:
+        case "event":
+            yield from _of_event(analysis, symbol, into=into)
+        case "topic" | "service" | "action":
+            yield from _of_interface(analysis, symbol, into=into)
+        case "machine":
+            yield from _of_machine(analysis, symbol, into=into)
+        case "tree":
+            yield from _of_tree(analysis, symbol, into=into)
+
+
+def _machine(analysis: Analysis, path: str) -> Symbol | None:
+    machine = analysis.machine(path)
+    return Symbol(path, "machine", machine.name.value) if machine and machine.name else None
+
+
+# ------------------------------------------------------------- events, interfaces
+
+
+def _of_event(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
+    wanted = Access.WRITE if into else Access.READ
+    for use in thing(analysis, (symbol,)).uses:
+        machine = _machine(analysis, use.path)
+        if machine is not None and use.occurrence.access is wanted:
+            yield machine, use.occurrence.span
+
+
+def _of_interface(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
+    for system in _systems(analysis, symbol.path):
+        for automaton in system.automata:
+            for use in automaton.outline.interfaces:
+                if (use.kind in _SENDING) == into and _interface(system, automaton, use) == symbol:
+                    machine = _machine(analysis, automaton.path)
+                    if machine is not None:
+                        yield from ((machine, span) for span in _places(analysis, system.path, automaton, use))
+
+
+def _systems(analysis: Analysis, path: str) -> tuple[System, ...]:
+    found = (analysis.system(system) for system in systems_of(analysis, path) if system)
+    return tuple(system for system in found if system is not None)
+
+
+def _interface(system: System, automaton: Automaton, use: InterfaceUse) -> Symbol | None:
+    name = automaton.interface_name(use)
+    return None if name is None else interface_symbol(system.path, use.kind, name)
+
+
+def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
+    """The topics, services or actions that a handle stands for."""
+    for system in _systems(analysis, handle.path):
+        for automaton in system.automata_of(handle.path):
+            for use in automaton.outline.interfaces:
+                if (use.kind, use.handle) == (handle.kind, handle.name):
+                    symbol = _interface(system, automaton, use)
+                    if symbol is not None:
+                        yield symbol
+
+
+def _places(analysis: Analysis, system: str, automaton: Automaton, use: InterfaceUse) -> tuple[Span, ...]:
+    """Where a machine makes use of a declaration; the declaration itself if nowhere."""
+    known = uses(analysis, automaton.path, system).by_symbol
+    found = list(known.get(automaton.symbol(use), ()))
+    if use.name and not found:  # the interface itself is the handle
+        found = list(known.get(interface_symbol(system, use.kind, use.name), ()))
+    wanted = Access.WRITE if use.kind in _SENDING else Access.READ
+    chosen = [each for each in found if each.access is wanted] or [each for each in found if each.access is Access.TEXT]
+    return tuple(each.span for each in chosen)
+
+
+# ------------------------------------------------------------- machines, trees
+
+
+def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
+    wanted = Access.READ if into else Access.WRITE
+    for system in systems_of(analysis, symbol.path):
+        for each in uses(analysis, symbol.path, system).all:
+            if each.symbol.kind == "event" and each.access is wanted:
+                yield each.symbol, each.span
+    for linked in _systems(analysis, symbol.path):
+        for automaton in linked.automata_of(symbol.path):
+            for use in automaton.outline.interfaces:
+                interface = _interface(linked, automaton, use)
+                if interface is not None and (use.kind in _SENDING) != into:
+                    for span in _places(analysis, linked.path, automaton, use):
+                        yield interface, span
+    if into:
+        yield from _trees_with(analysis, symbol)
+
+
+def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
+    """The trees that have nodes of a plugin, or in which a tree stands."""
+    for use in thing(analysis, (symbol,)).uses:
+        tree = _tree_around(analysis, symbol, use)
+        if tree is not None:
+            yield tree, use.occurrence.span
+
+
+def _tree_around(analysis: Analysis, symbol: Symbol, use: Use) -> Symbol | None:
+    file = analysis.tree(use.path)
+    owner = next((system for system in systems_of(analysis, use.path) if system), use.path)
+    for tree in file.trees if file else ():
+        for node in nodes(tree):
+            if tree.id and node.plugin and node.element.open_span.contains(use.occurrence.span.start):
+                inside = node.plugin.value == use.occurrence.symbol.name and use.occurrence.symbol.kind == symbol.kind
+                if inside and node.element.open_span.start < use.occurrence.span.start:
+                    return Symbol(owner, "tree", tree.id.value)
+    return None
+
+
+def _of_tree(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
+    if into:
+        yield from _trees_with(analysis, symbol)
+        return
+    for location in thing(analysis, (symbol,)).definitions:
+        yield from _in_tree(analysis, location)
+
+
+def _in_tree(analysis: Analysis, place: Location) -> Iterator[_Edge]:
+    """The machines and trees that the nodes of the tree defined at a place name."""
+    file = analysis.tree(place.path)
+    for tree in file.trees if file else ():
+        if tree.id is None or tree.id.span != place.span:
+            continue
+        for system in systems_of(analysis, place.path):
+            for each in uses(analysis, place.path, system).all:
+                inside = tree.element.content_span.start <= each.span.start < tree.element.content_span.end
+                if inside and each.symbol.kind in ("machine", "tree"):
+                    yield each.symbol, each.span

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What types are made of: the hierarchy of messages and structs.
+
+The types of a type's fields or members are below it, those that hold it above. ROS types are looked for among those
+that the machines of the workspace use and what is in them: the thousands that nobody uses would only be in the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import Struct, unwrap
+from roaml.ide.names.lookup import occurrences_at, systems_of
+from roaml.ide.navigation import definition_of
+from roaml.interfaces.registry import NotFound
+from roaml.interfaces.types import KIND_NAMES, Definition, Kind
+from roaml.model.typing import INTERFACE_KINDS
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+
+@dataclass(frozen=True, slots=True)
+class TypeItem:
+    """A message, service, action or struct; `detail` says which, and in which fields it is."""
+
+    symbol: Symbol
+    detail: str
+    location: Location
+
+
+def types_at(analysis: Analysis, path: str, offset: int) -> tuple[TypeItem, ...]:
+    """The types at a caret: written there, or of the variable, field or member that is."""
+    found: dict[Symbol, None] = {}
+    for each in occurrences_at(analysis, path, offset):
+        found.update(dict.fromkeys(_types_of(analysis, path, each.symbol)))
+    items = (_item(analysis, symbol, ()) for symbol in found)
+    return tuple(item for item in items if item is not None)
+
+
+def members_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
+    """The types that a type is made of."""
+    return _items(analysis, ((inner, name) for name, inner in _inside(analysis, symbol)))
+
+
+def holders_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
+    """The types that have a field or member of a type."""
+    candidates = _structs(analysis, symbol.path) if symbol.kind == "struct" else _used(analysis)
+    found = ((each, name) for each in candidates for name, inner in _inside(analysis, each) if inner == symbol)
+    return _items(analysis, found)
+
+
+def _items(analysis: Analysis, found: Iterator[tuple[Symbol, str]]) -> tuple[TypeItem, ...]:
+    fields: dict[Symbol, list[str]] = {}
+    for symbol, field in found:
+        fields.setdefault(symbol, []).append(field)
+    items = (_item(analysis, symbol, tuple(names)) for symbol, names in fields.items())
+    return tuple(item for item in items if item is not None)
+
+
+def _item(analysis: Analysis, symbol: Symbol, fields: tuple[str, ...]) -> TypeItem | None:
+    place = definition_of(analysis, symbol)
+    if place is None or analysis.source(place.path) is None:
+        return None
+    what = "struct" if symbol.kind == "struct" else KIND_NAMES[_kind(symbol)]
+    return TypeItem(symbol, ", ".join(fields) or what, place)
+
+
+def _kind(symbol: Symbol) -> Kind:
+    return symbol.scope  # type: ignore[return-value]
+
+
+def _message(name: str) -> Symbol:
+    return Symbol("", "ros-type", name, "msg")
+
+
+def _types_of(analysis: Analysis, path: str, symbol: Symbol) -> Iterator[Symbol]:
+    match symbol.kind:
+        case "ros-type" | "struct":
+            yield symbol
+        case "variable" | "member":
+            for system in systems_of(analysis, path):
+                if symbol.kind == "variable":
+                    type_ = analysis.typed_in(symbol.path, system).variables.get(symbol.scope, {}).get(symbol.name)
+                else:
+                    owner = analysis.structs(system).types.get(symbol.scope)
+                    type_ = owner.member(symbol.name) if isinstance(owner, Struct) else None
+                inner = unwrap(type_)[0] if type_ is not None else None
+                if isinstance(inner, Struct) and inner.what == "struct":
+                    yield Symbol(system or path, "struct", inner.name)
+        case "field":
+            name, _, section = symbol.scope.partition(" ")
+            kinds = {"request": "srv", "response": "srv", "": "msg", "goal": "action"}
+            for inner_name, inner_symbol in _inside(
+                analysis, Symbol("", "ros-type", name, kinds.get(section, "action"))
+            ):
+                if inner_name == symbol.name:
+                    yield inner_symbol
+
+
+def _inside(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Symbol]]:
+    """The fields or members of a type that are messages or structs."""
+    if symbol.kind == "struct":
+        struct = analysis.structs(symbol.path).types.get(symbol.name) if symbol.path in analysis.system_paths else None
+        for name, type_ in struct.members if isinstance(struct, Struct) else ():
+            inner, _ = unwrap(type_)
+            if isinstance(inner, Struct):
+                yield name, Symbol(symbol.path, "struct", inner.name)
+        return
+    definition = analysis.registry.resolve(_kind(symbol), symbol.name)
+    for section in () if isinstance(definition, NotFound) else definition.sections:
+        for field in section.fields:
+            if not field.type.is_primitive:
+                yield field.name, _message(field.type.name)
+
+
+def _structs(analysis: Analysis, system: str) -> list[Symbol]:
+    types = analysis.structs(system).types if system in analysis.system_paths else {}
+    return [Symbol(system, "struct", name) for name in types]
+
+
+def _used(analysis: Analysis) -> list[Symbol]:
+    """The ROS types that machines declare, and all that is in them."""
+    found: dict[Symbol, None] = {}
+    for path in dict.fromkeys(p for system in analysis.system_paths for p in analysis.files_of(system)):
+        machine = analysis.machine(path)
+        for each in machine.declarations if machine else ():
+            kind = INTERFACE_KINDS.get(each.kind)
+            definition = analysis.registry.resolve(kind, each.type.value) if kind and each.type else None
+            if isinstance(definition, Definition):
+                found[Symbol("", "ros-type", definition.full_name, definition.kind)] = None
+    todo = list(found)
+    while todo:
+        for _, inner in _inside(analysis, todo.pop()):
+            if inner not in found:
+                found[inner] = None
+                todo.append(inner)
+    return list(found)

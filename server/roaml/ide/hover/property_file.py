@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of a place in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.ide.describe import property_file as describe_properties
+from roaml.ide.describe import system as describe_system
+from roaml.ide.describe.markdown import code, paragraphs
+from roaml.ide.json_tree import members
+from roaml.ide.names.lookup import systems_of
+from roaml.json import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
+from roaml.language.json_schema import PROPERTIES, Schema
+from roaml.model.system import Automaton, System
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+_NODE = re.compile(r"bt_(\d{1,9})_")
+
+
+def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """The global variable whose name stands at a place, in each system of the file."""
+    value = analysis.json(path)
+    found = value_at(value[0], offset) if value else None
+    if not isinstance(found, JsonString) or not found.content_span.contains(offset):
+        return None
+    texts: dict[str, None] = {}
+    for each in systems_of(analysis, path):
+        system = analysis.system(each) if each else None
+        variable = analysis.globals(each).get(found.value) if each else None
+        if system is not None and variable is not None:
+            node = node_of(system, found.value)
+            about = describe_system.node(system, node) if node else ""
+            texts[paragraphs(describe_properties.global_variable(variable), about)] = None
+    return (found.content_span, paragraphs(*texts)) if texts else None
+
+
+def node_of(system: System, variable: str) -> Automaton | None:
+    """The node of the tree that a global variable is about."""
+    number = _NODE.match(variable)
+    return system.by_instance.get(int(number[1])) if number else None
+
+
+def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """What the syntax of properties says of a key or an operator; the formula of a property."""
+    value = analysis.json(path)
+    if value is None:
+        return None
+    for schema, owner, member in _members_at(value[0], offset):
+        if isinstance(member.value, JsonNumber) and member.value.span.contains(offset):
+            text = describe_properties.number(member.value, members(owner))
+            return (member.value.span, text) if text else None
+        known = PROPERTIES.keys(schema, owner).get(member.key)
+        if member.key_span.contains(offset):
+            return (member.key_span, describe_properties.member(known)) if known else None
+        held = member.value
+        if not isinstance(held, JsonString) or not held.content_span.contains(offset):
+            continue
+        text = ""
+        if member.key == "op":
+            head = code(describe_properties.formula(owner))
+            said = describe_properties.operator(held.value)
+            text = paragraphs(head, said) if said else ""
+        elif member.key == "name" and PROPERTIES.is_a(schema, "property"):
+            expression = members(owner).get("expression")
+            text = code(describe_properties.formula(expression)) if expression else ""
+        elif known is not None and known.name in ("fun", "constant", "distribution"):
+            text = describe_properties.member(known)
+        return (held.content_span, text) if text else None
+    return None
+
+
+def value_at(value: JsonValue, offset: int) -> JsonValue | None:
+    """The innermost value around an offset; None on keys and between values."""
+    found: JsonValue | None = value
+    while found is not None:
+        if isinstance(found, JsonObject):
+            member = next((each for each in found.members if each.span.contains(offset)), None)
+            if member is None:
+                return found
+            if member.key_span.contains(offset) or member.value is None or not member.value.span.contains(offset):
+                return None
+            found = member.value
+        elif isinstance(found, JsonArray):
+            inner = next((each for each in found.items if each.span.contains(offset)), None)
+            if inner is None:
+                return found
+            found = inner
+        else:
+            return found if found.span.contains(offset) else None
+    return None
+
+
+def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObject, Member]]:
+    """The members around an offset, innermost first, with their objects and what the schema says of these."""
+    found: list[tuple[Schema, JsonObject, Member]] = []
+    schema, inner = PROPERTIES.root, value
+    while True:
+        if isinstance(inner, JsonArray):
+            schema = PROPERTIES.item(schema, inner)
+            item = next((each for each in inner.items if each.span.contains(offset)), None)
+            if item is None:
+                break
+            inner = item
+        elif isinstance(inner, JsonObject):
+            member = next((each for each in inner.members if each.span.contains(offset)), None)
+            if member is None:
+                break
+            if any(inner.get(key) for key in _OF_FORMULAS):
+                schema = PROPERTIES.definition("formula")
+            found.append((schema, inner, member))
+            if member.value is None:
+                break
+            schema, inner = PROPERTIES.member(schema, inner, member.key), member.value
+        else:
+            break
+    yield from reversed(found)
+
+
+_OF_FORMULAS = ("op", "constant", "distribution")
+"""What has one of these is a formula wherever it stands, also in the parts of a model that are no properties."""

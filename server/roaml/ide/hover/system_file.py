@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of the values in a system file: files, and parameters in readable units."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Symbol
+from roaml.ide.describe import describe
+from roaml.ide.describe.language import number
+from roaml.ide.describe.machine import duration, rate
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
+from roaml.ide.describe.property_file import formula
+from roaml.ide.json_tree import members
+from roaml.json import JsonArray, JsonObject, JsonString
+from roaml.model.kinds import FileKind
+from roaml.model.system_file import NANOSECONDS
+from roaml.project.analysis import Analysis
+from roaml.project.files import resolve
+from roaml.text import Span
+from roaml.xml import Attribute, Element
+
+
+def listed_file(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """The file that a path at a place names: what it is and what is in it."""
+    system, tree = analysis.system_file(path), analysis.tree(path)
+    written = [entry.src for entry in system.inputs] if system else []
+    written += [include.path for include in tree.includes] if tree else []
+    named = next((each for each in written if each and each.span.contains(offset)), None)
+    if named is None:
+        return None
+    return named.span, content(analysis, path, resolve(path, named.value))
+
+
+def content(analysis: Analysis, system: str, path: str) -> str:
+    """What a file of a system is, and what is in it; "" if it cannot be read."""
+    if analysis.source(path) is None:
+        return ""
+    machine, tree = analysis.machine(path), analysis.tree(path)
+    match analysis.kind(path):
+        case FileKind.MACHINE if machine and machine.name:
+            return describe(analysis, Symbol(path, "machine", machine.name.value))
+        case FileKind.TREE if tree:
+            trees = names(each.id.value for each in tree.trees if each.id)
+            return lines(f"Behavior trees {trees}" if trees else "Behavior tree", file(path))
+        case FileKind.PROPERTIES:
+            return paragraphs(_properties(analysis, path), file(path))
+    structs = names(each.name.value for each in analysis.struct_declarations(path) if each.name)
+    return (
+        lines(f"Structs {structs}", file(path))
+        if structs
+        else lines(analysis.kind(path).value.capitalize(), file(path))
+    )
+
+
+def _properties(analysis: Analysis, path: str) -> str:
+    value = analysis.json(path)
+    found = value[0].get("properties") if value and isinstance(value[0], JsonObject) else None
+    rows = []
+    for each in found.items if isinstance(found, JsonArray) else ():
+        parts = members(each)
+        called, expression = parts.get("name"), parts.get("expression")
+        if isinstance(called, JsonString) and expression is not None:
+            rows.append(f"{called.value}: {formula(expression)}")
+    return code("\n".join(rows)) if rows else "No properties"
+
+
+def parameter(element: Element, attribute: Attribute) -> str:
+    """What a parameter of the translation amounts to; "" if that says nothing new."""
+    if attribute.name not in ("value", "unit"):
+        return ""
+    written = element.get("value")
+    text = written.value.strip() if written else ""
+    unit = element.get("unit")
+    match element.name:
+        case "max_time" if text.isascii() and text.isdigit() and unit and unit.value in NANOSECONDS:
+            nanoseconds = int(text[:18]) * NANOSECONDS[unit.value]
+            return f"{duration(nanoseconds / 1e9)}: {number(nanoseconds)} ns of the clock"
+        case "bt_tick_rate":
+            return rate(text)
+        case "max_array_size" if text:
+            return f"Arrays without a bound hold up to {name(text)} elements"
+    return ""

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a node of a tree becomes where its tree is executed."""
+
+from __future__ import annotations
+
+from roaml.ide.describe import system as describe_system
+from roaml.model.tree import TreeNode, nodes
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+
+def node_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+    """What the node whose name or plugin stands at a place becomes; None if no such stands there."""
+    file = analysis.tree(path)
+    for tree in file.trees if file else ():
+        if not tree.element.span.contains(offset):
+            continue
+        for position, node in enumerate(nodes(tree)):
+            span = name_at(node, offset)
+            if span is not None:
+                return span, describe_system.becomes(analysis, path, tree.id.value if tree.id else "", position)
+    return None
+
+
+def name_at(node: TreeNode, offset: int) -> Span | None:
+    """The tag, the plugin or the name of a node, if it stands at a place."""
+    spans = [node.element.name_span, *(each.span for each in (node.plugin, node.name) if each)]
+    return next((span for span in spans if span.contains(offset)), None)

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the editor writes between the characters: types, topics, parameters of events, numbers of tree nodes.
+
+Each is found in the models as they are; what it costs to explain a hint is paid only when somebody looks at it
+(`explain`).
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
+from roaml.ide.describe import describe
+from roaml.ide.describe import system as describe_system
+from roaml.ide.describe.machine import inferred_type
+from roaml.ide.hover.property_file import node_of
+from roaml.ide.names.in_machine import interface_symbol, is_implicit
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.navigation import definition_of
+from roaml.ide.system_names import grouped
+from roaml.jani.properties import identifiers
+from roaml.model.kinds import FileKind
+from roaml.model.machine import (
+    Chart,
+    Communicate,
+    Declaration,
+    Handler,
+    Machine,
+    Param,
+    Send,
+    SetOutput,
+    bodies,
+    statements,
+)
+from roaml.model.syntax import Name, PortRead
+from roaml.model.system import Automaton, System
+from roaml.model.tree import TreeNode, nodes
+from roaml.model.typing import TypedValue, Use, find_handle, port_type
+from roaml.project.analysis import Analysis
+from roaml.text import Location, Span
+from roaml.xml import Element
+
+INSTANCE = "tree-instance"
+"""The kind of a symbol that stands for a node of an executed tree: `path` is the system, `name` the number."""
+
+_MOST = 3
+
+
+class HintKind(enum.Enum):
+    """What can be shown or left out. The values are the names of the settings."""
+
+    TYPES = "types"
+    PORTS = "ports"
+    TOPICS = "topics"
+    EVENTS = "events"
+    NODES = "nodes"
+
+
+ALL_HINTS = frozenset(HintKind)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A piece of a hint; `symbol` is what it names, if anything."""
+
+    text: str
+    symbol: Symbol | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class InlayHint:
+    """`offset` is where it stands; it tells a type or something else."""
+
+    offset: int
+    kind: HintKind
+    parts: tuple[Part, ...]
+
+    @property
+    def text(self) -> str:
+        return "".join(part.text for part in self.parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What a part of a hint is about: Markdown, and where it is defined."""
+
+    text: str
+    location: Location | None
+
+
+def inlay_hints(
+    analysis: Analysis, path: str, within: Span, kinds: frozenset[HintKind] = ALL_HINTS
+) -> tuple[InlayHint, ...]:
+    """The hints in a part of a file, in the order of the text."""
+    by_system = {
+        system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
+        for system in systems_of(analysis, path)
+    }
+    found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
+    chosen = (each for each in found if within.start <= each.offset <= within.end)
+    return tuple(sorted(chosen, key=lambda each: (each.offset, each.text)))
+
+
+def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> Iterable[InlayHint]:
+    """The hints in a file, seen as a part of one system or alone."""
+    kind, machine = analysis.kind(path), analysis.machine(path)
+    if kind is FileKind.MACHINE and machine is not None:
+        return _Machine(analysis, path, machine, within, system).all()
+    linked = analysis.system(system) if system else None
+    if kind is FileKind.TREE:
+        return _tree(analysis, path, within, linked)
+    if kind is FileKind.PROPERTIES and linked is not None:
+        return _properties(analysis, path, within, linked)
+    return ()
+
+
+def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
+    """What systems that share a file say alike is said once; where they differ, they are named."""
+    at: dict[tuple[int, HintKind], dict[str, InlayHint]] = {}
+    for system, found in by_system.items():
+        for hint in found:
+            at.setdefault((hint.offset, hint.kind), {})[system] = hint
+    merged: set[InlayHint] = set()
+    for (offset, kind), said in at.items():
+        parts: list[Part] = []
+        # A system that says nothing there differs, too.
+        groups = grouped({system: said[system].text if system in said else "" for system in by_system})
+        shown = [(text, names) for text, names in groups if text]
+        for text, names in shown[:_MOST]:
+            own = next(hint.parts for hint in said.values() if hint.text == text)
+            again = bool(parts) and own[0].text.strip() in _LEADS
+            parts += [*([Part("; ")] if parts else []), *own[again:], *([Part(f" in {names}")] if names else [])]
+        if len(shown) > _MOST:
+            parts.append(Part(", …"))
+        merged.add(InlayHint(offset, kind, tuple(parts)))
+    return merged
+
+
+_LEADS = ("", "→", "=", ":")
+"""What hints begin with; it is not repeated."""
+
+
+def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
+    """What a hint says about `symbol`, for those who ask."""
+    if symbol.kind != INSTANCE:
+        return Explanation(describe(analysis, symbol), definition_of(analysis, symbol))
+    system = analysis.system(symbol.path)
+    node = system.by_instance.get(int(symbol.name)) if system and symbol.name.isdecimal() else None
+    if system is None or node is None:
+        return Explanation("", None)
+    machine = Symbol(node.path, "machine", node.outline.name)
+    plugin = machine if node.path else Symbol("", "plugin", node.outline.name)
+    text = describe(analysis, plugin)
+    about = describe_system.node(system, node)
+    return Explanation(f"{about}\n\n{text}", definition_of(analysis, plugin))
+
+
+def _touches(within: Span, element: Element) -> bool:
+    return element.span.start <= within.end and within.start <= element.span.end
+
+
+def _behind(name: Name) -> int:
+    """Behind the quote at the end of an attribute's value."""
+    return name.span.end + 1
+
+
+# -------------------------------------------------------------------- machines
+
+
+class _Machine:
+    def __init__(self, analysis: Analysis, path: str, machine: Machine, within: Span, system: str | None) -> None:
+        self.analysis = analysis
+        self.path = path
+        self.machine = machine
+        self.within = within
+        self.linked = analysis.system(system) if system else None
+        self.owner = system or path
+        self.typed = analysis.typed_in(path, system)
+        self.values: dict[Element, TypedValue] = {
+            value.element: value for value in self.typed.values if value.use in (Use.PARAMETER, Use.FIELD)
+        }
+        self.interfaces: dict[tuple[str, str], dict[Symbol, str]] = {}
+        if self.linked is not None:
+            for automaton in self.linked.automata_of(path):
+                self.take(self.linked, automaton)
+
+    def take(self, system: System, automaton: Automaton) -> None:
+        for use in automaton.outline.interfaces:
+            name = automaton.interface_name(use)
+            if name is not None:
+                known = self.interfaces.setdefault((use.kind, use.handle), {})
+                known[interface_symbol(system.path, use.kind, name)] = name
+
+    def all(self) -> Iterator[InlayHint]:
+        for declaration in self.machine.declarations:
+            if _touches(self.within, declaration.element):
+                yield from self.declaration(declaration)
+        for chart in self.machine.charts:
+            if _touches(self.within, chart.element):
+                yield from self.chart(chart)
+
+    def declaration(self, declaration: Declaration) -> Iterator[InlayHint]:
+        for value in (declaration.interface, declaration.rate):
+            if isinstance(value, PortRead):
+                yield from self.port_read(value)
+        port = declaration.interface
+        if isinstance(port, PortRead) and port.key:
+            handle = declaration.handle.value if declaration.handle else ""
+            yield from self.names(port.key, self.interfaces.get((declaration.kind, handle), {}), " = ")
+
+    def names(self, at: Name, found: dict[Symbol, str], lead: str) -> Iterator[InlayHint]:
+        """The topics, services or actions that something means."""
+        if not found:
+            return
+        parts: list[Part] = []
+        for symbol, written in list(found.items())[:_MOST]:
+            parts += [Part(", " if parts else lead), Part(written, symbol)]
+        if len(found) > _MOST:
+            parts.append(Part(", …"))
+        yield InlayHint(_behind(at), HintKind.TOPICS, tuple(parts))
+
+    def chart(self, chart: Chart) -> Iterator[InlayHint]:
+        for data in chart.data:
+            if data.id is not None and _touches(self.within, data.element):
+                if data.element.get("type") is None:
+                    known = self.typed.variables.get(chart.scope, {}).get(data.id.value, UNKNOWN)
+                    type_ = known if data.type else inferred_type(self.typed, chart.scope, data.id.value)
+                    yield from self.type(data.id, type_)
+                for value in (data.value, data.lower, data.upper):
+                    if isinstance(value, PortRead):
+                        yield from self.port_read(value)
+        for state in chart.states:
+            if _touches(self.within, state.element):
+                for handler in state.handlers:
+                    yield from self.handler(handler)
+        for state, _, body in bodies(chart):
+            if _touches(self.within, state.element):
+                for statement in statements(body):
+                    match statement:
+                        case Send():
+                            yield from self.params(statement.params)
+                        case Communicate():
+                            yield from self.handle(statement)
+                            yield from self.params(statement.fields)
+                        case SetOutput() if statement.key:
+                            read = PortRead(statement.key, statement.element.span)
+                            yield from self.type(statement.key, port_type(self.machine, read))
+        reads = (v.value for v in self.typed.values if v.place.chart is chart and isinstance(v.value, PortRead))
+        for read in reads:
+            yield from self.port_read(read)
+
+    def params(self, params: Iterable[Param]) -> Iterator[InlayHint]:
+        for param in params:
+            value = self.values.get(param.element)
+            if param.name is not None and value is not None:
+                yield from self.type(param.name, value.type if value.use is Use.PARAMETER else value.wanted)
+
+    def type(self, name: Name, type_: Type | None) -> Iterator[InlayHint]:
+        if type_ is not None and type_ != UNKNOWN:
+            yield InlayHint(_behind(name), HintKind.TYPES, (Part(" : "), self.type_part(type_)))
+
+    def type_part(self, type_: Type) -> Part:
+        inner, _ = unwrap(type_)
+        is_ours = isinstance(inner, Struct) and inner.what == "struct"
+        return Part(str(type_), Symbol(self.owner, "struct", str(inner)) if is_ours else None)
+
+    def port_read(self, read: PortRead) -> Iterator[InlayHint]:
+        if read.key is not None:
+            yield from self.type(read.key, port_type(self.machine, read))
+
+    def handler(self, handler: Handler) -> Iterator[InlayHint]:
+        yield from self.handle(handler)
+        if handler.trigger != "event" or handler.event is None or self.linked is None:
+            return
+        event = self.linked.events.get(handler.event.value)
+        members = event.data.members if event else ()
+        parts: list[Part] = []
+        for name, type_ in members:
+            parts += [Part(", " if parts else "("), Part(name), Part(" : "), self.type_part(type_)]
+        if parts:
+            yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, Part(")")))
+
+    def handle(self, user: Handler | Communicate) -> Iterator[InlayHint]:
+        """What a handle stands for, unless it says so itself."""
+        declaration = find_handle(self.machine, user)
+        if user.handle is None or declaration is None or is_implicit(declaration):
+            return
+        if declaration.kind == "timer":
+            if isinstance(declaration.rate, Name):
+                symbol = Symbol(self.path, "timer", user.handle.value)
+                text = f"{declaration.rate.value} Hz"
+                yield InlayHint(_behind(user.handle), HintKind.TOPICS, (Part(" "), Part(text, symbol)))
+            return
+        found = self.interfaces.get((declaration.kind, user.handle.value), {})
+        if not found and isinstance(declaration.interface, Name):
+            written = declaration.interface.value
+            found = {interface_symbol(self.owner, declaration.kind, written): written}
+        if {name.removeprefix("/") for name in found.values()} != {user.handle.value.removeprefix("/")}:
+            yield from self.names(user.handle, found, " → ")
+
+
+# ----------------------------------------------------------- trees and properties
+
+
+def _tree(analysis: Analysis, path: str, within: Span, system: System | None) -> Iterator[InlayHint]:
+    file = analysis.tree(path)
+    instances = _instances(system, path) if system is not None else {}
+    for tree in file.trees if file else ():
+        if not _touches(within, tree.element):
+            continue
+        for position, node in enumerate(nodes(tree)):
+            found = instances.get((tree.id.value if tree.id else "", position), [])
+            if node.plugin is not None and within.start <= node.element.open_span.end:
+                yield from _node(node, node.plugin, found)
+
+
+def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -> Iterator[InlayHint]:
+    at = plugin.span.end + (0 if node.compact else 1)
+    parts: list[Part] = []
+    numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
+    for (system, number), _ in list(numbers.items())[:_MOST]:
+        parts += [Part(", " if parts else " "), Part(f"bt_{number}", Symbol(system, INSTANCE, str(number)))]
+    if len(numbers) > _MOST:
+        parts.append(Part(", …"))
+    if parts:
+        yield InlayHint(at, HintKind.NODES, tuple(parts))
+    for port in node.ports:
+        types = {a.outline.port(port.key.value): a for _, a in found}
+        shown = dict.fromkeys(each.type for each in types if each is not None and each.type)
+        owners = [a for a in types.values() if a.path]
+        if shown and port.attribute.has_value:
+            symbol = Symbol(owners[0].path, "port", port.key.value) if owners else None
+            yield InlayHint(_behind(port.value), HintKind.PORTS, (Part(" : "), Part(" or ".join(shown), symbol)))
+
+
+def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, Automaton]]]:
+    """The nodes of executed trees by tree and position in a file."""
+    found: dict[tuple[str, int], list[tuple[System, Automaton]]] = {}
+    for automaton in system.automata:
+        source = automaton.instance.source if automaton.instance else None
+        if source is not None and source.path == path:
+            found.setdefault((source.tree, source.position), []).append((system, automaton))
+    return found
+
+
+def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
+    """Who the nodes are that events of the tree are numbered by."""
+    for each in analysis.properties(path)[0]:
+        for identifier, span in identifiers(each.expression):
+            if span.start > within.end or span.end < within.start:
+                continue
+            node = node_of(system, identifier)
+            if node is not None and node.instance is not None:
+                symbol = Symbol(system.path, INSTANCE, str(node.instance.number))
+                yield InlayHint(span.end + 1, HintKind.NODES, (Part(" "), Part(node.instance.name, symbol)))

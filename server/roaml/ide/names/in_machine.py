@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names in a state machine."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Expr,
+    Index,
+    Member,
+    ObjectLiteral,
+    walk,
+)
+from roaml.expr.tree import Name as NameExpr
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, resolve_type, unwrap, wrap
+from roaml.ide.names.occurrence import Access, Occurrence, base_span, parameter, variable, without_slash
+from roaml.interfaces.registry import split_type_name
+from roaml.interfaces.types import Kind
+from roaml.language import HL_SCXML
+from roaml.model.machine import (
+    Assign,
+    CallChild,
+    Chart,
+    Communicate,
+    Data,
+    Declaration,
+    Handler,
+    If,
+    Machine,
+    Param,
+    ReturnStatus,
+    Send,
+    SetOutput,
+    Statement,
+    bodies,
+    statements,
+)
+from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
+from roaml.model.system import sanitise
+from roaml.model.typing import INTERFACE_KINDS, STATUSES, Environment, bindings, find_handle, interface_part
+from roaml.text import Span
+
+INTERFACE_SYMBOLS = {"msg": "topic", "srv": "service", "action": "action"}
+"""Kind of ROS type -> what a declaration of such a type names."""
+
+_EVENT_VARIABLES = frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
+_WORD = re.compile(r"\S+")
+
+
+def interface_symbol(owner: str, kind: str, name: str) -> Symbol:
+    """The topic, service or action that a declaration of `kind` calls `name`. Topics are known by sanitised name."""
+    what = INTERFACE_SYMBOLS[INTERFACE_KINDS[kind]]
+    return Symbol(owner, what, sanitise(name) if what == "topic" else name)
+
+
+def is_implicit(declaration: Declaration) -> bool:
+    """Whether the interface itself is the handle."""
+    return declaration.handle is not None and declaration.handle is declaration.interface
+
+
+def in_machine(
+    text: str,
+    machine: Machine,
+    path: str,
+    owner: str,
+    types: Mapping[str, Mapping[str, Type]],
+    environment: Environment,
+) -> Iterator[Occurrence]:
+    """
+    Args:
+        owner: the system file, or the machine's own if it is looked at alone.
+        types: of the variables, per chart scope.
+        environment: what is known of the rest of the system.
+    """
+    return _Machine(text, machine, path, owner, types, environment).all()
+
+
+@dataclass(frozen=True, slots=True)
+class _Machine:
+    """What `in_machine` is asked about."""
+
+    text: str
+    machine: Machine
+    path: str
+    owner: str
+    types: Mapping[str, Mapping[str, Type]]
+    environment: Environment
+
+    def all(self) -> Iterator[Occurrence]:
+        machine = self.machine
+        if machine.name:
+            yield Occurrence(machine.name.span, Symbol(self.path, "machine", machine.name.value), defines=True)
+        for port in machine.ports:
+            yield from self.port(port.key, Access.TEXT, defines=True)
+        for declaration in machine.declarations:
+            yield from self.declaration(declaration)
+        for thread in machine.threads:
+            servers = [d for d in machine.declarations if d.kind == "action-server"]
+            yield from self.handle(thread.server, _named(servers, thread.server))
+        for chart in machine.charts:
+            yield from self.chart(chart)
+
+    # ---------------------------------------------------------- declarations
+
+    def declaration(self, declaration: Declaration) -> Iterator[Occurrence]:
+        if declaration.handle is not None and not is_implicit(declaration):
+            symbol = Symbol(self.path, declaration.kind, declaration.handle.value)
+            yield Occurrence(declaration.handle.span, symbol, defines=True)
+        if isinstance(declaration.rate, PortRead):
+            yield from self.port(declaration.rate.key, Access.READ)
+        if isinstance(declaration.interface, PortRead):
+            yield from self.port(declaration.interface.key, Access.READ)
+        elif declaration.interface is not None:
+            yield from self.interface(declaration.interface, declaration, defines=True)
+        if declaration.type is not None and declaration.kind in INTERFACE_KINDS:
+            kind: Kind = INTERFACE_KINDS[declaration.kind]
+            names = split_type_name(declaration.type.value, kind)
+            if names is not None:
+                yield Occurrence(declaration.type.span, Symbol("", "ros-type", "/".join(names), kind))
+
+    def interface(self, name: Name, declaration: Declaration, *, defines: bool = False) -> Iterator[Occurrence]:
+        symbol = interface_symbol(self.owner, declaration.kind, name.value)
+        is_source = declaration.kind in ("publisher", "service-server", "action-server")
+        span = without_slash(name) if symbol.kind == "topic" else name.span
+        yield Occurrence(span, symbol, defines and is_source)
+
+    def handle(
+        self, name: Name | None, declaration: Declaration | None, access: Access = Access.TEXT
+    ) -> Iterator[Occurrence]:
+        """A use of a handle. Where the interface itself is the handle, it is that which is named."""
+        if name is None or declaration is None:
+            return
+        if is_implicit(declaration):
+            for found in self.interface(name, declaration):
+                yield Occurrence(found.span, found.symbol, access=access)
+        else:
+            yield Occurrence(name.span, Symbol(self.path, declaration.kind, name.value), access=access)
+
+    def port(self, key: Name | None, access: Access, *, defines: bool = False) -> Iterator[Occurrence]:
+        if key is not None:
+            yield Occurrence(key.span, Symbol(self.path, "port", key.value), defines, access)
+
+    # ---------------------------------------------------------------- charts
+
+    def chart(self, chart: Chart) -> Iterator[Occurrence]:
+        yield from self.state(chart, chart.initial)
+        for data in chart.data:
+            yield from self.data(chart, data)
+        for state in chart.states:
+            yield from self.state(chart, state.id, defines=True)
+            for handler in state.handlers:
+                yield from self.handler(chart, handler)
+        for _, each, body in bodies(chart):
+            known = bindings(each, "body", self.machine, self.environment) if each else {}
+            for statement in statements(body):
+                yield from self.statement(_Scope(self, chart, each, known), statement)
+
+    def state(self, chart: Chart, name: Name | None, *, defines: bool = False) -> Iterator[Occurrence]:
+        if name is not None:
+            yield Occurrence(name.span, Symbol(self.path, "state", name.value, chart.scope), defines)
+
+    def data(self, chart: Chart, data: Data) -> Iterator[Occurrence]:
+        if data.id is not None:
+            symbol = variable(self.path, data.id.value, chart.scope)
+            yield Occurrence(data.id.span, symbol, defines=True, access=Access.WRITE)
+            if data.comment_type and data.type is not None:
+                # `TYPE id:type` in a comment: the id stands just before the type.
+                start = self.text.rfind(data.id.value, 0, data.type.span.start)
+                yield Occurrence(Span(start, start + len(data.id.value)), symbol)
+        yield from type_use(self.owner, data.type)
+        wanted: Type = UNKNOWN
+        if data.type is not None and data.type.name is not None:
+            wanted = resolve_type(data.type.name, self.environment.struct) or UNKNOWN
+        scope = _Scope(self, chart, None, {})
+        for value in (data.value, data.lower, data.upper):
+            yield from self.value(scope, value)
+            if isinstance(value, Expression):
+                yield from self.keys(value.tree, wanted)
+
+    def keys(self, expr: Expr, wanted: Type) -> Iterator[Occurrence]:
+        """The member names in an initial value."""
+        if isinstance(expr, ArrayLiteral) and isinstance(wanted, Array):
+            for element in expr.elements:
+                yield from self.keys(element, wanted.element)
+        if isinstance(expr, ObjectLiteral) and isinstance(wanted, Struct):
+            for member in expr.members:
+                lead = self.text[member.key_span.start : member.key_span.end].find(member.key)
+                type_ = wanted.member(member.key)
+                if type_ is not None and lead >= 0:
+                    start = member.key_span.start + lead
+                    symbol = Symbol(self.owner, "member", member.key, wanted.name)
+                    yield Occurrence(Span(start, start + len(member.key)), symbol, access=Access.WRITE)
+                    yield from self.keys(member.value, type_)
+
+    def handler(self, chart: Chart, handler: Handler) -> Iterator[Occurrence]:
+        if handler.trigger == "event" and handler.event is not None:
+            yield from self.events(handler.event)
+        yield from self.handle(handler.handle, find_handle(self.machine, handler), Access.READ)
+        for target in handler.targets:
+            yield from self.state(chart, target.state)
+        yield from self.word(_Scope(self, chart, handler, {}), handler.child)
+        if handler.cond is not None:
+            known = bindings(handler, "cond", self.machine, self.environment)
+            yield from _Scope(self, chart, handler, known).names(handler.cond)
+
+    def events(self, written: Name) -> Iterator[Occurrence]:
+        if "*" in written.value or len(written.value) != written.span.end - written.span.start:
+            return
+        for word in _WORD.finditer(written.value):
+            span = Span(written.span.start + word.start(), written.span.start + word.end())
+            yield Occurrence(span, Symbol(self.owner, "event", word[0]), access=Access.READ)
+
+    # ------------------------------------------------------------ statements
+
+    def statement(self, scope: _Scope, statement: Statement) -> Iterator[Occurrence]:
+        match statement:
+            case Assign():
+                if statement.location is not None:
+                    yield from scope.names(statement.location, written=True)
+                yield from self.value(scope, statement.value)
+            case Send():
+                yield from self.send(scope, statement)
+            case If():
+                for branch in statement.branches:
+                    if branch.cond is not None:
+                        yield from scope.names(branch.cond)
+            case Communicate():
+                yield from self.communicate(scope, statement)
+            case ReturnStatus():
+                if statement.status is not None and statement.status.value not in STATUSES:
+                    yield from self.word(scope, statement.status)
+            case CallChild():
+                yield from self.word(scope, statement.child)
+            case SetOutput():
+                yield from self.port(statement.key, Access.WRITE)
+                yield from self.value(scope, statement.value)
+            case _:
+                pass
+
+    def send(self, scope: _Scope, send: Send) -> Iterator[Occurrence]:
+        if send.event is not None:
+            symbol = Symbol(self.owner, "event", send.event.value)
+            yield Occurrence(send.event.span, symbol, defines=True, access=Access.WRITE)
+        for param in send.params:
+            if param.name is not None and send.event is not None:
+                symbol = parameter(self.owner, send.event.value, param.name.value)
+                yield Occurrence(param.name.span, symbol, defines=True, access=Access.WRITE)
+            yield from self.value(scope, param.value)
+
+    def communicate(self, scope: _Scope, statement: Communicate) -> Iterator[Occurrence]:
+        declaration = find_handle(self.machine, statement)
+        yield from self.handle(statement.handle, declaration, Access.WRITE)
+        part = interface_part(statement.type.sends, declaration, self.environment)
+        for field in statement.fields:
+            yield from self.field(field, part)
+            yield from self.value(scope, field.value)
+        for argument in (statement.goal_id, statement.thread_id):
+            yield from self.value(scope, argument)
+
+    def field(self, field: Param, part: Type) -> Iterator[Occurrence]:
+        """The fields on a dotted path."""
+        if field.name is None or len(field.name.value) != field.name.span.end - field.name.span.start:
+            return
+        at, owner = field.name.span.start, part
+        for name in field.name.value.split("."):
+            inner, _ = unwrap(owner)
+            member = inner.member(name) if isinstance(inner, Struct) else None
+            if not isinstance(inner, Struct) or member is None:
+                return
+            span = Span(at, at + len(name))
+            yield Occurrence(span, Symbol("", "field", name, inner.name), access=Access.WRITE)
+            at, owner = span.end + 1, member
+
+    def word(self, scope: _Scope, name: Name | None) -> Iterator[Occurrence]:
+        """A number or the name of a variable."""
+        if name is not None and not name.value.lstrip("+-").isdigit():
+            symbol = variable(self.path, name.value, scope.chart.scope)
+            yield Occurrence(name.span, symbol, access=Access.READ)
+
+    def value(self, scope: _Scope, value: Value | None) -> Iterator[Occurrence]:
+        if isinstance(value, PortRead):
+            yield from self.port(value.key, Access.READ)
+        elif value is not None:
+            yield from scope.names(value)
+
+
+class _Scope:
+    """Where an expression stands: what the names in it mean. `known` are the event variables with their types."""
+
+    def __init__(self, machine: _Machine, chart: Chart, handler: Handler | None, known: Mapping[str, Type]) -> None:
+        self.machine = machine
+        self.chart = chart
+        self.handler = handler
+        self.known = known
+        self.variables = machine.types.get(chart.scope, {})
+
+    def names(self, expression: Expression, *, written: bool = False) -> Iterator[Occurrence]:
+        target = _base(expression.tree) if written else None
+        for node in walk(expression.tree):
+            if isinstance(node, NameExpr):
+                yield from self.name(node, Access.WRITE if node is target else Access.READ)
+            elif isinstance(node, Member) and node.name:
+                yield from self.member(node, Access.WRITE if written and target else Access.READ)
+
+    def name(self, node: NameExpr, access: Access) -> Iterator[Occurrence]:
+        declared = node.name in self.variables
+        if node.name in self.known or (not declared and (node.name in _EVENT_VARIABLES or node.name == "Math")):
+            return
+        if "_bt" in self.known and node.name in STATUSES:
+            return
+        yield Occurrence(node.span, variable(self.machine.path, node.name, self.chart.scope), access=access)
+
+    def member(self, node: Member, access: Access) -> Iterator[Occurrence]:
+        event = self.handler.event if self.handler and self.handler.trigger == "event" else None
+        if event is not None and _is_event_data(node.object) and "_event" in self.known:
+            symbol = parameter(self.machine.owner, event.value, node.name)
+            yield Occurrence(node.name_span, symbol, access=Access.READ)
+            return
+        inner, _ = unwrap(self.type_of(node.object))
+        if not isinstance(inner, Struct) or inner.member(node.name) is None:
+            return
+        if inner.what == "struct":
+            yield Occurrence(node.name_span, Symbol(self.machine.owner, "member", node.name, inner.name), access=access)
+        elif inner.name:
+            yield Occurrence(node.name_span, Symbol("", "field", node.name, inner.name), access=Access.READ)
+
+    def type_of(self, expr: Expr) -> Type:
+        """The type of a chain of members and indexes; unknown for anything else."""
+        match expr:
+            case NameExpr():
+                return self.known.get(expr.name) or self.variables.get(expr.name) or UNKNOWN
+            case Index():
+                indexed = self.type_of(expr.object)
+                return indexed.element if isinstance(indexed, Array) else UNKNOWN
+            case Member():
+                inner, bounds = unwrap(self.type_of(expr.object))
+                member = inner.member(expr.name) if isinstance(inner, Struct) else None
+                return UNKNOWN if member is None else wrap(member, bounds)
+        return UNKNOWN
+
+
+def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:
+    """The struct in a type."""
+    if type_ is not None and type_.name is not None and type_.name.base not in BASE_TYPES:
+        yield Occurrence(base_span(type_.span, type_.name.base), Symbol(owner, "struct", type_.name.base))
+
+
+def _base(expr: Expr) -> Expr:
+    """The name that a location begins with."""
+    while isinstance(expr, (Member, Index)):
+        expr = expr.object
+    return expr
+
+
+def _is_event_data(expr: Expr) -> bool:
+    match expr:
+        case Member(object=NameExpr(name="_event"), name="data"):
+            return True
+    return False
+
+
+def _named(declarations: list[Declaration], name: Name | None) -> Declaration | None:
+    if name is None:
+        return None
+    return next((d for d in declarations if d.handle and d.handle.value == name.value), None)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a place to all places that mean the same thing.
+
+A file may belong to several systems, and its characters may mean something else in each. Everything that any of them
+ties together is one `Thing`: whoever renames one of its places must rename them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from roaml.diagnostics import Symbol
+from roaml.ide.names.occurrence import HANDLES, Occurrence
+from roaml.ide.names.occurrences import Uses, uses
+from roaml.project.analysis import Analysis
+from roaml.text import Location, Span
+
+_IN_ONE_FILE = frozenset(("state", "variable", *HANDLES))
+"""Kinds of symbols that only their own file can name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """An occurrence in a file."""
+
+    path: str
+    occurrence: Occurrence
+
+    @property
+    def location(self) -> Location:
+        return Location(self.path, self.occurrence.span)
+
+
+@dataclass(frozen=True, eq=False)
+class Thing:
+    """All that is tied together. `symbols` begins with what stands at the place that was asked about.
+
+    `uses` are sorted by file and place, each place once.
+    """
+
+    symbols: tuple[Symbol, ...]
+    uses: tuple[Use, ...]
+
+    @cached_property
+    def definitions(self) -> tuple[Location, ...]:
+        return tuple(dict.fromkeys(use.location for use in self.uses if use.occurrence.defines))
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        return frozenset(symbol.kind for symbol in self.symbols)
+
+
+def systems_of(analysis: Analysis, path: str) -> tuple[str | None, ...]:
+    """The systems in which a file is looked at; (None) if it is in none."""
+    return analysis.memberships.get(path, ()) or (None,)
+
+
+def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
+    """What stands at a caret, in each system; a name that begins there goes before one that ends there."""
+    found = dict.fromkeys(
+        each
+        for system in systems_of(analysis, path)
+        for each in uses(analysis, path, system).all
+        if each.span.contains(offset) and each.span.start < each.span.end
+    )
+    starting = [each for each in found if each.span.start <= offset < each.span.end]
+    return tuple(starting or found)
+
+
+def thing_at(analysis: Analysis, path: str, offset: int) -> Thing | None:
+    """All that means the same as the name at a caret; None if no name stands there."""
+    found = occurrences_at(analysis, path, offset)
+    return thing(analysis, (each.symbol for each in found)) if found else None
+
+
+def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
+    """All uses of some symbols, and of the symbols that share a place with one of them."""
+    seen = dict.fromkeys(symbols)
+    todo = list(seen)
+    found: dict[tuple[str, Span], Use] = {}
+    while todo:
+        symbol = todo.pop(0)
+        for path, uses_ in where(analysis, symbol):
+            for occurrence in uses_.by_symbol.get(symbol, ()):
+                place = (path, occurrence.span)
+                # Of several at one place the definition says most, then that of what was asked about.
+                if place not in found or (occurrence.defines and not found[place].occurrence.defines):
+                    found[place] = Use(path, occurrence)
+                for other in _sharing(analysis, path, occurrence.span):
+                    if other not in seen:
+                        seen[other] = None
+                        todo.append(other)
+    return Thing(tuple(seen), tuple(found[place] for place in sorted(found)))
+
+
+def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
+    for system in systems_of(analysis, path):
+        for occurrence in uses(analysis, path, system).by_span.get(span, ()):
+            yield occurrence.symbol
+
+
+def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
+    """The files that can name a symbol, as they are in the systems that matter."""
+    if symbol.kind in _IN_ONE_FILE:
+        for system in systems_of(analysis, symbol.path):
+            yield symbol.path, uses(analysis, symbol.path, system)
+        return
+    if not symbol.path:
+        systems: tuple[str | None, ...] = analysis.system_paths
+    elif symbol.path in analysis.system_paths:
+        systems = (symbol.path,)
+    else:
+        systems = systems_of(analysis, symbol.path)
+    for system in systems:
+        for path in analysis.files_of(system) if system else (symbol.path,):
+            yield path, uses(analysis, path, system)

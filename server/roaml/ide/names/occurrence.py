@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One use of a name, and what it denotes.
+
+A `Symbol` is the identity of a named thing. Its `path` tells how far the name reaches:
+
+- a state, variable, handle, port or machine belongs to its file, whichever systems list it;
+- a blackboard variable and a named tree node belong to the tree (`scope`) in the file that they stand in;
+- events, parameters, topics, services, actions, trees, structs and members belong to a system: `path` is its file, or
+  the file itself if it is looked at alone;
+- what ROS or BehaviorTree.CPP bring along belongs to nobody: `path` is "".
+
+The same characters may denote different things in different systems, and even two things in one (a JSON property names
+a member and a struct). Whoever asks for all that must change together follows both (`roaml.ide.names.lookup`).
+"""
+
+from __future__ import annotations
+
+import enum
+from typing import NamedTuple
+
+from roaml.diagnostics import Symbol
+from roaml.language import HL_SCXML
+from roaml.model.syntax import Name
+from roaml.text import Span
+
+HANDLES = frozenset(
+    attribute.defines
+    for name in HL_SCXML.groups["Declaration"]
+    for attribute in HL_SCXML.elements[name].attributes.values()
+    if attribute.defines and attribute.defines != "port"
+)
+"""The kinds of symbols that declarations of ROS interfaces and timers define."""
+
+NOT_OURS = frozenset(("field", "ros-type"))
+"""Kinds of symbols that ROS definitions define."""
+
+
+class Access(enum.Enum):
+    """What a use does with the thing: names it, takes from it (reads, receives) or gives to it (writes, sends)."""
+
+    TEXT = "names it"
+    READ = "reads it"
+    WRITE = "writes it"
+
+
+class Form(enum.Enum):
+    """How a name is spelled in a place."""
+
+    AS_IS = "as it is"
+    SANITISED = "an interface name in an event name: `/` becomes `__`"
+    SAFE = "an automaton name in an event name: odd characters become `_`"
+    WORD = "a subtree in a variable name: what is no letter or digit becomes `_`"
+    FLAT = "a parameter in a variable name: `.` becomes `__`"
+
+
+class Occurrence(NamedTuple):
+    """`span` is exactly the name; `form` tells how it is spelled there."""
+
+    span: Span
+    symbol: Symbol
+    defines: bool = False
+    access: Access = Access.TEXT
+    form: Form = Form.AS_IS
+
+
+def variable(path: str, name: str, scope: str) -> Symbol:
+    return Symbol(path, "variable", name, scope)
+
+
+def parameter(owner: str, event: str, name: str) -> Symbol:
+    return Symbol(owner, "parameter", name, event)
+
+
+def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
+    """A node that has a name of its own; `position` as in `roaml.model.expand.Source`."""
+    return Symbol(path, "tree-node", name, f"{tree}:{position}")
+
+
+def base_span(span: Span, base: str) -> Span:
+    """The name of a type without its brackets."""
+    return Span(span.start, span.start + len(base))
+
+
+def without_slash(name: Name) -> Span:
+    """A topic as written, without the slash that does not count."""
+    return Span(name.span.start + 1, name.span.end) if name.value.startswith("/") else name.span

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All uses of names in a file, as it is in one system or alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.ide.names.frames import Piece, Trees
+from roaml.ide.names.in_machine import in_machine
+from roaml.ide.names.in_properties import in_properties, names
+from roaml.ide.names.in_structs import in_json, in_xml
+from roaml.ide.names.in_tree import in_tree
+from roaml.ide.names.occurrence import Occurrence
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+
+@dataclass(frozen=True, eq=False)
+class Uses:
+    """The uses of names in one file, in the order of the text; by symbol; by place."""
+
+    all: tuple[Occurrence, ...]
+    by_symbol: Mapping[Symbol, tuple[Occurrence, ...]]
+    by_span: Mapping[Span, tuple[Occurrence, ...]]
+
+
+def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
+    """The uses of names in the file `path`, as part of a system or (None) alone. Remembered by what they depend on."""
+    source = analysis.source(path)
+    if source is None:
+        return _index(())
+    key: tuple[object, ...] = (source.digest, analysis.structs(system))
+    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+        key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
+    else:
+        key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
+    return analysis.memo.get("uses", (path, system), key, lambda: _index(_of(analysis, path, system)))
+
+
+def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tuple[Occurrence, ...]:
+    """All uses of names in a file, in the order of the text."""
+    return uses(analysis, path, system).all
+
+
+def _index(found: Iterable[Occurrence]) -> Uses:
+    """Each occurrence once."""
+    by_symbol: dict[Symbol, list[Occurrence]] = {}
+    by_span: dict[Span, list[Occurrence]] = {}
+    ordered: list[Occurrence] = []
+    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind)):
+        there = by_span.setdefault(each.span, [])
+        if each not in there:
+            there.append(each)
+            ordered.append(each)
+            by_symbol.setdefault(each.symbol, []).append(each)
+    return Uses(
+        tuple(ordered),
+        {symbol: tuple(uses_) for symbol, uses_ in by_symbol.items()},
+        {span: tuple(uses_) for span, uses_ in by_span.items()},
+    )
+
+
+def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
+    source, owner = analysis.source(path), system or path
+    kind = kind_in(analysis, path, system)
+    assert source is not None
+    if kind is FileKind.MACHINE:
+        machine = analysis.machine(path)
+        if machine is not None:
+            types = analysis.typed_in(path, system).variables
+            yield from in_machine(source.text, machine, path, owner, types, analysis.environment(system))
+    elif kind is FileKind.TREE:
+        document, trees = analysis.document(path), trees_of(analysis, path, system)
+        if document is not None and path in trees.files:
+            yield from in_tree(document, path, trees, analysis.system(system) if system else None)
+    elif kind is FileKind.STRUCTS:
+        yield from in_xml(analysis.struct_declarations(path), owner)
+    elif kind is FileKind.JSON_STRUCTS:
+        value = analysis.json(path)
+        if value is not None:
+            yield from in_json(source.text, value[0], analysis.struct_declarations(path), owner)
+    elif kind is FileKind.PROPERTIES and system is not None:
+        properties, _ = analysis.properties(path)
+        yield from in_properties(source.text, properties, global_names(analysis, system))
+
+
+def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, ...]]:
+    """The names of the global variables of a translated system -> what they are made of."""
+    linked = analysis.system(system)
+    if linked is None:
+        return {}
+    variables, trees = analysis.globals(system), trees_of(analysis, system, system)
+    find = analysis.environment(system).interface
+    return analysis.memo.get("global names", system, (linked, trees), lambda: names(linked, variables, trees, find))
+
+
+def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
+    """The trees of a system, or those of a tree file alone with what it includes."""
+    paths = analysis.tree_paths(system) if system else analysis.trees_from(path)
+    digests = tuple(getattr(analysis.source(each), "digest", b"") for each in paths)
+    owner = system or path
+    return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
+
+
+def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
+    """What a file is: by itself, or else as what a system lists it."""
+    kind = analysis.kind(path)
+    if kind is not FileKind.UNKNOWN or system is None:
+        return kind
+    listed = (f.found for f in analysis.listed(system) if f.path == path)
+    return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind

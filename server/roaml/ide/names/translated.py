@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a name in a model becomes in the translation: events of the plain SCXML, global variables of the JANI model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.diagnostics import Symbol
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.names.occurrences import global_names, trees_of
+from roaml.model.globals import GlobalVariable
+from roaml.project.analysis import Analysis
+
+
+def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable, ...]:
+    """The global variables in whose names a symbol stands, in all its systems, flags (`.valid`) first."""
+    found: dict[str, GlobalVariable] = {}
+    if symbol.path:
+        systems = (symbol.path,) if symbol.path in analysis.system_paths else systems_of(analysis, symbol.path)
+    else:
+        systems = analysis.system_paths
+    for system in systems:
+        if system is not None:
+            variables = analysis.globals(system)
+            names = _by_symbol(analysis, system).get(symbol, ())
+            found.update((name, variables[name]) for name in names if name in variables)
+    return tuple(sorted(found.values(), key=lambda each: each.parameter != "valid"))
+
+
+def _by_symbol(analysis: Analysis, system: str) -> Mapping[Symbol, tuple[str, ...]]:
+    names = global_names(analysis, system)
+
+    def invert() -> Mapping[Symbol, tuple[str, ...]]:
+        found: dict[Symbol, dict[str, None]] = {}
+        for name, pieces in names.items():
+            for _, symbol, _ in pieces:
+                if symbol is not None:
+                    found.setdefault(symbol, {})[name] = None
+        return {symbol: tuple(each) for symbol, each in found.items()}
+
+    key = (analysis.system(system), trees_of(analysis, system, system))
+    return analysis.memo.get("global names by symbol", system, key, invert)

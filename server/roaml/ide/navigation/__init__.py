@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a name to where it is defined, declared, typed, implemented and used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import Struct, Type, unwrap
+from roaml.ide.names.lookup import Thing, Use, occurrences_at, systems_of, thing, thing_at
+from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
+from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
+from roaml.lower.nodes import node_file
+from roaml.model.system import System
+from roaml.model.typing import INTERFACE_KINDS
+from roaml.project.analysis import Analysis
+from roaml.project.files import resolve
+from roaml.text import Location, Span
+
+INTERFACES = ("topic", "service", "action")
+
+
+@dataclass(frozen=True, slots=True)
+class Highlight:
+    """A use in the same file. `access` tells what it does; a definition counts as writing."""
+
+    span: Span
+    access: Access
+
+
+def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
+    """Where what stands at a caret is defined: senders for events, publishers for topics, servers for services."""
+    file = _file_at(analysis, path, offset)
+    if file is not None:
+        return (Location(file, Span(0, 0)),)
+    found = thing_at(analysis, path, offset)
+    return () if found is None else (*found.definitions, *_ros(analysis, found.symbols), *_builtin(found.symbols))
+
+
+def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """Where a thing is defined first; if it is not, where it is named first. None if it is nowhere."""
+    tied = thing(analysis, (symbol,))
+    uses = (use.location for use in tied.uses)
+    return next(iter((*_ros(analysis, (symbol,)), *_builtin((symbol,)), *tied.definitions, *uses)), None)
+
+
+def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
+    """Like `definition`; for topics, services and actions the declarations of all who take part."""
+    found = thing_at(analysis, path, offset)
+    if found is None or not found.kinds & set(INTERFACES):
+        return definition(analysis, path, offset)
+    return tuple(use.location for use in found.uses if use.occurrence.access is Access.TEXT)
+
+
+def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
+    """The file of a tree node's plugin, the handlers of an event; else the definition."""
+    found = thing_at(analysis, path, offset)
+    if found is not None and "event" in found.kinds:
+        return tuple(
+            use.location
+            for use in found.uses
+            if use.occurrence.access is Access.READ and analysis.machine(use.path) is not None
+        )
+    return definition(analysis, path, offset)
+
+
+def references(analysis: Analysis, path: str, offset: int, *, with_declaration: bool = True) -> tuple[Location, ...]:
+    """All uses of what stands at a caret, in all files, sorted."""
+    found = thing_at(analysis, path, offset)
+    if found is None:
+        return ()
+    uses = (use.location for use in found.uses if with_declaration or not use.occurrence.defines)
+    return (*uses, *(_ros(analysis, found.symbols) if with_declaration else ()))
+
+
+def highlights(analysis: Analysis, path: str, offset: int) -> tuple[Highlight, ...]:
+    """All uses of what stands at a caret, in this file."""
+    found = thing_at(analysis, path, offset)
+    uses: Iterable[Use] = found.uses if found else ()
+    return tuple(_highlight(use) for use in uses if use.path == path)
+
+
+def _highlight(use: Use) -> Highlight:
+    occurrence = use.occurrence
+    return Highlight(occurrence.span, Access.WRITE if occurrence.defines else occurrence.access)
+
+
+def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
+    found = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in NOT_OURS)
+    return tuple(dict.fromkeys(place for place in found if place is not None))
+
+
+def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
+    """The machines that nodes of BehaviorTree.CPP are translated as: they say exactly what these do."""
+    for symbol in symbols:
+        file = node_file(symbol.name) if symbol.kind == "plugin" and not symbol.path else None
+        if file is not None:
+            yield Location(file, Span(0, 0))
+
+
+def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
+    """The file that a path at a caret names."""
+    system, tree = analysis.system_file(path), analysis.tree(path)
+    names = [entry.src for entry in system.inputs] if system else []
+    names += [include.path for include in tree.includes] if tree else []
+    named = next((name for name in names if name and name.span.contains(offset)), None)
+    target = resolve(path, named.value) if named else None
+    return target if target and analysis.source(target) is not None else None
+
+
+# ------------------------------------------------------------------------ types
+
+
+def type_definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
+    """Where the type of what stands at a caret is defined: a struct, or a ROS definition file."""
+    found: dict[Location, None] = {}
+    for occurrence in occurrences_at(analysis, path, offset):
+        for system in systems_of(analysis, path):
+            found.update(dict.fromkeys(_type_of(analysis, path, system, occurrence.symbol)))
+    return tuple(found)
+
+
+def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) -> Iterator[Location]:
+    linked = analysis.system(system) if system else None
+    match symbol.kind:
+        case "variable":
+            types = analysis.typed_in(symbol.path, system).variables.get(symbol.scope, {})
+            yield from _of_type(analysis, system or path, types.get(symbol.name))
+        case "member":
+            struct = analysis.structs(system).types.get(symbol.scope)
+            if isinstance(struct, Struct):
+                yield from _of_type(analysis, system or path, struct.member(symbol.name))
+        case "parameter":
+            data = linked.event_data.get(symbol.scope) if linked else None
+            yield from _of_type(analysis, system or path, data.member(symbol.name) if data else None)
+        case "struct":
+            yield from thing(analysis, (symbol,)).definitions
+        case "field":
+            place = type_of_field(analysis, symbol)
+            if place is not None:
+                yield place
+        case "ros-type":
+            yield from _ros(analysis, (symbol,))
+        case kind if kind in HANDLES:
+            yield from _of_handle(analysis, symbol)
+        case kind if kind in INTERFACES and linked is not None:
+            yield from _of_interface(analysis, linked, symbol)
+        case kind if kind in INTERFACES:
+            yield from _of_declarations(analysis, thing(analysis, (symbol,)))
+
+
+def _of_type(analysis: Analysis, owner: str, type_: Type | None) -> Iterator[Location]:
+    inner = unwrap(type_)[0] if type_ is not None else None
+    if isinstance(inner, Struct) and inner.what == "struct":
+        yield from thing(analysis, (Symbol(owner, "struct", inner.name),)).definitions
+
+
+def _of_handle(analysis: Analysis, symbol: Symbol) -> Iterator[Location]:
+    machine = analysis.machine(symbol.path)
+    for each in machine.declarations if machine else ():
+        if each.kind == symbol.kind and each.handle and each.handle.value == symbol.name and each.type:
+            place = locate_type(analysis, INTERFACE_KINDS.get(each.kind, "msg"), each.type.value)
+            if place is not None:
+                yield place
+
+
+def _of_interface(analysis: Analysis, system: System, symbol: Symbol) -> Iterator[Location]:
+    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[symbol.kind]
+    channel = channels.get(symbol.name)
+    for endpoint in channel.endpoints if channel else ():
+        place = locate_type(analysis, INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
+        if place is not None:
+            yield place
+
+
+def _of_declarations(analysis: Analysis, found: Thing) -> Iterator[Location]:
+    for use in found.uses:
+        machine = analysis.machine(use.path)
+        for each in machine.declarations if machine else ():
+            name = each.interface
+            if name is not None and name.span.contains(use.occurrence.span.start) and each.type:
+                place = locate_type(analysis, INTERFACE_KINDS[each.kind], each.type.value)
+                if place is not None:
+                    yield place

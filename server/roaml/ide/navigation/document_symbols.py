@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The outline of a file: what is named in it, nested as it is written.
+
+What has no name yet is called as its element is, so that a half-typed file has an outline, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from roaml.ide.json_tree import members
+from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.navigation.jani_symbols import jani_symbols
+from roaml.json import JsonArray, JsonObject, JsonString
+from roaml.model.kinds import FileKind
+from roaml.model.machine import Chart, Data, Declaration, Handler, Machine, Port, State, Thread
+from roaml.model.structs import StructDeclaration
+from roaml.model.syntax import Name, PortRead
+from roaml.model.system_file import SystemFile
+from roaml.model.tree import TreeFile, TreeNode
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+from roaml.xml import Element
+
+
+def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...]:
+    """The outline of a file, in the order of the text."""
+    kind = analysis.kind(path)
+    if kind is FileKind.MACHINE and (machine := analysis.machine(path)):
+        return (_machine(machine),)
+    if kind is FileKind.TREE and (tree := analysis.tree(path)):
+        return tuple(_trees(tree))
+    if kind is FileKind.SYSTEM and (system := analysis.system_file(path)):
+        return (_system(system),)
+    if kind is FileKind.STRUCTS:
+        return tuple(_struct(each) for each in analysis.struct_declarations(path))
+    if kind is FileKind.PROPERTIES:
+        return tuple(_properties(analysis, path))
+    if kind is FileKind.JANI_MODEL and (json := analysis.json(path)):
+        return tuple(jani_symbols(json[0]))
+    return ()
+
+
+def _symbol(
+    element: Element, name: Name | None, kind: SymbolKind, detail: str = "", children: Iterable[DocumentSymbol] = ()
+) -> DocumentSymbol:
+    inside = sorted(children, key=lambda child: child.span)
+    span = name.span if name and _is_inside(name.span, element.span) else element.name_span
+    return DocumentSymbol(name.value if name else f"<{element.name}>", detail, kind, element.span, span, tuple(inside))
+
+
+def _is_inside(inner: Span, outer: Span) -> bool:
+    return outer.start <= inner.start and inner.end <= outer.end
+
+
+# -------------------------------------------------------------------- machines
+
+
+def _machine(machine: Machine) -> DocumentSymbol:
+    children = [
+        *(_port(port) for port in machine.ports),
+        *(_declaration(declaration) for declaration in machine.declarations),
+        *(_thread(thread) for thread in machine.threads),
+        *_chart(machine.chart),
+    ]
+    return _symbol(machine.element, machine.name, SymbolKind.MACHINE, children=children)
+
+
+def _chart(chart: Chart) -> Iterator[DocumentSymbol]:
+    datamodel = chart.element.find("datamodel")
+    data = [_data(each) for each in chart.data]
+    if datamodel is not None:
+        inside = [each for each in data if _is_inside(each.span, datamodel.span)]
+        name = Name("datamodel", datamodel.name_span)
+        yield _symbol(datamodel, name, SymbolKind.DATAMODEL, children=inside)
+        data = [each for each in data if each not in inside]
+    yield from data
+    for state in chart.states:
+        yield _state(state)
+
+
+def _data(data: Data) -> DocumentSymbol:
+    return _symbol(data.element, data.id, SymbolKind.VARIABLE, data.type.text if data.type else "")
+
+
+def _port(port: Port) -> DocumentSymbol:
+    type_ = f" {port.type.text}" if port.type else ""
+    return _symbol(port.element, port.key, SymbolKind.PORT, f"{port.direction}{type_}")
+
+
+def _declaration(declaration: Declaration) -> DocumentSymbol:
+    interface = declaration.interface
+    shown = "from a port" if isinstance(interface, PortRead) else interface.value if interface else ""
+    return _symbol(declaration.element, declaration.handle, SymbolKind.ROS, f"{declaration.kind} {shown}".rstrip())
+
+
+def _thread(thread: Thread) -> DocumentSymbol:
+    return _symbol(thread.element, thread.server, SymbolKind.THREAD, "action thread", _chart(thread.chart))
+
+
+def _state(state: State) -> DocumentSymbol:
+    return _symbol(state.element, state.id, SymbolKind.STATE, "", map(_handler, state.handlers))
+
+
+def _handler(handler: Handler) -> DocumentSymbol:
+    """Called by its event: that of a plain transition, or the element with what it refers to."""
+    element = handler.element
+    words = [each.value for each in (handler.handle, handler.child) if each]
+    if element.name != "transition":
+        words.insert(0, element.name)
+    name = handler.event.value if handler.event else " ".join(words)
+    targets = ", ".join(dict.fromkeys(target.state.value for target in handler.targets if target.state))
+    cond = f"[{' '.join(handler.cond.text.split())}]" if handler.cond else ""
+    detail = " ".join(part for part in (cond, f"→ {targets}" if targets else "") if part)
+    place = handler.event.span if handler.event else element.name_span
+    return _symbol(element, Name(name or "transition", place), SymbolKind.TRANSITION, detail)
+
+
+# --------------------------------------------------------------- other languages
+
+
+def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
+    for tree in file.trees:
+        yield _symbol(tree.element, tree.id, SymbolKind.TREE, children=map(_node, tree.roots))
+
+
+def _node(node: TreeNode) -> DocumentSymbol:
+    """Called by its name; what it is an instance of stands behind that."""
+    plugin = node.plugin.value if node.plugin else node.element.name
+    name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
+    kind = SymbolKind.CONTROL if node.children else SymbolKind.LEAF
+    return _symbol(node.element, name, kind, detail, map(_node, node.children))
+
+
+def _system(file: SystemFile) -> DocumentSymbol:
+    sections = []
+    for element in file.element.elements:
+        inputs = [
+            _symbol(entry.element, entry.src, SymbolKind.INPUT, entry.type.value if entry.type else "")
+            for entry in file.inputs
+            if _is_inside(entry.element.span, element.span)
+        ]
+        name = Name(element.name, element.name_span)
+        sections.append(_symbol(element, name, SymbolKind.SECTION, children=inputs))
+    name = Name(file.element.name, file.element.name_span)
+    return _symbol(file.element, name, SymbolKind.SYSTEM, children=sections)
+
+
+def _struct(struct: StructDeclaration) -> DocumentSymbol:
+    children = tuple(
+        DocumentSymbol(
+            member.name.value,
+            member.type.text if member.type else "",
+            SymbolKind.MEMBER,
+            member.span,
+            member.name.span,
+        )
+        for member in struct.members
+        if member.name
+    )
+    name = struct.name or Name("<struct>", struct.span)
+    return DocumentSymbol(name.value, "", SymbolKind.STRUCT, struct.span, name.span, children)
+
+
+def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
+    """From the text, not from the model: that has only the properties without mistakes."""
+    json = analysis.json(path)
+    found = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
+    for each in found.items if isinstance(found, JsonArray) else ():
+        named = members(each)
+        name, comment = named.get("name"), named.get("comment")
+        if isinstance(name, JsonString) and name.value:
+            detail = comment.value if isinstance(comment, JsonString) else ""
+            yield DocumentSymbol(name.value, detail, SymbolKind.PROPERTY, each.span, name.content_span)

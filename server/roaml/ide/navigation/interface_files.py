@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Into the definition files of ROS interfaces."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Symbol
+from roaml.ide.describe.ros import section_of
+from roaml.interfaces.registry import NotFound
+from roaml.project.analysis import Analysis
+from roaml.text import Location, Span
+
+
+def locate_ros(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """Where a type or a field is defined; None if its file is not found."""
+    if symbol.kind == "ros-type":
+        return locate_type(analysis, symbol.scope, symbol.name)
+    definition, section = section_of(analysis.registry, symbol.scope)
+    field = definition.section(section).field(symbol.name) if definition else None
+    return Location(definition.path, field.name_span) if definition and field else None
+
+
+def locate_type(analysis: Analysis, kind: str, name: str) -> Location | None:
+    """The file that defines a type, as a place at its beginning."""
+    definition = analysis.registry.resolve(kind, name)  # type: ignore[arg-type]
+    return None if isinstance(definition, NotFound) else Location(definition.path, Span(0, 0))
+
+
+def type_of_field(analysis: Analysis, symbol: Symbol) -> Location | None:
+    """The message that a field holds; None if it is no message."""
+    definition, section = section_of(analysis.registry, symbol.scope)
+    field = definition.section(section).field(symbol.name) if definition else None
+    return None if field is None or field.type.is_primitive else locate_type(analysis, "msg", field.type.name)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The outline of a JANI model: constants, variables, automata with their locations and edges, properties."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from roaml.ide.describe.property_file import formula
+from roaml.ide.json_tree import members
+from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.json import JsonArray, JsonObject, JsonString, JsonValue
+
+_LONGEST = 80
+
+
+def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
+    """The sections of a model that have something in them, in the order of the text."""
+    if not isinstance(value, JsonObject):
+        return
+    for section in value.members:
+        make = _SECTIONS.get(section.key)
+        if make is not None and isinstance(section.value, JsonArray) and section.value.items:
+            children = tuple(found for item in section.value.items if (found := make(item)) is not None)
+            detail = str(len(section.value.items))
+            yield DocumentSymbol(section.key, detail, SymbolKind.SECTION, section.span, section.key_span, children)
+
+
+def _named(item: JsonValue, kind: SymbolKind, detail: str, *children: DocumentSymbol) -> DocumentSymbol | None:
+    name = members(item).get("name")
+    if not isinstance(name, JsonString) or not name.value:
+        return None
+    return DocumentSymbol(name.value, detail, kind, item.span, name.content_span, children)
+
+
+def _variable(item: JsonValue) -> DocumentSymbol | None:
+    return _named(item, SymbolKind.VARIABLE, _type(members(item).get("type")))
+
+
+def _type(value: JsonValue | None) -> str:
+    """A type in the usual notation: `int`, `int[0..9]`, `bool[]`."""
+    if isinstance(value, JsonString):
+        return value.value
+    parts = members(value) if value is not None else {}
+    base = _type(parts.get("base"))
+    kind = parts.get("kind")
+    if isinstance(kind, JsonString) and kind.value == "array":
+        return f"{base}[]"
+    if "lower-bound" in parts or "upper-bound" in parts:
+        bounds = (_short(formula(parts[key])) if key in parts else "" for key in ("lower-bound", "upper-bound"))
+        return f"{base}[{'..'.join(bounds)}]"
+    return base
+
+
+def _action(item: JsonValue) -> DocumentSymbol | None:
+    return _named(item, SymbolKind.TRANSITION, "")
+
+
+def _property(item: JsonValue) -> DocumentSymbol | None:
+    expression = members(item).get("expression")
+    return _named(item, SymbolKind.PROPERTY, _short(formula(expression)) if expression is not None else "")
+
+
+def _automaton(item: JsonValue) -> DocumentSymbol | None:
+    parts = members(item)
+    children = [
+        *(_named(each, SymbolKind.VARIABLE, _type(members(each).get("type"))) for each in _items(parts, "variables")),
+        *(_named(each, SymbolKind.STATE, "") for each in _items(parts, "locations")),
+        *(_edge(each) for each in _items(parts, "edges")),
+    ]
+    return _named(item, SymbolKind.MACHINE, "", *(child for child in children if child is not None))
+
+
+def _edge(item: JsonValue) -> DocumentSymbol | None:
+    """Called by its action; what it leads from and to, and its guard, stand behind that."""
+    parts = members(item)
+    location, action = parts.get("location"), parts.get("action")
+    if not isinstance(location, JsonString):
+        return None
+    targets = (members(each).get("location") for each in _items(parts, "destinations"))
+    named = dict.fromkeys(each.value for each in targets if isinstance(each, JsonString))
+    guard = members(parts["guard"]).get("exp") if "guard" in parts else None
+    detail = f"{location.value} → {', '.join(named)}"
+    if guard is not None:
+        detail = f"{detail} [{_short(formula(guard))}]"
+    name = action.value if isinstance(action, JsonString) else "τ"
+    place = action if isinstance(action, JsonString) else location
+    return DocumentSymbol(name, detail, SymbolKind.TRANSITION, item.span, place.content_span)
+
+
+def _items(parts: dict[str, JsonValue], key: str) -> tuple[JsonValue, ...]:
+    value = parts.get(key)
+    return tuple(value.items) if isinstance(value, JsonArray) else ()
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+_SECTIONS: dict[str, Callable[[JsonValue], DocumentSymbol | None]] = {
+    "actions": _action,
+    "constants": _variable,
+    "variables": _variable,
+    "automata": _automaton,
+    "properties": _property,
+}

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Named things of a workspace, looked up by a part of their name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from roaml.diagnostics import Symbol
+from roaml.ide.names.lookup import systems_of
+from roaml.ide.names.occurrences import uses
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A definition. `container` is what it is a part of: a machine, a struct, an event, ..."""
+
+    symbol: Symbol
+    path: str
+    span: Span
+    container: str
+
+
+def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found, ...]:
+    """The definitions in some files whose names hold the letters of `query` in that order, whatever their case."""
+    wanted = query.casefold()
+    found: dict[tuple[str, Span, str], Found] = {}
+    for path in paths:
+        for system in systems_of(analysis, path):
+            for each in uses(analysis, path, system).all:
+                if each.defines and _matches(each.symbol.name.casefold(), wanted):
+                    entry = Found(each.symbol, path, each.span, _container(analysis, path, each.symbol))
+                    found.setdefault((path, each.span, each.symbol.kind), entry)
+    return tuple(found.values())
+
+
+def _matches(name: str, wanted: str) -> bool:
+    letters = iter(name)
+    return all(letter in letters for letter in wanted)
+
+
+def _container(analysis: Analysis, path: str, symbol: Symbol) -> str:
+    if symbol.kind in ("parameter", "member", "blackboard"):
+        return symbol.scope
+    machine = analysis.machine(path)
+    return machine.name.value if machine and machine.name and symbol.kind != "machine" else ""

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rename what stands at a caret, in all files of all systems that it reaches.
+
+A rename to a name that is not taken changes nothing but the name: the findings stay, the translation stays, and
+renaming back restores the files byte by byte. What cannot keep that promise is refused, with a reason for the user.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roaml.ide.names.lookup import Thing, Use, occurrences_at, thing_at
+from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Form
+from roaml.ide.rename.new_name import problem
+from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC, safe_name, sanitise
+from roaml.project.analysis import Analysis
+from roaml.text import Span, TextEdit
+
+_NEED_A_DEFINITION = frozenset(("state", "variable", "port", "machine", "plugin", "tree", "struct", "member", *HANDLES))
+_OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
+"""Ports that the tree fills by itself if they are called so."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """`reason` is a clause for the user."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """What is about to be renamed: where it stands, and its name as it stands there."""
+
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Renaming:
+    """The edits of each file, sorted."""
+
+    edits: Mapping[str, tuple[TextEdit, ...]]
+
+
+def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | Refusal:
+    """Whether what stands at a caret can be renamed."""
+    found, source = thing_at(analysis, path, offset), analysis.source(path)
+    if found is None or source is None:
+        return Refusal("no name stands here")
+    reason = _fixed(found)
+    if reason:
+        return Refusal(reason)
+    span = occurrences_at(analysis, path, offset)[0].span
+    return Prepared(span, source.text[span.start : span.end])
+
+
+def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | Refusal:
+    """The edits that give what stands at a caret a new name."""
+    found = thing_at(analysis, path, offset)
+    if found is None:
+        return Refusal("no name stands here")
+    new = new.strip()
+    if "topic" in found.kinds:
+        new = new.removeprefix("/")
+    reason = _fixed(found) or problem(analysis, found, new)
+    if reason:
+        return Refusal(reason)
+    edits: dict[str, list[TextEdit]] = {}
+    for use in found.uses:
+        edits.setdefault(use.path, []).append(TextEdit(use.occurrence.span, _spelled(new, use)))
+    return Renaming({each: tuple(sorted(changes)) for each, changes in edits.items()})
+
+
+def _spelled(new: str, use: Use) -> str:
+    match use.occurrence.form:
+        case Form.AS_IS:
+            return new
+        case Form.SANITISED:
+            return sanitise(new)
+        case Form.SAFE:
+            return safe_name(new)
+        case Form.WORD:
+            return re.sub(r"\W", "_", new, flags=re.ASCII)
+        case Form.FLAT:
+            return new.replace(".", "__")
+
+
+def _fixed(found: Thing) -> str:
+    """Why a thing cannot be renamed, whatever to; "" if it can."""
+    for symbol in found.symbols:
+        name = symbol.name
+        if symbol.kind in NOT_OURS:
+            return f"`{name}` is defined by ROS, not by this model"
+        if symbol.kind == "plugin" and not symbol.path:
+            return f"`{name}` is a node of BehaviorTree.CPP"
+        if symbol.kind == "port" and name in _OF_THE_NODE:
+            return f"the port `{name}` has a meaning of its own in a tree"
+        if symbol.kind == "topic" and name == CLOCK_TOPIC:
+            return f"the topic `{name}` is that of the time of ROS"
+        in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in found.uses)
+        if in_prefix and not (name[:1].isalpha() or name[:1] == "_"):
+            return f"`{name}` is spelled differently in properties"
+    if found.kinds & _NEED_A_DEFINITION and not found.definitions:
+        return f"`{found.symbols[0].name}` is not defined in this workspace"
+    return ""

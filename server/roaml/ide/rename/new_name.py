@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a thing may have a new name: the name has the right form, and nothing else has it where the thing is known.
+
+Stricter than the rules: a name that is legal but would change what another name means, here or in the translation, is
+refused as well.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.expr.types import BASE_TYPES
+from roaml.ide.names.in_machine import is_implicit
+from roaml.ide.names.lookup import Thing, systems_of, where
+from roaml.ide.names.occurrence import HANDLES
+from roaml.ide.names.occurrences import trees_of
+from roaml.language import BEHAVIOR_TREE
+from roaml.model.machine import Declaration, Machine
+from roaml.model.system import sanitise
+from roaml.model.translated import is_synchronising
+from roaml.model.typing import STATUSES
+from roaml.project.analysis import Analysis
+from roaml.rules.event_data_unavailable import EVENT_VARIABLES
+from roaml.rules.invalid_name import EVENT, RESERVED, VARIABLE, variable_problem
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
+_INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
+_MADE = re.compile(r"(topic_|srv_|action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
+"""How names begin that the translation makes by itself."""
+_INTERFACES = ("topic", "service", "action")
+_JOINED = ("variable", "parameter", "member", "event")
+"""Kinds whose names the translation joins to others with `__`."""
+
+
+def problem(analysis: Analysis, found: Thing, new: str) -> str:
+    """Why a thing cannot be called `new`, as a clause; "" if it can."""
+    for symbol in found.symbols:
+        if symbol.name == new:
+            return f"it is called `{new}` already"
+    for kind in sorted(found.kinds):
+        if reason := _form(kind, new, found):
+            return reason
+    for symbol in found.symbols:
+        for other in _neighbours(analysis, symbol):
+            if other not in found.symbols and _clashes(symbol, other, new):
+                return f"there is {_article(other.kind)} `{other.name}` already"
+        if symbol.kind == "blackboard":
+            trees = (trees_of(analysis, symbol.path, system) for system in systems_of(analysis, symbol.path))
+            if any(each.is_taken(symbol, new) for each in trees):
+                return f"there is a blackboard variable `{new}` already"
+        if handle := _handle_called(analysis, found, symbol, new):
+            return f"there is {_article(handle.kind)} `{new}` already in a machine that knows it by its name"
+    return ""
+
+
+def _handle_called(analysis: Analysis, found: Thing, symbol: Symbol, new: str) -> Declaration | None:
+    """The declaration that a handle, or an interface that is its own handle, would be taken for."""
+    if symbol.kind in HANDLES:
+        machine = analysis.machine(symbol.path)
+        return next((d for d in _declared(machine, new) if is_implicit(d)), None)
+    if symbol.kind in _INTERFACES:
+        for machine in map(analysis.machine, dict.fromkeys(use.path for use in found.uses)):
+            own = (d for d in machine.declarations if is_implicit(d)) if machine else ()
+            spans = {use.occurrence.span.end for use in found.uses if analysis.machine(use.path) is machine}
+            if any(d.handle and d.handle.span.end in spans for d in own):
+                return next(iter((*_declared(machine, new), *_declared(machine, f"/{new}"))), None)
+    return None
+
+
+def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
+    """The declarations that a machine knows by a name."""
+    return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
+
+
+def _form(kind: str, new: str, found: Thing) -> str:
+    """Why `new` cannot name any thing of a kind."""
+    what = _article(kind)
+    cannot = f"`{new}` cannot name {what}"
+    if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in found.symbols):
+        return f"{cannot}: `__` divides the parts of names in the translation"
+    right: object
+    match kind:
+        case "variable":
+            if new in EVENT_VARIABLES:
+                return f"`{new}` is what received data are called"
+            return variable_problem(new)
+        case "event":
+            right = EVENT.match(new) and not new.endswith((".valid", "_"))
+            if right and (is_synchronising(new) or _MADE.match(new)):
+                return f"{cannot}: the translation calls its own events so"
+        case "parameter":
+            right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
+        case "member":
+            right = VARIABLE.match(new) and not new.endswith("_") and new != "length" and not RESERVED.match(new)
+        case "struct":
+            right = VARIABLE.match(new) and new not in BASE_TYPES and not RESERVED.match(new)
+        case "port":
+            right = VARIABLE.match(new) and not new.startswith("_") and new not in ("name", "ID", "CHILDREN_COUNT")
+        case "blackboard":
+            right = VARIABLE.match(new) and not new.startswith("_") and not new.endswith("_")
+            right = right and not RESERVED.match(new) and new not in ("name", "ID")
+        case "topic" | "service" | "action":
+            right = _INTERFACE.match(new)
+        case "machine" | "plugin":
+            right = _WORD.match(new) and not _MADE.match(new)
+            if new in BEHAVIOR_TREE.elements:
+                return f"`{new}` is a name of BehaviorTree.CPP"
+        case _:
+            right = _WORD.match(new) and new not in STATUSES
+    return "" if right else cannot
+
+
+def _neighbours(analysis: Analysis, symbol: Symbol) -> Iterator[Symbol]:
+    """The symbols of all files in which one is known."""
+    for _, uses in where(analysis, symbol):
+        yield from uses.by_symbol
+
+
+def _clashes(symbol: Symbol, other: Symbol, new: str) -> bool:
+    """Whether `symbol` could be taken for `other` if it were called `new`."""
+    if symbol.kind in _INTERFACES:
+        is_topic = symbol.kind == "topic"
+        return (
+            other.kind in _INTERFACES and (other.kind == "topic") == is_topic and sanitise(other.name) == sanitise(new)
+        )
+    if symbol.kind in HANDLES:
+        same_file = other.path == symbol.path and other.kind in HANDLES
+        both_timers = symbol.kind == other.kind == "timer"
+        return (same_file or both_timers) and other.name == new
+    if other.name != new:
+        return False
+    match symbol.kind:
+        case "machine" | "plugin":
+            return other.kind in ("machine", "plugin")
+        case "blackboard" | "tree-node":
+            return False  # `Trees.is_taken` tells; nodes of a tree may have equal names
+    return (other.kind, other.path, other.scope) == (symbol.kind, symbol.path, symbol.scope)
+
+
+def _article(kind: str) -> str:
+    word = {"machine": "state machine", "blackboard": "blackboard variable", "tree": "behavior tree"}.get(kind, kind)
+    word = word.replace("-", " ")
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"

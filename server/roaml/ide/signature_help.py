@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The function whose arguments are being typed.
+
+Works on the characters before the caret: an expression that is not finished has no syntax tree to speak of.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from roaml.expr.operators import FUNCTIONS
+from roaml.ide.describe import language as describe_language
+from roaml.ide.syntax import expression_at, xml_file
+from roaml.project.analysis import Analysis
+
+TRIGGERS = ("(", ",")
+
+_TOKEN = re.compile(r"'(?:\\.|[^'\\])*(?:'|\Z)|\"(?:\\.|[^\"\\])*(?:\"|\Z)|[()\[\]{},]", re.DOTALL)
+_CALLED = re.compile(r"Math\s*\.\s*(\w+)\s*\Z")
+_PAIRS = {")": "(", "]": "[", "}": "{"}
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A function of `Math`.
+
+    Attributes:
+        label: as it is called.
+        parameters: where they stand in `label`.
+        active: the one that is being typed; None if there are none, or no more.
+        documentation: Markdown.
+    """
+
+    label: str
+    parameters: tuple[tuple[int, int], ...]
+    active: int | None
+    documentation: str
+
+
+def signature_help(analysis: Analysis, path: str, offset: int) -> Signature | None:
+    """What is called at a caret; None outside of all calls of known functions."""
+    file = xml_file(analysis, path)
+    if file is None:
+        return None
+    # Blanks at the end of a value without closing quote are no part of it.
+    typed = len(file.document.text[:offset].rstrip())
+    expression = expression_at(file, offset) or expression_at(file, typed)
+    if expression is None:
+        return None
+    source = expression.source
+    before = sum(source.offset(index) < offset for index in range(len(source.text)))
+    name, commas = _innermost_call(source.text[:before])
+    function = FUNCTIONS.get(name)
+    if function is None:
+        return None
+    label = describe_language.signature(function)
+    at, spans = label.index("(") + 1, []
+    for parameter in function.parameters:
+        start = label.index(parameter, at)
+        at = start + len(parameter)
+        spans.append((start, at))
+    active = commas if commas < len(spans) else None
+    return Signature(label, tuple(spans), active, function.documentation)
+
+
+def _innermost_call(text: str) -> tuple[str, int]:
+    """The function of `Math` whose parentheses are open at the end of `text`, and the commas in them; "" if none is."""
+    opened: list[tuple[str, str, int]] = []
+    for token in _TOKEN.finditer(text):
+        match token[0]:
+            case "(" | "[" | "{" as opening:
+                called = _CALLED.search(text, 0, token.start()) if opening == "(" else None
+                opened.append((opening, called[1] if called else "", 0))
+            case ")" | "]" | "}" as closing:
+                while opened and opened.pop()[0] != _PAIRS[closing]:
+                    pass
+            case "," if opened:
+                bracket, name, commas = opened[-1]
+                opened[-1] = (bracket, name, commas + 1)
+    return next(((name, commas) for _, name, commas in reversed(opened) if name), ("", 0))

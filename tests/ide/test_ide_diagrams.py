@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of machines, trees and systems, with the places that their parts stand for."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from ide_models import CORNERS, ROBOT, load, system_file
+
+from fixture import split_files
+from roaml.ide.diagrams import EdgeKind, NodeKind, Picture, machine_picture, ros_picture, tree_picture
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+
+CONTRACT = Path(__file__).parents[2] / "vscode-extension/src/pictures/contract.ts"
+
+MACHINE = """\
+<ascxml name="Robot" version="1.0" initial="idle">
+  <ros_topic_subscriber name="go" topic="/go" type="std_msgs/Bool"/>
+  <ros_action_server name="walk" action_name="/walk" type="example_interfaces/Fibonacci"/>
+  <state id="idle">
+    <ros_topic_callback name="go" cond="_msg.data
+        &amp;&amp; true" target="busy"/>
+    <transition event="stop" target="idle"/>
+    <transition event="log"/>
+    <transition event="gone" target="nowhere"/>
+  </state>
+  <state id="busy">
+    <transition><target id="idle" prob="0.25"/><target id="busy"/></transition>
+    <bt_tick target="idle"/>
+  </state>
+  <state id="idle"><transition event="twice" target="busy"/></state>
+  <state><transition event="x" target="busy"/></state>
+  <ros_action_thread name="walk" n_threads="3">
+    <state id="idle"><transition target="idle"/></state>
+  </ros_action_thread>
+</ascxml>
+"""
+
+
+def shown(picture: Picture | None) -> list[str]:
+    return [] if picture is None else [*_nodes(picture), *_edges(picture)]
+
+
+def _nodes(picture: Picture) -> Iterator[str]:
+    for node in picture.nodes:
+        parts = (node.kind.value, node.label, *node.details, f"in {node.parent}" if node.parent else "")
+        yield " | ".join(filter(None, (*parts, "initial" if node.initial else "")))
+
+
+def _edges(picture: Picture) -> Iterator[str]:
+    labels = {node.id: f"{node.parent}/{node.label}" if node.parent else node.label for node in picture.nodes}
+    for edge in picture.edges:
+        way = f"{labels[edge.source]} -> {labels[edge.target]}"
+        yield " | ".join((way, edge.kind.value, *edge.labels, *(("by chance",) if edge.probabilistic else ())))
+
+
+def text_at(analysis: Analysis, place: Location | None) -> str:
+    source = analysis.source(place.path) if place else None
+    return "" if source is None or place is None else source.text[place.span.start : place.span.end]
+
+
+def test_machine(tmp_path: Path) -> None:
+    analysis = load(tmp_path, {"robot.ascxml": MACHINE})
+    picture = machine_picture(analysis, str(tmp_path / "robot.ascxml"))
+    assert picture is not None
+    assert picture.title == "Robot"
+    thread = picture.nodes[2].id
+    assert shown(picture) == [
+        "state | idle | log | initial",
+        "state | busy",
+        "thread | walk | 3 threads",
+        f"state | idle | in {thread}",
+        "idle -> busy | ros | topic_callback go | [_msg.data && true]",
+        "idle -> idle | event | stop",
+        "busy -> idle | eventless | p = 0.25 | by chance",
+        "busy -> busy | eventless | otherwise | by chance",
+        "busy -> idle | bt | tick",
+        f"{thread}/idle -> {thread}/idle | eventless",
+    ]
+    places = [text_at(analysis, part.place) for part in (*picture.nodes, *picture.edges)]
+    assert [place.split()[0] for place in places[:4]] == ["<state", "<state", "<ros_action_thread", "<state"]
+    assert places[4].startswith('<ros_topic_callback name="go"')
+    assert places[6] == '<target id="idle" prob="0.25"/>'
+
+
+def test_tree(tmp_path: Path) -> None:
+    analysis = load(tmp_path, split_files(ROBOT))
+    for file in ("main.xml", "tree.xml", "plugin.ascxml"):
+        picture = tree_picture(analysis, str(tmp_path / file))
+        assert picture is not None
+        assert picture.title == "tree.xml"
+        assert shown(picture) == [
+            "control | Sequence | initial",
+            "action | Walk | goal = {g} | out = {g} | topic =  /a/b ",
+            "action | w : Walk | goal = {g} | out = {Sub__own} | topic = /c",
+            "variable | g",
+            "variable | Sub__own",
+            "Sequence -> Walk | child",
+            "Sequence -> w : Walk | child",
+            "g -> Walk | reads | goal",
+            "Walk -> g | writes | out",
+            "g -> w : Walk | reads | goal",
+            "w : Walk -> Sub__own | writes | out",
+        ]
+        assert text_at(analysis, picture.nodes[1].place).startswith('<Walk goal="{g}"')
+        assert text_at(analysis, picture.nodes[2].place).startswith('<Action ID="Walk"')
+        assert text_at(analysis, picture.nodes[3].place) == 'goal="{g}"'
+
+
+def test_tree_alone(tmp_path: Path) -> None:
+    """What no system names is drawn as far as it is known."""
+    tree = """\
+<root BTCPP_format="4"><BehaviorTree ID="T"><Inverter><Fallback>
+  <Condition ID="Full" level="{level}"/><Fill to="{level}"/><Loop><Wait/></Loop>
+</Fallback></Inverter></BehaviorTree><TreeNodesModel><Condition ID="Wait"/></TreeNodesModel></root>
+"""
+    analysis = load(tmp_path, {"tree.xml": tree})
+    assert shown(tree_picture(analysis, str(tmp_path / "tree.xml"))) == [
+        "decorator | Inverter | initial",
+        "control | Fallback",
+        "condition | Full | level = {level}",
+        "action | Fill | to = {level}",
+        "control | Loop",
+        "condition | Wait",
+        "variable | level",
+        "Inverter -> Fallback | child",
+        "Fallback -> Full | child",
+        "Fallback -> Fill | child",
+        "Fallback -> Loop | child",
+        "Loop -> Wait | child",
+        "level -> Full | reads | level",
+        "level -> Fill | reads | to",
+    ]
+
+
+def test_ros(tmp_path: Path) -> None:
+    files = split_files(ROBOT)
+    files["main.xml"] = system_file(
+        "behavior_tree bt.cpp-xml tree.xml",
+        "behavior_tree bt-plugin-ascxml plugin.ascxml",
+        "node_models node-ascxml a.ascxml",
+        "node_models node-ascxml b.ascxml",
+        "data_declarations xml types.xml",
+    )
+    files["b.ascxml"] = """\
+<ascxml name="B" version="1.0" initial="s">
+  <ros_service_client name="ask" service_name="/ask" type="std_srvs/Trigger"/>
+  <ros_action_server name="act" action_name="/act" type="example_interfaces/Fibonacci"/>
+  <state id="s"><transition event="go" target="s"/></state>
+</ascxml>
+"""
+    analysis = load(tmp_path, files)
+    picture = ros_picture(analysis, str(tmp_path / "main.xml"))
+    assert shown(picture) == [
+        "node | A",
+        "node | B",
+        "plugin | Walk",
+        "topic | /a/b | std_msgs/Int32",
+        "topic | /c | std_msgs/Int32",
+        "service | /ask | std_srvs/Trigger",
+        "action-interface | /act | example_interfaces/Fibonacci",
+        "Walk -> /a/b | publishes",
+        "/a/b -> A | subscribes",
+        "Walk -> /c | publishes",
+        "B -> /ask | calls",
+        "/act -> B | serves",
+        "A -> B | sends | go",
+    ]
+    assert picture is not None
+    assert text_at(analysis, picture.nodes[3].place).startswith('<ros_topic_publisher name="pub"')
+    assert ros_picture(analysis, str(tmp_path / "a.ascxml")) is None
+
+
+def test_half_typed(tmp_path: Path) -> None:
+    """Whatever is left of the files: no exception, and all that is drawn hangs together."""
+    files = split_files(CORNERS)
+    chance = random.Random(5)
+    for name, text in files.items():
+        for end in sorted(chance.sample(range(len(text)), 6)):
+            analysis = load(tmp_path, {**files, name: text[:end]})
+            for each in files:
+                for make in (machine_picture, tree_picture, ros_picture):
+                    picture = make(analysis, str(tmp_path / each))
+                    assert picture is None or _is_sound(analysis, picture)
+
+
+def _is_sound(analysis: Analysis, picture: Picture) -> bool:
+    ids = [node.id for node in picture.nodes]
+    ends = {end for edge in picture.edges for end in (edge.source, edge.target)}
+    places = [part.place for part in (*picture.nodes, *picture.edges) if part.place]
+    texts = all(text_at(analysis, place) for place in places)
+    return len(set(ids)) == len(ids) and {*ends, *(n.parent for n in picture.nodes if n.parent)} <= set(ids) and texts
+
+
+@pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", NodeKind), ("EDGE_KINDS", EdgeKind)])
+def test_contract(name: str, kinds: type[NodeKind] | type[EdgeKind]) -> None:
+    """Who draws knows the same words."""
+    found = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
+    assert found is not None
+    assert re.findall(r'"([^"]+)"', found[1]) == [kind.value for kind in kinds]

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hover, hints, lenses and signatures at places all over the conformance models."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+import conformance
+from roaml import api
+from roaml.expr.operators import FUNCTIONS
+from roaml.ide.code_lens import counted, lenses
+from roaml.ide.describe.markdown import plain
+from roaml.ide.hover import hover
+from roaml.ide.inlay_hints import explain, inlay_hints
+from roaml.ide.signature_help import signature_help
+from roaml.project.settings import Settings
+from roaml.text import Span
+
+MARKS = ("``", "**")
+"""What is left where marks of Markdown do not match."""
+
+
+@pytest.mark.parametrize("main", conformance.systems(), ids=conformance.label)
+def test_places(main: Path) -> None:
+    result = api.check([str(main)], (str(conformance.INTERFACES),), Settings())
+    analysis = result.snapshot.analysis
+    told = set()
+    for path in result.files:
+        text = result.source(path).text
+        for offset in range(0, len(text) + 1, 7):
+            found = hover(analysis, path, offset)
+            if found is not None:
+                assert 0 <= found.span.start <= offset <= found.span.end <= len(text)
+                told.add(found.text)
+            called = signature_help(analysis, path, offset)
+            assert called is None or called.label.split("(")[0].removeprefix("Math.") in FUNCTIONS
+        hints = inlay_hints(analysis, path, Span(0, len(text)))
+        assert all(0 <= one.offset <= other.offset <= len(text) for one, other in pairwise(hints))
+        for hint in hints:
+            assert hint.text.strip()
+            for part in hint.parts:
+                assert part.symbol is None or explain(analysis, part.symbol).text, part
+        for lens in lenses(analysis, path):
+            assert counted(analysis, lens.symbol, path).title
+    assert len(told) > 20
+    for each in told:
+        shown = plain(each)
+        assert shown
+        assert not any(mark in shown for mark in MARKS), each
+        assert max(map(len, shown.splitlines())) < 800, each
+        assert len(shown.splitlines()) < 80, each
+
+
+@pytest.mark.parametrize("main", conformance.systems(), ids=conformance.label)
+def test_every_variable_event_and_handle_is_known(main: Path) -> None:
+    """In sound models, nothing is said to be unknown, undefined or of nobody's."""
+    result = api.check([str(main)], (str(conformance.INTERFACES),), Settings())
+    for path in result.files:
+        text = result.source(path).text
+        for word in ("<data id=", "<state id=", " target=", ' location="', ' event="', " key="):
+            at = text.find(word)
+            while at >= 0:
+                found = hover(result.snapshot.analysis, path, at + len(word) + 1)
+                shown = plain(found.text) if found else ""
+                assert not any(bad in shown for bad in ("unknown", "Not defined", "Not declared")), (path, shown)
+                at = text.find(word, at + 1)
