@@ -21,7 +21,7 @@ from roaml.diagnostics import Severity
 from roaml.project import checking
 from roaml.rules.rule import FileContext, Rule
 
-SAMPLE = 400
+SAMPLE = 200
 """Cases of all strategies together."""
 
 
