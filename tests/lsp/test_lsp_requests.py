@@ -209,7 +209,7 @@ async def test_the_user_cancels_a_translation(tmp_path: Path) -> None:
 
 
 async def test_a_long_check_is_shown(tmp_path: Path) -> None:
-    write_system(tmp_path, 120)
+    write_system(tmp_path, 40)
     async with connect(tmp_path, capabilities=SHOWS, quick=0.0) as client:
         await client.until(lambda: any(map(is_over, client.progress_reports.values())))
         assert titles(client) == ["Checking models"]
