@@ -73,7 +73,11 @@ export function themes(stage: Stage): void {
             await window.run("Notifications: Clear All Notifications");
             await page.locator('.tab[data-resource-name="main (laid out).jani"]').click();
             await window.run("Explorer: Focus on Outline View");
-            await page.locator(".outline-pane .monaco-list-row", { hasText: "automata" }).waitFor();
+            const outline = page.locator(".pane", { has: page.locator(".outline-pane") });
+            await outline.locator(".monaco-list-row", { hasText: "topic_battery_msg.valid" }).waitFor();
+            await outline.locator(".pane-header").getByRole("button", { name: "Collapse All" }).click();
+            await outline.locator(".monaco-list-row", { hasText: "automata" }).waitFor();
+            await page.mouse.move(640, 400);
             await window.screenshot(`translate-${theme}`, { x: 0, y: 35, width: 1280, height: 700 });
             await page.locator('.tab[data-resource-name="main (laid out).jani"] .codicon-close').click();
             await window.openFile("properties.jani");

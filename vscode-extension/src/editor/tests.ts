@@ -69,6 +69,7 @@ export class PropertyTests implements vscode.Disposable {
         const named = names
             .map((name) => suite.children.get(testId(system, name)))
             .filter((item) => item !== undefined);
+        if (named.length === 0) await reveal(suite);
         const none = new vscode.CancellationTokenSource();
         await this.run(new vscode.TestRunRequest(named.length > 0 ? named : [suite]), none.token);
         none.dispose();
@@ -265,4 +266,10 @@ function rangeOf({ start, end }: Property["range"]): vscode.Range {
 /** Markdown takes the brackets of an interval for a sign. */
 function escaped(text: string): string {
     return text.replaceAll(/[\\`*_{}[\]()#+\-.!<>|]/g, "\\$&");
+}
+
+/** Expand a system in the Test Explorer, so that what comes of its properties is seen. */
+async function reveal(suite: vscode.TestItem): Promise<void> {
+    const [first] = [...suite.children];
+    if (first) await vscode.commands.executeCommand("vscode.revealTestInExplorer", first[1]);
 }
