@@ -3,15 +3,22 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 from hypothesis import settings
 
 import conformance
+from examples import TIMES, examples
 
 # How long an example takes says more about what else the machine does than about the code.
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
+settings.register_profile("suite", deadline=None, derandomize=not TIMES, max_examples=examples(100))
+settings.load_profile("suite")
+
+# Where containers forbid it, each of the processes that tests start would compile all modules anew, for a second.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:

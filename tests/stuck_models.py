@@ -10,6 +10,24 @@ PROPERTY = """\
   "values": {"op": "Pmin", "exp": {"op": "F", "exp": "topic_delivered_msg.valid"}}, "states": {"op": "initial"}}}]}
 """
 
+
+def _switch(name: str, timer: str, rate: float, states: tuple[str, str]) -> str:
+    """The file of a machine that a timer moves to and fro."""
+    one, other = states
+    return f"""\
+-- {name.lower()}.ascxml --
+<ascxml name="{name}" version="1.0" initial="{one}">
+    <ros_time_rate name="{timer}" rate_hz="{rate}" />
+    <state id="{one}">
+        <ros_rate_callback name="{timer}" target="{other}" />
+    </state>
+    <state id="{other}">
+        <ros_rate_callback name="{timer}" target="{one}" />
+    </state>
+</ascxml>
+"""
+
+
 HOSPITAL = (
     """\
 -- main.xml --
@@ -126,26 +144,10 @@ HOSPITAL = (
         </ros_rate_callback>
     </state>
 </ascxml>
--- door.ascxml --
-<ascxml name="Door" version="1.0" initial="open">
-    <ros_time_rate name="draught" rate_hz="0.2" />
-    <state id="open">
-        <ros_rate_callback name="draught" target="shut" />
-    </state>
-    <state id="shut">
-        <ros_rate_callback name="draught" target="open" />
-    </state>
-</ascxml>
--- lift.ascxml --
-<ascxml name="Lift" version="1.0" initial="down">
-    <ros_time_rate name="move" rate_hz="0.25" />
-    <state id="down">
-        <ros_rate_callback name="move" target="up" />
-    </state>
-    <state id="up">
-        <ros_rate_callback name="move" target="down" />
-    </state>
-</ascxml>
+"""
+    + _switch("Door", "draught", 0.2, ("open", "shut"))
+    + _switch("Lift", "move", 0.25, ("down", "up"))
+    + """\
 -- nurse.ascxml --
 <ascxml name="Nurse" version="1.0" initial="wait">
     <ros_topic_subscriber name="delivered" topic="/delivered" type="std_msgs/Bool" />
@@ -230,3 +232,21 @@ def system(machines: dict[str, str], tree: str = "", more: str = "") -> dict[str
     files["main.xml"] = f"<roaml>{parameters}{listed}{nodes}{_PROPERTIES}</roaml>\n"
     files["properties.jani"] = '{"properties": []}\n'
     return files
+
+
+CROSSED = system(
+    {
+        name: f"""go
+<ros_service_client name="ask" service_name="/{asked}" type="std_srvs/Empty" />
+<ros_service_server name="serve" service_name="/{served}" type="std_srvs/Empty" />
+<state id="go"><transition target="wait"><ros_service_send_request name="ask" /></transition></state>
+<state id="wait"><ros_service_handle_response name="ask" target="free" /></state>
+<state id="free">
+<ros_service_handle_request name="serve" target="free"><ros_service_send_response name="serve" />
+</ros_service_handle_request>
+</state>
+"""
+        for name, asked, served in (("A", "b", "a"), ("B", "a", "b"))
+    }
+)
+"""Each machine asks the other one, and serves when it has been answered. There is no clock."""

@@ -13,17 +13,15 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, TypeAlias
 
 from bench.report import listed
+from patience import PATIENCE
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
-PATIENCE = 60
-"""Seconds to wait for an answer before giving up."""
-
 
 Wanted: TypeAlias = Callable[[dict[str, Any]], bool]
 """Whether a message is waited for."""
@@ -35,11 +33,11 @@ class Server:
     capabilities: what it says it can do.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, command: Sequence[str] = COMMAND) -> None:
         pipe = subprocess.PIPE
         self.started = time.perf_counter()
         self.capabilities: dict[str, Any] = {}
-        self._process = subprocess.Popen(COMMAND, stdin=pipe, stdout=pipe)
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe)
         self._answers: queue.Queue[tuple[float, dict[str, Any]]] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -159,8 +157,8 @@ def _bodies(stream: IO[bytes]) -> Iterator[tuple[float, bytes]]:
 
 
 @contextmanager
-def started() -> Iterator[Server]:
-    server = Server()
+def started(command: Sequence[str] = COMMAND) -> Iterator[Server]:
+    server = Server(command)
     try:
         yield server
     finally:

@@ -8,7 +8,7 @@ import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -16,12 +16,15 @@ import pytest
 from command import Command
 
 import clock
+import prefork
 from as2fm_lsp.write import PREFIX, write_file
 
 INSTALLED = str(Path(sys.executable).parent / "as2fm-lsp")
 
 
-def call(folder: Path, *arguments: str, out: str = os.devnull, size: int = -1, **more: str) -> tuple[int, str]:
+def call(
+    folder: Path, *arguments: str, program: Sequence[str], out: str = os.devnull, size: int = -1, **more: str
+) -> tuple[int, str]:
     """Status and standard error of a command that writes to `out` and, if `size` is given, no longer files."""
 
     def limit() -> None:
@@ -30,7 +33,7 @@ def call(folder: Path, *arguments: str, out: str = os.devnull, size: int = -1, *
 
     with open(out, "wb") as stdout:
         done = subprocess.run(
-            [INSTALLED, *arguments],
+            [*program, *arguments],
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=stdout,
@@ -59,14 +62,26 @@ PRINTING = (
     ("verify", "main.xml", "--max-traces", "100", "--format", "junit"),
     ("verify", "--help"),
 )
+NO_SPACE = (2, "as2fm-lsp: standard output: No space left on device\n")
 
 
 @pytest.mark.parametrize("arguments", PRINTING, ids=" ".join)
 @pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
 def test_standard_output_that_is_full(tmp_path: Path, arguments: tuple[str, ...], unbuffered: str) -> None:
     clock.write(tmp_path)
-    found = call(tmp_path, *arguments, out="/dev/full", PYTHONUNBUFFERED=unbuffered)
-    assert found == (2, "as2fm-lsp: standard output: No space left on device\n")
+    found = call(tmp_path, *arguments, program=prefork.command(), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
+    assert found == NO_SPACE
+
+
+@pytest.mark.parametrize("arguments", [PRINTING[0], ("--help",)], ids=" ".join)
+@pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
+def test_standard_output_that_is_full_at_the_end_of_the_interpreter(
+    tmp_path: Path, arguments: tuple[str, ...], unbuffered: str
+) -> None:
+    """The same with a process that Python itself starts and ends."""
+    clock.write(tmp_path)
+    found = call(tmp_path, *arguments, program=(INSTALLED,), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
+    assert found == NO_SPACE
 
 
 @pytest.mark.parametrize(("arguments", "status"), [(("--check", "main.xml"), 1), (("verfy", "x"), 2)], ids=["1", "2"])
@@ -113,7 +128,7 @@ def test_a_disk_that_is_full(tmp_path: Path, arguments: tuple[str, ...], named: 
     (tmp_path / "old/clock.ascxml").rename(tmp_path / "old/clock.scxml")
     (tmp_path / "old/clock.scxml").write_text(MIGRATED)
     before = files(tmp_path)
-    status, err = call(tmp_path, *arguments, size=16)
+    status, err = call(tmp_path, *arguments, program=prefork.command(), size=16)
     assert (status, files(tmp_path)) == (2, before)
     (line,) = err.splitlines()
     assert line.startswith(f"as2fm-lsp: {named}")

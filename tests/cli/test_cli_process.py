@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import clock
+from patience import PATIENCE
 
 INSTALLED = (str(Path(sys.executable).parent / "as2fm-lsp"),)
 MODULE = (sys.executable, "-m", "as2fm_lsp")
@@ -35,7 +36,7 @@ def call(
         stderr=subprocess.PIPE,
         env={**os.environ, **(environment or {})},
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
 
 

@@ -5,22 +5,20 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from command import Done
 
 import clock
+import prefork
+from patience import PATIENCE
 from roaml.project.files import MAX_CHARACTERS
-
-PATIENCE = 60
-"""Seconds after which a command hangs."""
 
 
 def run(folder: Path, *arguments: str) -> Done:
     """A process of its own, which can be ended if it hangs."""
-    command = [sys.executable, "-m", "as2fm_lsp", *arguments]
+    command = [*prefork.command(), *arguments]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE, check=False)
     return Done(done.returncode, done.stdout, done.stderr)
 

@@ -27,6 +27,7 @@ from smc_models import Json, at, automaton, document, edge, op, probability, var
 import as2fm_lsp.verification.traces
 from as2fm_lsp.verification.bar import line, search_line
 from as2fm_lsp.verification.expectations import parse
+from patience import PATIENCE
 from roaml import api
 from roaml.smc.goal import Question
 from roaml.smc.lss import GREATEST, LEAST, Search, Side
@@ -295,7 +296,7 @@ def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
             assert running.poll() is None
             time.sleep(0.05)
         os.killpg(running.pid, signal.SIGINT)
-        out, err = running.communicate(timeout=30)
+        out, err = running.communicate(timeout=PATIENCE)
     assert (running.returncode, err) == (130, "")
     row = rows(out)["heads"]
     assert row["interrupted"]
@@ -314,7 +315,7 @@ def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
         while b"traces" not in seen:
             seen += os.read(ours, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=30)
+        out, _ = running.communicate(timeout=PATIENCE)
     os.close(ours)
     assert b"heads" in seen
     assert "interrupted; this is what was known by then" in out

@@ -15,8 +15,8 @@ from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any, TypeAlias
 
+from fuzz.elements import attributes_of, elements_of, piece, put
 from roaml.text import Span, decode
-from roaml.xml import Attribute, Element, parse
 from roaml.xml.escapes import escape
 
 Damage: TypeAlias = Callable[[Random, str, Sequence[str]], str]
@@ -311,18 +311,18 @@ def another_file(random: Random, text: str, others: Sequence[str]) -> str:
 
 def change_elements(random: Random, text: str, others: Sequence[str]) -> str:
     for _ in range(random.randint(1, 3)):
-        elements = _elements(text)
+        elements = elements_of(text)
         if not elements:
             break
         one = random.choice(elements).span
         other_text = random.choice([text, random.choice(others) if others else text])
-        other = random.choice(_elements(other_text) or elements[:1]).span
-        written = _cut(other_text, other)[:20_000]
+        other = random.choice(elements_of(other_text) or elements[:1]).span
+        written = piece(other_text, other)[:20_000]
         match random.randrange(6):
             case 0:
                 text = text[: one.start] + text[one.end :]
             case 1:
-                text = text[: one.end] + _cut(text, one)[:20_000] + text[one.end :]
+                text = text[: one.end] + piece(text, one)[:20_000] + text[one.end :]
             case 2:
                 text = text[: one.start] + written + text[one.end :]
             case 3:
@@ -333,40 +333,40 @@ def change_elements(random: Random, text: str, others: Sequence[str]) -> str:
             case 5:
                 depth = random.choice([1, 3, 50, 120, 400])
                 name = random.choice(elements).name
-                nested = f"<{name}>" * depth + _cut(text, one) + f"</{name}>" * depth
+                nested = f"<{name}>" * depth + piece(text, one) + f"</{name}>" * depth
                 text = text[: one.start] + nested + text[one.end :]
     return text
 
 
 def change_attributes(random: Random, text: str, others: Sequence[str]) -> str:
     for _ in range(random.randint(1, 4)):
-        attributes = _attributes(text)
+        attributes = attributes_of(text)
         if not attributes:
             break
         one = random.choice(attributes)
         other_text = random.choice([text, random.choice(others) if others else text])
-        other = random.choice(_attributes(other_text) or attributes)
+        other = random.choice(attributes_of(other_text) or attributes)
         match random.randrange(7):
             case 0:
                 text = text[: one.span.start] + text[one.span.end :]
             case 1:
-                text = text[: one.span.end] + " " + _cut(text, one.span) + text[one.span.end :]
+                text = text[: one.span.end] + " " + piece(text, one.span) + text[one.span.end :]
             case 2:
-                text = _put(text, one.name_span, other.name)
+                text = put(text, one.name_span, other.name)
             case 3:
-                text = _put(text, one.value_span, escape(escape(other.value), "'"))
+                text = put(text, one.value_span, escape(escape(other.value), "'"))
             case 4:
-                text = _put(text, one.value_span, escape(escape(random.choice(PIECES)), "'"))
+                text = put(text, one.value_span, escape(escape(random.choice(PIECES)), "'"))
             case 5:
-                text = _put(text, one.value_span, random.choice([random.choice(PIECES), "", " ", one.value * 30]))
+                text = put(text, one.value_span, random.choice([random.choice(PIECES), "", " ", one.value * 30]))
             case 6:
-                text = text[: one.span.end] + " " + _cut(other_text, other.span) + text[one.span.end :]
+                text = text[: one.span.end] + " " + piece(other_text, other.span) + text[one.span.end :]
     return text
 
 
 def swap_values(random: Random, text: str, others: Sequence[str]) -> str:
     """Values of attributes of one name, or of any, changed for each other."""
-    attributes = _attributes(text)
+    attributes = attributes_of(text)
     if len(attributes) < 2:
         return text
     one = random.choice(attributes)
@@ -376,7 +376,13 @@ def swap_values(random: Random, text: str, others: Sequence[str]) -> str:
         return text
     parts = (text[: first.value_span.start], text[first.value_span.end : second.value_span.start])
     return "".join(
-        (parts[0], _cut(text, second.value_span), parts[1], _cut(text, first.value_span), text[second.value_span.end :])
+        (
+            parts[0],
+            piece(text, second.value_span),
+            parts[1],
+            piece(text, first.value_span),
+            text[second.value_span.end :],
+        )
     )
 
 
@@ -398,25 +404,25 @@ _EXPRESSIONS = (
 
 def change_expressions(random: Random, text: str, others: Sequence[str]) -> str:
     for _ in range(random.randint(1, 3)):
-        values = [a.value_span for a in _attributes(text) if a.name in _EXPRESSIONS]
+        values = [a.value_span for a in attributes_of(text) if a.name in _EXPRESSIONS]
         if not values:
             break
         span = random.choice(values)
-        names = sorted({a.value for a in _attributes(text) if a.name in ("id", "name", "location")} or {"x"})
+        names = sorted({a.value for a in attributes_of(text) if a.name in ("id", "name", "location")} or {"x"})
         at = random.randint(span.start, span.end)
         new = _expression(random, names, random.randint(0, 6))
         match random.randrange(5):
             case 0:
-                text = _put(text, span, new)
+                text = put(text, span, new)
             case 1:
-                text = _put(text, Span(at, at), random.choice([*OPERATORS, *OPERANDS, *NUMBERS]))
+                text = put(text, Span(at, at), random.choice([*OPERATORS, *OPERANDS, *NUMBERS]))
             case 2:
-                text = _put(text, span, f"{_cut(text, span)} {random.choice(OPERATORS)} {new}")
+                text = put(text, span, f"{piece(text, span)} {random.choice(OPERATORS)} {new}")
             case 3:
-                text = _put(text, Span(at, span.end), "")
+                text = put(text, Span(at, span.end), "")
             case 4:
-                text = _put(
-                    text, span, f"{_cut(text, span)}{random.choice(['.', '[', '(', '.x', '[0]', '.length', '()'])}"
+                text = put(
+                    text, span, f"{piece(text, span)}{random.choice(['.', '[', '(', '.x', '[0]', '.length', '()'])}"
                 )
     return text
 
@@ -448,10 +454,12 @@ def _expression(random: Random, names: Sequence[str], depth: int) -> str:
 
 
 def change_types(random: Random, text: str, others: Sequence[str]) -> str:
-    values = [a.value_span for a in _attributes(text) if a.name in ("type", "src", "path", "event", "topic", "target")]
+    values = [
+        a.value_span for a in attributes_of(text) if a.name in ("type", "src", "path", "event", "topic", "target")
+    ]
     if not values:
         return change_words(random, text, others)
-    return _put(text, random.choice(values), random.choice([*TYPES, *NAMES]))
+    return put(text, random.choice(values), random.choice([*TYPES, *NAMES]))
 
 
 # ------------------------------------------------------------------------ JSON
@@ -577,22 +585,5 @@ def _range(random: Random, text: str) -> tuple[int, int]:
 
 
 def _value(random: Random, text: str) -> tuple[int, int]:
-    attributes = _attributes(text)
+    attributes = attributes_of(text)
     return random.choice(attributes).value_span if attributes else _range(random, text)
-
-
-def _elements(text: str) -> list[Element]:
-    root = parse(text).root
-    return list(root.walk()) if root is not None else []
-
-
-def _attributes(text: str) -> list[Attribute]:
-    return [attribute for element in _elements(text) for attribute in element.attributes]
-
-
-def _cut(text: str, span: Span) -> str:
-    return text[span.start : span.end]
-
-
-def _put(text: str, span: Span, new: str) -> str:
-    return text[: span.start] + new + text[span.end :]

@@ -24,9 +24,7 @@ from typing import IO, Any
 from fuzz.limits import OutOfTime, limited
 from fuzz.strategies import strategies
 from fuzz.strategy import Failure
-
-PATIENCE = 60.0
-"""Seconds on the clock: much more than a case gets on the processor, as the machine may be busy."""
+from patience import PATIENCE
 
 CASES_OF_A_PROCESS = 400
 """After so many cases a process is replaced, so that what one case leaves behind does not add up for ever."""

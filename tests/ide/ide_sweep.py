@@ -56,7 +56,8 @@ class System:
         self.files = result.files
         self.snapshot: Snapshot = result.snapshot
         self.findings = self._findings(result, "", "")
-        self.jani = self._jani({})
+        jani = self._jani(result)
+        self.model = None if jani is None else _canonical(jani)
 
     def check(self, texts: Mapping[str, str]) -> api.CheckResult:
         return api.check([self.main], self.ros_paths, Settings(), texts)
@@ -88,10 +89,10 @@ class System:
         gone, came = _differences(self.findings, self._findings(result, FRESH, symbol.name, renaming.edits))
         if gone or came:
             yield f"findings: {gone} became {came}"
-        jani = self._jani(changed)
+        jani = self._jani(result)
         spellings = {symbol.name, sanitise(symbol.name), safe_name(symbol.name), symbol.name.replace(".", "__")}
         spellings.add(re.sub(r"\W", "_", symbol.name, flags=re.ASCII))
-        if self.jani is not None and not any(_same(self.jani, jani, spelling) for spelling in spellings):
+        if self.model is not None and not any(_same(self.model, jani, spelling) for spelling in spellings):
             yield "the translation differs"
         yield from self._back(case, renaming, result.snapshot, changed)
 
@@ -121,9 +122,9 @@ class System:
             found.append((each.path, str(line), each.code, each.severity.label, message))
         return sorted(found)
 
-    def _jani(self, texts: Mapping[str, str]) -> str | None:
+    def _jani(self, result: api.CheckResult) -> str | None:
         try:
-            return "".join(write(api.to_jani(api.load(self.main, self.ros_paths, Settings(), texts))))
+            return "".join(write(api.to_jani(api.loaded(result.snapshot, self.main))))
         except api.ModelError:
             return None
 
@@ -133,9 +134,9 @@ def _differences(before: list[tuple[str, ...]], after: list[tuple[str, ...]]) ->
     return gone, [" ".join(each[1:]) for each in after if each not in before]
 
 
-def _same(before: str, after: str | None, old: str) -> bool:
-    """Whether two translations are the same but for a name and what is ordered by names."""
-    return after is not None and _canonical(after.replace(FRESH, old)) == _canonical(before)
+def _same(before: object, after: str | None, old: str) -> bool:
+    """Whether a translation is the same as one in canonical form, but for a name and what is ordered by names."""
+    return after is not None and _canonical(after.replace(FRESH, old)) == before
 
 
 def _canonical(jani: str) -> object:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import examples
 from fuzz.corpus import Model, snippets, systems
 from roaml import api
 from roaml.ide.formatting import can_format, format_edits
@@ -32,7 +33,7 @@ def model(number: int) -> Model:
 
 
 @given(MODELS, st.integers(), LAYOUTS)
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: Layout) -> None:
     chance = random.Random(seed)
     each = model(number)

@@ -9,6 +9,7 @@ import sys
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 from lsprotocol import types
 from pygls.protocol import default_converter
@@ -16,10 +17,15 @@ from pygls.uris import to_fs_path
 from pytest_lsp import LanguageClient
 from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, register_lsp_features
 
-COMMAND = (sys.executable, "-m", "as2fm_lsp")
+import prefork
+from patience import PATIENCE
+
+STARTED = (sys.executable, "-m", "as2fm_lsp")
+"""The server as an editor starts it. Tests of anything but its start use `prefork.command()`, which is quick."""
 QUICK = "from as2fm_lsp import __main__, diagnostics; diagnostics.QUICK = {}; __main__.main()"
-PATIENCE = 120
-"""Seconds to wait for a server: other work on the machine makes it slow, not wrong."""
+
+REFRESHES = (types.WORKSPACE_CODE_LENS_REFRESH, types.WORKSPACE_INLAY_HINT_REFRESH)
+"""Requests to ask again; `Client.refreshed` lists those that have come."""
 
 PULLS = types.ClientCapabilities(
     text_document=types.TextDocumentClientCapabilities(diagnostic=types.DiagnosticClientCapabilities())
@@ -37,9 +43,12 @@ class Client(LanguageClient):
         super().__init__(converter_factory=default_converter)
         self.published: dict[str, types.PublishDiagnosticsParams] = {}
         self.history: list[types.PublishDiagnosticsParams] = []
+        self.refreshed: list[str] = []
         self.news = asyncio.Event()
         self.answers = asyncio.Event()
         features = DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published}
+        features |= {method: _with_news(features[method]) for method in (types.PROGRESS, types.WINDOW_SHOW_MESSAGE)}
+        features |= {method: _refresh(method) for method in REFRESHES}
         register_lsp_features(self, features | ({types.WORKSPACE_CONFIGURATION: _late} if is_slow else {}))
 
     # ------------------------------------------------------------- documents
@@ -89,14 +98,20 @@ class Client(LanguageClient):
         actions = await self.text_document_code_action_async(params)
         return [action for action in actions or () if isinstance(action, types.CodeAction)]
 
-    # ----------------------------------------------------------- diagnostics
+    # ---------------------------------------------------------------- events
 
-    async def until(self, reached: Callable[[], bool], seconds: float = 20) -> None:
-        """Wait for published diagnostics until a condition holds."""
-        end = asyncio.get_running_loop().time() + seconds
+    async def until(self, reached: Callable[[], object]) -> None:
+        """Wait for what the server sends of itself (diagnostics, progress, messages, requests to ask again) until a
+        condition holds.
+
+        Raises:
+            asyncio.TimeoutError: it does not come.
+        """
         while not reached():
             self.news.clear()
-            await asyncio.wait_for(self.news.wait(), end - asyncio.get_running_loop().time())
+            await asyncio.wait_for(self.news.wait(), PATIENCE)
+
+    # ----------------------------------------------------------- diagnostics
 
     async def until_codes(self, path: Path | str, *codes: str) -> Sequence[types.Diagnostic]:
         """Wait until the diagnostics of a file have these codes."""
@@ -138,6 +153,24 @@ def _published(client: Client, params: types.PublishDiagnosticsParams) -> None:
     client.news.set()
 
 
+def _with_news(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any], None]:
+    """A feature of pytest-lsp that wakes who waits for news."""
+
+    def take(client: Client, params: Any) -> None:
+        feature(client, params)
+        client.news.set()
+
+    return take
+
+
+def _refresh(method: str) -> Callable[[Client, object], None]:
+    def note(client: Client, _: object) -> None:
+        client.refreshed.append(method)
+        client.news.set()
+
+    return note
+
+
 async def _late(client: Client, params: types.ConfigurationParams) -> object:
     await client.answers.wait()
     return DEFAULT_CLIENT_FEATURES[types.WORKSPACE_CONFIGURATION](client, params)
@@ -158,7 +191,7 @@ async def connect(
     if settings is not None:
         client.set_configuration({"as2fm": settings})
         capabilities.workspace = types.WorkspaceClientCapabilities(configuration=True)
-    await client.start_io(*(COMMAND if quick is None else (sys.executable, "-c", QUICK.format(quick))))
+    await client.start_io(*(prefork.command() if quick is None else (sys.executable, "-c", QUICK.format(quick))))
     try:
         await client.initialize_session(
             types.InitializeParams(
@@ -221,9 +254,14 @@ class RawServer:
         return self._process.returncode, list(_messages(out)), err.decode()
 
 
-async def start_raw(*arguments: str) -> RawServer:
+async def start_raw(*arguments: str, command: Sequence[str] = ()) -> RawServer:
+    """
+    Args:
+        command: what is started, if not a fork.
+    """
     pipe = asyncio.subprocess.PIPE
-    process = await asyncio.create_subprocess_exec(*COMMAND, *arguments, stdin=pipe, stdout=pipe, stderr=pipe)
+    command = command or prefork.command()
+    process = await asyncio.create_subprocess_exec(*command, *arguments, stdin=pipe, stdout=pipe, stderr=pipe)
     return RawServer(process)
 
 

@@ -18,6 +18,7 @@ from typing import Any, TypeAlias
 from lsprotocol import types
 from pygls.uris import to_fs_path
 
+import prefork
 from as2fm_lsp.convert import Converter
 from bench.server import Server, is_answer, started
 from roaml import api
@@ -185,7 +186,7 @@ class Sweep:
 
     def failures(self) -> Iterator[str]:
         """What does not hold."""
-        with started() as server:
+        with started(prefork.command()) as server:
             server.initialize(
                 self.main.parent,
                 capabilities=CAPABILITIES,

@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 
-from client import Client, connect
+from client import REFRESHES, Client, connect
 from ide_models import ROBOT, load
 from lsprotocol import types
 from test_lsp_navigate import place
@@ -72,8 +71,9 @@ async def test_settings_say_which_are_shown(tmp_path: Path) -> None:
     load(tmp_path, split_files(ROBOT))
     settings: dict[str, object] = {"inlayHints": {"types": False, "ports": True}, "codeLens": False}
     async with connect(tmp_path, settings=settings) as client:
+        # The server asks for the settings once it is initialised, and goes on meanwhile.
         while [label(each) for each in await hints(client, tmp_path / "a.ascxml")] != ["(to : Pose)", " → /a/b"]:
-            await asyncio.sleep(0.01)  # the server asks for the settings once it is initialised
+            continue
         assert " : int32" in [each.label for each in await hints(client, tmp_path / "tree.xml")]
         lenses = types.CodeLensParams(document(tmp_path / "a.ascxml"))
         assert not await client.text_document_code_lens_async(lenses)
@@ -81,7 +81,7 @@ async def test_settings_say_which_are_shown(tmp_path: Path) -> None:
         client.set_configuration({"as2fm": {"inlayHints": False}})
         client.workspace_did_change_configuration(params)
         while await hints(client, tmp_path / "tree.xml"):
-            await asyncio.sleep(0.01)
+            continue
         assert await client.text_document_code_lens_async(lenses)
 
 
@@ -109,30 +109,18 @@ async def test_the_client_is_told_when_other_files_change_them(tmp_path: Path) -
     files = split_files(ROBOT)
     load(tmp_path, files)
     machine, plugin = tmp_path / "a.ascxml", tmp_path / "plugin.ascxml"
-    told: list[str] = []
-    news = asyncio.Event()
     async with connect(tmp_path, capabilities=capabilities()) as client:
-
-        def listen(method: str) -> None:
-            @client.feature(method)
-            def refresh(*_: object) -> None:
-                told.append(method)
-                news.set()
-
-        listen(types.WORKSPACE_INLAY_HINT_REFRESH)
-        listen(types.WORKSPACE_CODE_LENS_REFRESH)
         client.open(machine)
         client.open(plugin)
-        await asyncio.wait_for(news.wait(), 20)
+        await client.until(lambda: client.refreshed)
         # What other files do not see.
         client.replace(machine, files["a.ascxml"].replace('expr="_msg.data"', 'expr="_msg.data + nothing"'))
         await client.until_codes(machine, "undeclared-variable")
-        told.clear()
-        news.clear()
+        client.refreshed.clear()
         client.replace(machine, files["a.ascxml"].replace("/a/b", "/b/c"), version=3)
-        await asyncio.wait_for(news.wait(), 20)
+        await client.until(lambda: client.refreshed)
         await hints(client, machine)
-        assert sorted(told) == sorted([types.WORKSPACE_INLAY_HINT_REFRESH, types.WORKSPACE_CODE_LENS_REFRESH])
+        assert sorted(client.refreshed) == sorted(REFRESHES)
 
 
 async def test_signatures(tmp_path: Path) -> None:

@@ -7,14 +7,14 @@ import asyncio
 import sys
 
 import pytest
-from client import frame, start_raw
+from client import STARTED, frame, start_raw
 from lsprotocol import types
 
 INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
 
 
 async def test_shutdown_and_exit() -> None:
-    server = await start_raw()
+    server = await start_raw(command=STARTED)
     server.tell("initialize", INITIALIZE, 1)
     server.tell("initialized", {})
     server.tell("shutdown", id_=2)
@@ -25,7 +25,7 @@ async def test_shutdown_and_exit() -> None:
 
 
 async def test_exit_without_shutdown() -> None:
-    server = await start_raw("--stdio")
+    server = await start_raw("--stdio", command=STARTED)
     server.tell("initialize", INITIALIZE, 1)
     server.tell("exit")
     status, messages, log = await server.end()
@@ -44,7 +44,7 @@ async def test_exit_without_shutdown() -> None:
 )
 async def test_the_input_ends(data: bytes) -> None:
     """As when the editor has crashed: no process is left behind."""
-    server = await start_raw()
+    server = await start_raw(command=STARTED)
     server.send(data)
     status, _, _ = await server.end()
     assert status == 1

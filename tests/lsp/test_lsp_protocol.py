@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from client import RawServer, frame, start_raw
+from client import STARTED, RawServer, frame, start_raw
 
 import clock
 from as2fm_lsp import inbox, parent
@@ -218,7 +218,7 @@ async def test_an_odd_uri(tmp_path: Path, uri: str) -> None:
 async def test_it_ends_with_the_process_of_its_client() -> None:
     """Though its input stays open, as it does when another process has inherited that."""
     other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
-    server = await start_raw()
+    server = await start_raw(command=STARTED)
     server.tell("initialize", {**INITIALIZE, "processId": other.pid}, 1)
     await server.said("capabilities")
     other.kill()  # nobody asks for its status: it stays as a zombie

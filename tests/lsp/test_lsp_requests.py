@@ -175,15 +175,6 @@ def test_checkpoints_of_work_that_nobody_asked_for() -> None:
 SHOWS = types.ClientCapabilities(window=types.WindowClientCapabilities(work_done_progress=True))
 
 
-async def until(reached: Callable[[], object]) -> None:
-    """Wait for something, however busy the machine is."""
-    for _ in range(600_000):
-        if reached():
-            return
-        await asyncio.sleep(0.001)
-    raise AssertionError("it does not come")
-
-
 def titles(client: Client) -> list[str]:
     begun = (report for reports in client.progress_reports.values() for report in reports)
     return [report.title for report in begun if isinstance(report, types.WorkDoneProgressBegin)]
@@ -206,7 +197,7 @@ async def test_the_user_cancels_a_translation(tmp_path: Path) -> None:
     async with connect(capabilities=SHOWS) as client:
         params = types.ExecuteCommandParams("as2fm.translateToJani", [main.as_uri()])
         answer = asyncio.ensure_future(client.workspace_execute_command_async(params))
-        await until(lambda: token_of(client, "Translating"))
+        await client.until(lambda: token_of(client, "Translating"))
         token = token_of(client, "Translating")
         assert token is not None
         client.window_work_done_progress_cancel(types.WorkDoneProgressCancelParams(token))
@@ -218,11 +209,9 @@ async def test_the_user_cancels_a_translation(tmp_path: Path) -> None:
 
 
 async def test_a_long_check_is_shown(tmp_path: Path) -> None:
-    write_system(tmp_path, 120)
+    write_system(tmp_path, 40)
     async with connect(tmp_path, capabilities=SHOWS, quick=0.0) as client:
-        await until(
-            lambda: any(r and isinstance(r[-1], types.WorkDoneProgressEnd) for r in client.progress_reports.values())
-        )
+        await client.until(lambda: any(map(is_over, client.progress_reports.values())))
         assert titles(client) == ["Checking models"]
         (reports,) = client.progress_reports.values()
     shares = [each.percentage for each in reports[1:-1]]

@@ -15,11 +15,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from client import COMMAND, PATIENCE, frame, start_raw
+from client import frame, start_raw
 from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 
 import clock
+import prefork
+from patience import PATIENCE
 
 TOKEN = "a-secret-of-the-user"
 INITIALIZE = {"processId": None, "rootUri": None, "capabilities": {}}
@@ -41,7 +43,7 @@ async def listening(*arguments: str, **environment: str) -> AsyncIterator[Listen
     """A server, once it says that it listens."""
     pipe = asyncio.subprocess.PIPE
     process = await asyncio.create_subprocess_exec(
-        *COMMAND, *arguments, stdin=pipe, stdout=pipe, stderr=pipe, env={**os.environ, **environment}
+        *prefork.command(), *arguments, stdin=pipe, stdout=pipe, stderr=pipe, env={**os.environ, **environment}
     )
     assert process.stderr is not None
     said = ""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import prefork
 from bench.server import is_answer, started
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "delivery_robot"
@@ -18,7 +19,7 @@ def test_typed(name: str) -> None:
     path = EXAMPLE / name
     text = path.read_text(encoding="utf-8")
     uri = path.as_uri()
-    with started() as server:
+    with started(prefork.command()) as server:
         server.initialize(EXAMPLE, capabilities={"textDocument": {"diagnostic": {}}})
         asked = [
             method

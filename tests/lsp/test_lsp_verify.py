@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -153,21 +154,15 @@ async def test_the_client_is_asked_to_look_again(tmp_path: Path) -> None:
     asked = types.CodeLensWorkspaceClientCapabilities(refresh_support=True)
     capabilities = types.ClientCapabilities(workspace=types.WorkspaceClientCapabilities(code_lens=asked))
     async with connect(tmp_path, capabilities=capabilities) as client:
-        news = asyncio.Event()
-
-        @client.feature(types.WORKSPACE_CODE_LENS_REFRESH)
-        def refresh(*_: Any) -> None:
-            news.set()
-
         client.open(tmp_path / "main.xml", language="xml")
-        await asyncio.wait_for(news.wait(), 20)
+        await client.until(lambda: client.refreshed)
         for further in ({"silent": True}, {"silent": True, "seed": 1}):
-            news.clear()
+            client.refreshed.clear()
             await verify(client, tmp_path / "main.xml", ["ticks"], further)
-            await asyncio.wait_for(news.wait(), 20)
-        news.clear()
+            await client.until(lambda: client.refreshed)
+        client.refreshed.clear()
         client.open(tmp_path / "clock.ascxml", clock.CLOCK.replace("<ascxml ", "<ascxml  "))
-        await asyncio.wait_for(news.wait(), 20)
+        await client.until(lambda: client.refreshed)
 
 
 async def test_what_there_is_to_verify(tmp_path: Path) -> None:
@@ -245,17 +240,21 @@ async def test_progress_tells_the_estimate(robot: Path) -> None:
 
 
 async def until_estimate(client: Client, working: asyncio.Future[object]) -> tuple[str | int, str]:
-    """The token of the verification's progress, and an estimate that was told, however busy the machine is. The check
-    of the models may show its progress, too."""
-    for _ in range(60_000):
-        if working.done():
-            break
-        for token, reports in client.progress_reports.items():
-            for each in reports:
-                if isinstance(each, types.WorkDoneProgressReport) and "traces" in (each.message or ""):
-                    return token, str(each.message)
-        await asyncio.sleep(0.01)
+    """The token of the verification's progress, and an estimate that was told. The check of the models may show its
+    progress, too."""
+    working.add_done_callback(lambda _: client.news.set())
+    await client.until(lambda: working.done() or any(estimates(client)))
+    for found in estimates(client):
+        return found
     raise AssertionError(f"no estimate was told before the end: {await working}")
+
+
+def estimates(client: Client) -> Iterator[tuple[str | int, str]]:
+    """The estimates that were told, each with the token of its progress."""
+    for token, reports in client.progress_reports.items():
+        for each in reports:
+            if isinstance(each, types.WorkDoneProgressReport) and "traces" in (each.message or ""):
+                yield token, str(each.message)
 
 
 async def test_the_server_answers_meanwhile_and_can_be_told_to_stop(robot: Path) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TOOLS = ("sh", "dirname", "cat", "cksum", "id", "rm", "mktemp", "nice", "sed", "wc", "sleep", "grep", "sort")
+TOOLS = ("sh", "dirname", "cat", "cksum", "id", "rm", "mktemp", "nice", "sed", "wc", "sleep", "grep", "sort", "date")
 
 
 def script(path: Path, text: str) -> None:
@@ -116,8 +117,18 @@ def test_all_passes(tree: Path, tools: Path) -> None:
         "== tests; meanwhile, those of the VS Code extension",
         "== VS Code extension",
         "  ✔ it draws",
+        "== times:",
         "== all passed",
     ]
+
+
+def test_the_time_of_each_part_is_told(tree: Path, tools: Path) -> None:
+    done = run(tree / "tests/run", environment=os.environ)
+    _, _, end = done.stdout.partition("== times:\n")
+    parts = ["ruff check", "ruff format", "mypy", "tests", "VS Code extension, meanwhile"]
+    assert re.fullmatch("".join(rf"  {part}: \d+ s\n" for part in parts) + "== all passed\n", end)
+    done = run(tree / "tests/run", "tests/cli", environment=os.environ)
+    assert re.search(r"== times:\n(  [\w ]+: \d+ s\n)+== all passed\n", done.stdout)
 
 
 def test_all_that_failed_is_named_at_the_end(tree: Path) -> None:

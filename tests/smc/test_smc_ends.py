@@ -17,7 +17,7 @@ from roaml.smc.end import End
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Answer, Options, Tally
-from stuck_models import hospital, system
+from stuck_models import CROSSED, hospital, system
 from twin import plain_kernel
 
 FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
@@ -112,22 +112,6 @@ NO_CLOCK = system(
 """,
     }
 )
-CROSSED = system(
-    {
-        name: f"""go
-<ros_service_client name="ask" service_name="/{asked}" type="std_srvs/Empty" />
-<ros_service_server name="serve" service_name="/{served}" type="std_srvs/Empty" />
-<state id="go"><transition target="wait"><ros_service_send_request name="ask" /></transition></state>
-<state id="wait"><ros_service_handle_response name="ask" target="free" /></state>
-<state id="free">
-<ros_service_handle_request name="serve" target="free"><ros_service_send_response name="serve" />
-</ros_service_handle_request>
-</state>
-"""
-        for name, asked, served in (("A", "b", "a"), ("B", "a", "b"))
-    }
-)
-"""Each asks the other one, and serves when it has been answered."""
 
 
 @pytest.mark.parametrize(

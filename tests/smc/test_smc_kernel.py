@@ -16,6 +16,7 @@ from smc_models import answers, automaton, document, edge, model, op, probabilit
 from smc_random import networks
 
 import roaml.smc
+from examples import examples
 from roaml import api
 from roaml.smc import kernel, program
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE
@@ -63,7 +64,7 @@ def test_same_traces_of_the_example() -> None:
     same_traces(api.checker(api.to_jani(loaded)), traces=3, steps=400)
 
 
-@settings(max_examples=60, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_same_traces_of_random_models(written: dict[str, Any]) -> None:
     same_traces(Checker(model(written)), traces=4, steps=40)

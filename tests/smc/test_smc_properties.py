@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
+from examples import examples
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Options
@@ -85,7 +86,7 @@ def formulas() -> st.SearchStrategy[Json]:
     return st.one_of(single, both, st.builds(lambda f: op("¬", f), single | both))
 
 
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 @given(formulas(), st.lists(st.integers(0, 3), min_size=1, max_size=6), st.booleans())
 def test_path_formulas(formula: Json, labels: list[int], loop: bool) -> None:
     expected = holds(formula, labels, loop)

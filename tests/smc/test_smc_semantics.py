@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from smc_models import Json, answers, at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
+from examples import examples
 from roaml import api
 from roaml.jani.model import Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
@@ -124,7 +125,7 @@ def bools(depth: int) -> st.SearchStrategy[Any]:
     )
 
 
-@settings(max_examples=250, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(250), suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(["int", "real", "bool"]).flatmap(
     lambda type_: st.tuples(st.just(type_), {"int": ints, "real": reals, "bool": bools}[type_](2))
 ))  # fmt: skip
@@ -192,7 +193,7 @@ def never(found: Json) -> Json:
     return found
 
 
-@settings(max_examples=80, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(80), suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_networks_reach_the_states_that_are_defined(written: Json) -> None:
     found = model(never(written))

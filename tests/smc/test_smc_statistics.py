@@ -96,6 +96,17 @@ def stop(n: int, k: int, confidence: float, epsilon: float) -> tuple[float, floa
     return found if found.half_width <= epsilon else None
 
 
+def added(open_: dict[int, float], size: int, p: float) -> dict[int, float]:
+    """How probable each number of successes is after `size` further traces, of which each succeeds with `p`."""
+    chances = [math.comb(size, i) * p**i * (1 - p) ** (size - i) for i in range(size + 1)]
+    after: dict[int, float] = {}
+    for k, weight in open_.items():
+        for i, chance in enumerate(chances):
+            if weight * chance > 1e-13:
+                after[k + i] = after.get(k + i, 0.0) + weight * chance
+    return after
+
+
 @pytest.mark.parametrize("p", [0.02, 0.05, 0.08, 0.12, 0.29, 0.41, 0.5])
 def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
     """Exactly, over everything that can happen until the adaptive method stops."""
@@ -105,13 +116,7 @@ def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
     while open_:
         size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
         done += size
-        chances = [math.comb(size, i) * p**i * (1 - p) ** (size - i) for i in range(size + 1)]
-        after: dict[int, float] = {}
-        for k, weight in open_.items():
-            for i, chance in enumerate(chances):
-                if weight * chance > 1e-13:
-                    after[k + i] = after.get(k + i, 0.0) + weight * chance
-        open_ = {}
+        after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
             interval = stop(done, k, confidence, epsilon)
             if interval is None:
@@ -131,13 +136,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
     while open_:
         size = min(FIRST_BATCH, most - done)
         done += size
-        chances = [math.comb(size, i) * p**i * (1 - p) ** (size - i) for i in range(size + 1)]
-        after: dict[int, float] = {}
-        for k, weight in open_.items():
-            for i, chance in enumerate(chances):
-                if weight * chance > 1e-13:
-                    after[k + i] = after.get(k + i, 0.0) + weight * chance
-        open_ = {}
+        after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
             interval = stop(done, k, confidence, epsilon)
             if interval is None and done < most:

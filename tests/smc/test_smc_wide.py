@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
+from examples import examples
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
 from roaml.smc.explore import Explorer, TooManyChoicesError
@@ -131,7 +132,7 @@ def test_a_scheduler_is_a_function_of_the_state() -> None:
     assert len(seen) == 1
 
 
-@settings(max_examples=15, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(15), suppress_health_check=list(HealthCheck))
 @given(st.integers(2, 100), st.randoms(use_true_random=False), st.sampled_from([0, 3]))
 def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Random, scheduler: int) -> None:
     checker = Checker(model(wide_network(random, count)))

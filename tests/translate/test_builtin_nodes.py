@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from translating import lowered, translated
 
+from examples import examples
 from roaml.model.system import builtin_plugins
 from roaml.scxml.model import Network
 
@@ -85,7 +86,7 @@ def test_in_any_order(tree: Tree) -> None:
     bt_runs.of_model_in_any_order(translated(system(tree, setup)), bt_model.run(tree, setup), limit=5000)
 
 
-@settings(max_examples=60, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), suppress_health_check=list(HealthCheck))
 @given(trees, setups, st.integers(0, 99))
 def test_any_tree(tree: Tree, setup: Setup, seed: int) -> None:
     try:

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from systems import systems
 from translating import lowered
 
+from examples import examples
 from roaml import api
 from roaml.scxml.model import Network
 from roaml.to_jani import translate
@@ -63,7 +64,7 @@ def visible(variables: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-@settings(max_examples=120, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(120), suppress_health_check=list(HealthCheck))
 @given(systems())
 def test_same_outcomes(files: dict[str, str]) -> None:
     try:

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from random import Random
 from typing import TypeAlias
 
-from roaml.text import Span
-from roaml.xml import Attribute, Element, parse
+from fuzz.elements import elements_of, piece, put
+from roaml.xml import Attribute, Element
 from roaml.xml.escapes import escape
 
 Change: TypeAlias = Callable[[Random, str], str]
@@ -27,21 +27,8 @@ def varied(random: Random, texts: Mapping[str, str]) -> dict[str, str]:
     return found
 
 
-def _elements(text: str) -> list[Element]:
-    root = parse(text).root
-    return [] if root is None else list(root.walk())
-
-
 def _attributes(text: str, *names: str) -> list[tuple[Element, Attribute]]:
-    return [(e, a) for e in _elements(text) for a in e.attributes if not names or a.name in names]
-
-
-def _replaced(text: str, span: Span, new: str) -> str:
-    return text[: span.start] + new + text[span.end :]
-
-
-def _cut(text: str, span: Span) -> str:
-    return text[span.start : span.end]
+    return [(e, a) for e in elements_of(text) for a in e.attributes if not names or a.name in names]
 
 
 def _value(element: Element, name: str) -> str | None:
@@ -50,32 +37,32 @@ def _value(element: Element, name: str) -> str | None:
 
 
 def leave_out(random: Random, text: str) -> str:
-    elements = _elements(text)[1:]
-    return _replaced(text, random.choice(elements).span, "") if elements else text
+    elements = elements_of(text)[1:]
+    return put(text, random.choice(elements).span, "") if elements else text
 
 
 def leave_out_attribute(random: Random, text: str) -> str:
     attributes = _attributes(text)
-    return _replaced(text, random.choice(attributes)[1].span, "") if attributes else text
+    return put(text, random.choice(attributes)[1].span, "") if attributes else text
 
 
 def repeat(random: Random, text: str) -> str:
-    elements = _elements(text)[1:]
+    elements = elements_of(text)[1:]
     if not elements:
         return text
     span = random.choice(elements).span
-    return _replaced(text, span, _cut(text, span) * 2)
+    return put(text, span, piece(text, span) * 2)
 
 
 def move(random: Random, text: str) -> str:
     """An element once more, beside another of its name."""
-    elements = _elements(text)[1:]
+    elements = elements_of(text)[1:]
     if not elements:
         return text
     one = random.choice(elements)
     places = [e for e in elements if e.name == one.name]
     at = random.choice(places).span.end
-    return text[:at] + _cut(text, one.span) + text[at:]
+    return text[:at] + piece(text, one.span) + text[at:]
 
 
 def swap(random: Random, text: str) -> str:
@@ -88,7 +75,7 @@ def swap(random: Random, text: str) -> str:
     first, second = sorted((one.value_span, other.value_span))
     if first == second:
         return text
-    return _replaced(_replaced(text, second, _cut(text, first)), first, _cut(text, second))
+    return put(put(text, second, piece(text, first)), first, piece(text, second))
 
 
 def copy_value(random: Random, text: str) -> str:
@@ -98,7 +85,7 @@ def copy_value(random: Random, text: str) -> str:
         return text
     one = random.choice(attributes)[1]
     other = random.choice([a for _, a in attributes if a.name == one.name])
-    return _replaced(text, one.value_span, _cut(text, other.value_span))
+    return put(text, one.value_span, piece(text, other.value_span))
 
 
 _FORMS = (
@@ -147,18 +134,18 @@ def change_expression(random: Random, text: str) -> str:
         return text
     one, other = (random.choice(attributes)[1] for _ in range(2))
     form = random.choice(_FORMS)
-    return _replaced(text, one.value_span, escape(form.format(one.value, other.value), '"').replace('"', "&quot;"))
+    return put(text, one.value_span, escape(form.format(one.value, other.value), '"').replace('"', "&quot;"))
 
 
 def change_type(random: Random, text: str) -> str:
     attributes = _attributes(text, "type")
-    return _replaced(text, random.choice(attributes)[1].value_span, random.choice(TYPES)) if attributes else text
+    return put(text, random.choice(attributes)[1].value_span, random.choice(TYPES)) if attributes else text
 
 
 def add_condition(random: Random, text: str) -> str:
     """A condition that stands somewhere in the file, on a transition that has none."""
-    conditions = [_cut(text, a.value_span) for _, a in _attributes(text, "cond")] or ["false", "1 &lt; 2"]
-    handlers = [e for e in _elements(text) if e.get("target") is not None and e.get("cond") is None]
+    conditions = [piece(text, a.value_span) for _, a in _attributes(text, "cond")] or ["false", "1 &lt; 2"]
+    handlers = [e for e in elements_of(text) if e.get("target") is not None and e.get("cond") is None]
     if not handlers:
         return text
     at = random.choice(handlers).name_span.end
@@ -167,8 +154,8 @@ def add_condition(random: Random, text: str) -> str:
 
 def split_target(random: Random, text: str) -> str:
     """A transition that goes to its target half of the time, and else to any state."""
-    handlers = [e for e in _elements(text) if (target := e.get("target")) is not None and target.value_span]
-    states = [state for e in _elements(text) if e.name == "state" and (state := _value(e, "id"))]
+    handlers = [e for e in elements_of(text) if (target := e.get("target")) is not None and target.value_span]
+    states = [state for e in elements_of(text) if e.name == "state" and (state := _value(e, "id"))]
     if not handlers or not states:
         return text
     one = random.choice(handlers)
@@ -177,17 +164,17 @@ def split_target(random: Random, text: str) -> str:
     body = "" if one.self_closing else text[one.open_span.end : one.span.end].rpartition("</")[0]
     head = text[one.span.start : target.span.start] + text[target.span.end : one.open_span.end].rstrip("/>")
     targets = f'<target id="{target.value}" prob="0.5">{body}</target><target id="{other}"/>'
-    return _replaced(text, one.span, f"{head}>{targets}</{one.name}>")
+    return put(text, one.span, f"{head}>{targets}</{one.name}>")
 
 
 def wrap_in_if(random: Random, text: str) -> str:
-    elements = [e for e in _elements(text) if e.name in STATEMENTS]
+    elements = [e for e in elements_of(text) if e.name in STATEMENTS]
     if not elements:
         return text
     span = random.choice(elements).span
-    conditions = [_cut(text, a.value_span) for _, a in _attributes(text, "cond")] or ["true"]
-    written = f'<if cond="{random.choice(conditions)}">{_cut(text, span)}<else/></if>'
-    return _replaced(text, span, written)
+    conditions = [piece(text, a.value_span) for _, a in _attributes(text, "cond")] or ["true"]
+    written = f'<if cond="{random.choice(conditions)}">{piece(text, span)}<else/></if>'
+    return put(text, span, written)
 
 
 def to_blackboard(random: Random, text: str) -> str:
@@ -198,7 +185,7 @@ def to_blackboard(random: Random, text: str) -> str:
     if "<BehaviorTree" not in text or not attributes:
         return text
     new = random.choice(("{a}", "{b}", "1", "0", "true", "abc", "2.5", "[1, 2]", "-1"))
-    return _replaced(text, random.choice(attributes).value_span, new)
+    return put(text, random.choice(attributes).value_span, new)
 
 
 CHANGES: tuple[Change, ...] = (

@@ -14,7 +14,7 @@ from roaml.rules import BY_CODE
 from roaml.smc.run import Options
 from roaml.views.event_words import said
 from roaml.views.waiting import NEEDS_TIME
-from stuck_models import hospital, system
+from stuck_models import CROSSED, hospital, system
 
 HALTED = '<bt_halt target="{0}"><bt_return_halted /></bt_halt>'
 
@@ -208,20 +208,7 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
 
 
 def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
-    machines = {
-        name: f"""go
-<ros_service_client name="ask" service_name="/{asked}" type="std_srvs/Empty" />
-<ros_service_server name="serve" service_name="/{served}" type="std_srvs/Empty" />
-<state id="go"><transition target="wait"><ros_service_send_request name="ask" /></transition></state>
-<state id="wait"><ros_service_handle_response name="ask" target="free" /></state>
-<state id="free">
-<ros_service_handle_request name="serve" target="free"><ros_service_send_response name="serve" />
-</ros_service_handle_request>
-</state>
-"""
-        for name, asked, served in (("A", "b", "a"), ("B", "a", "b"))
-    }
-    found = told(tmp_path, system(machines))
+    found = told(tmp_path, CROSSED)
     assert set(found.splitlines()) == {
         "A waits in `wait` for the response of the service `/b` (A.ascxml:5)",
         "B waits in `wait` for the response of the service `/a` (B.ascxml:5)",

@@ -17,9 +17,10 @@ from typing import TypeAlias
 
 from fuzz.checked import problems_of_check
 from fuzz.corpus import Model, snippets, systems
+from fuzz.elements import elements_of, piece, put
 from fuzz.strategy import Failure, Strategy
 from roaml.text import Span
-from roaml.xml import Attribute, Element, parse
+from roaml.xml import Attribute, Element
 
 LONGEST = 300_000
 """Characters of one file. That greater ones take their time is no failure."""
@@ -103,10 +104,10 @@ def swap_attributes(random: Random, texts: Texts, other: Model) -> str:
     if not same:
         return "nothing"
     other_path, another = random.choice(same)
-    values = (_cut(texts[path], one.value_span), _cut(texts[other_path], another.value_span))
+    values = (piece(texts[path], one.value_span), piece(texts[other_path], another.value_span))
     changes = sorted([(path, one.value_span, values[1]), (other_path, another.value_span, values[0])], reverse=True)
     for where, span, value in changes:
-        texts[where] = _put(texts[where], span, value)
+        texts[where] = put(texts[where], span, value)
     return f"{one.name}: {values[0]} <-> {values[1]}"
 
 
@@ -125,9 +126,9 @@ def move_element(random: Random, texts: Texts, other: Model) -> str:
     taken = random.choice(_elements(origin[source]))
     wanted = [e for e in _elements(texts[target]) if e.name == taken.name] or _elements(texts[target])
     at = random.choice(wanted).span.end
-    written = _cut(origin[source], taken.span)[:20_000]
+    written = piece(origin[source], taken.span)[:20_000]
     if not foreign and source != target and random.random() < 0.5:
-        texts[source] = _put(texts[source], taken.span, "")
+        texts[source] = put(texts[source], taken.span, "")
     texts[target] = texts[target][:at] + written + texts[target][at:]
     return f"<{taken.name}> of {os.path.basename(source)} into {os.path.basename(target)}"
 
@@ -180,7 +181,7 @@ def change_number(random: Random, texts: Texts, other: Model) -> str:
         return "nothing"
     path, match = random.choice(found)
     new = random.choice(["0", "1", "2", "7", "100", "1000", "99999", "2147483647", "0.5", "1e-9", "3e9", "-1"])
-    texts[path] = _put(texts[path], Span(*match.span()), new)
+    texts[path] = put(texts[path], Span(*match.span()), new)
     return f"{match[0]} -> {new} in {os.path.basename(path)}"
 
 
@@ -220,20 +221,11 @@ def _names(text: str) -> set[str]:
 
 
 def _elements(text: str) -> list[Element]:
-    root = parse(text).root if text.lstrip().startswith("<") else None
-    return list(root.walk()) if root is not None else []
+    return elements_of(text) if text.lstrip().startswith("<") else []
 
 
 def _attributes(text: str) -> list[Attribute]:
     return [attribute for element in _elements(text) for attribute in element.attributes]
-
-
-def _cut(text: str, span: Span) -> str:
-    return text[span.start : span.end]
-
-
-def _put(text: str, span: Span, new: str) -> str:
-    return text[: span.start] + new + text[span.end :]
 
 
 STRATEGY = Strategy("systems", "changes systems across their files", make, share=4)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The elements of a text of XML and what stands in their places, for those who change texts."""
+
+from __future__ import annotations
+
+from roaml.text import Span
+from roaml.xml import Attribute, Element, parse
+
+
+def elements_of(text: str) -> list[Element]:
+    """All, in the order of the text; none of a text without a root."""
+    root = parse(text).root
+    return [] if root is None else list(root.walk())
+
+
+def attributes_of(text: str) -> list[Attribute]:
+    return [attribute for element in elements_of(text) for attribute in element.attributes]
+
+
+def piece(text: str, span: Span) -> str:
+    """What stands there."""
+    return text[span.start : span.end]
+
+
+def put(text: str, span: Span, new: str) -> str:
+    """The text with something else there."""
+    return text[: span.start] + new + text[span.end :]

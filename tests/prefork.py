@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The program as a process of its own that starts at once: a fork of a process that has imported it already.
+
+`command()` takes the place of `(sys.executable, "-m", "as2fm_lsp")`. It starts a small program, the caller, which hands
+its standard streams, arguments, folder and environment to the process that has imported everything, the keeper of the
+copies. A fork of that runs the program, and the caller ends as it has ended. If the caller is killed, so is the fork.
+
+What the interpreter itself does when it starts and ends is not tested in this way: encoding, buffering and closing of
+the standard streams, signals, what is imported. Tests of these start the real program. `PYTHONUNBUFFERED` and the limit
+of the size of files are obeyed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import select
+import signal
+import socket
+import struct
+import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any  # not imported by the caller, which is to start at once
+
+_SIZE = struct.Struct("!I")
+_STATUS = struct.Struct("!i")
+_STREAMS = (0, 1, 2)
+_MODULES = ("server", *(f"cli.{name}" for name in ("check", "explain", "format", "init", "migrate", "serve")))
+_MODULES += ("cli.translate", "cli.verify", "trust")
+
+
+# -------------------------------------------------------------------------- tests
+
+
+def command() -> tuple[str, ...]:
+    """What is started in place of the program, before its arguments."""
+    return (sys.executable, "-I", "-S", __file__, _Keeper.address())
+
+
+class _Keeper:
+    """The process that has imported everything, one for each process that runs tests. It ends with that."""
+
+    _address = ""
+
+    @classmethod
+    def address(cls) -> str:
+        """Of the socket at which it takes requests."""
+        if not cls._address:
+            import atexit  # noqa: PLC0415 - the caller, too, runs this file, and is to start at once
+            import shutil  # noqa: PLC0415
+            import subprocess  # noqa: PLC0415
+            import tempfile  # noqa: PLC0415
+
+            folder = tempfile.mkdtemp()
+            atexit.register(shutil.rmtree, folder, ignore_errors=True)
+            address = os.path.join(folder, "keeper")
+            pipe = subprocess.PIPE
+            process = subprocess.Popen([sys.executable, __file__, address, "keep"], stdin=pipe, stdout=pipe)
+            assert process.stdout is not None
+            assert process.stdout.readline() == b"ready\n"
+            cls._address = address
+            cls._process = process  # its standard input is open as long as this process lives
+        return cls._address
+
+
+# ------------------------------------------------------------------------- caller
+
+
+def call(address: str, arguments: list[str]) -> None:
+    """Have the program run with the streams of this process, and end as it ends."""
+    connection = socket.socket(socket.AF_UNIX)
+    connection.connect(address)
+    request = {
+        "arguments": arguments,
+        "folder": os.getcwd(),
+        "environment": dict(os.environ),
+        "file size": resource.getrlimit(resource.RLIMIT_FSIZE),
+    }
+    body = json.dumps(request).encode()
+    socket.send_fds(connection, [_SIZE.pack(len(body))], _STREAMS)
+    connection.sendall(body)
+    for stream in _STREAMS:
+        os.close(stream)  # so that who reads them sees their end when the program ends
+    (status,) = _STATUS.unpack(_received(connection, _STATUS.size))
+    if status < 0:
+        signal.signal(-status, signal.SIG_DFL)
+        os.kill(os.getpid(), -status)
+    os._exit(status)
+
+
+def _received(connection: socket.socket, size: int) -> bytes:
+    data = b""
+    while len(data) < size:
+        piece = connection.recv(size - len(data))
+        if not piece:
+            raise EOFError
+        data += piece
+    return data
+
+
+# ------------------------------------------------------------------------- keeper
+
+
+def keep(address: str) -> None:
+    """Take requests until standard input ends."""
+    import gc  # noqa: PLC0415
+    import importlib  # noqa: PLC0415
+
+    for name in _MODULES:
+        importlib.import_module(f"as2fm_lsp.{name}")
+    gc.collect()
+    gc.freeze()
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody asks for the status of the watchers
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(address)
+        listener.listen(64)
+        os.write(1, b"ready\n")
+        while sys.stdin not in select.select([listener, sys.stdin], [], [])[0]:
+            connection, _ = listener.accept()
+            if os.fork() == 0:
+                listener.close()
+                _watch(connection)
+            connection.close()
+
+
+def _watch(connection: socket.socket) -> None:
+    """Run the program in a fork of this process; end with it, and it with the caller."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    head, streams, _, _ = socket.recv_fds(connection, _SIZE.size, len(_STREAMS))
+    request = json.loads(_received(connection, _SIZE.unpack(head)[0]))
+    ended, alive = os.pipe()
+    program = os.fork()
+    if program == 0:
+        connection.close()
+        os.close(ended)
+        _run(request, streams)
+    for handle in (*streams, alive, *_STREAMS):
+        os.close(handle)
+    if connection in select.select([connection, ended], [], [])[0]:
+        os.kill(program, signal.SIGKILL)
+    _, status = os.waitpid(program, 0)
+    connection.sendall(_STATUS.pack(os.waitstatus_to_exitcode(status)))
+    os._exit(0)
+
+
+def _run(request: dict[str, Any], streams: list[int]) -> None:
+    """The program, in a process that is its own."""
+    import atexit  # noqa: PLC0415
+    import io  # noqa: PLC0415
+    import runpy  # noqa: PLC0415
+    import threading  # noqa: PLC0415
+    import traceback  # noqa: PLC0415
+
+    status = 1
+    try:
+        for stream, handle in zip(_STREAMS, streams, strict=True):
+            os.dup2(handle, stream)
+            os.close(handle)
+        os.chdir(request["folder"])
+        os.environ.clear()
+        os.environ.update(request["environment"])
+        resource.setrlimit(resource.RLIMIT_FSIZE, tuple(request["file size"]))
+        is_unbuffered = bool(os.environ.get("PYTHONUNBUFFERED"))
+        sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
+        sys.stdout, sys.stderr = (
+            io.TextIOWrapper(
+                os.fdopen(stream, "wb", buffering=0 if is_unbuffered else -1, closefd=False),
+                encoding="utf-8",
+                errors=errors,
+                line_buffering=stream == 2 or os.isatty(stream),
+                write_through=is_unbuffered,
+            )
+            for stream, errors in ((1, "strict"), (2, "backslashreplace"))
+        )
+        sys.argv = ["as2fm-lsp", *request["arguments"]]
+        runpy.run_module("as2fm_lsp", run_name="__main__", alter_sys=True)
+        status = 0
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        try:
+            threading._shutdown()  # type: ignore[attr-defined]
+            atexit._run_exitfuncs()
+            sys.stderr.flush()
+            sys.stdout.flush()
+        except OSError:
+            status = 120  # as of an interpreter that cannot flush
+        finally:
+            os._exit(status)
+
+
+if __name__ == "__main__":
+    _, where, *rest = sys.argv
+    if rest == ["keep"]:
+        keep(where)
+    else:
+        call(where, rest)
