@@ -150,10 +150,10 @@ _ASKS_ONCE = _SWITCHES | {
 """They do not tick a child again that has ended, before they have ended themselves (spec/02 §5, §7.2)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """They halt their child only when they are halted."""
-_INTERRUPTS = _SWITCHES | {
-    *("ReactiveSequence", "ReactiveFallback", "Parallel", "WhileDoElse", "Timeout", "BlackboardCheckInt")
-}
+_INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}
 """They halt children that are running of their own accord."""
+_INTERRUPTS_LATER = frozenset(("ReactiveSequence", "ReactiveFallback", "WhileDoElse"))
+"""They ask their first child at every tick, and by its answer halt those behind it that are running."""
 
 
 def is_ticked_again(system: System, automaton: Automaton) -> bool:
@@ -165,12 +165,23 @@ def is_ticked_again(system: System, automaton: Automaton) -> bool:
 
 def is_halted(system: System, automaton: Automaton, *, running: bool) -> bool:
     """Whether a node may be halted while it is running, or while it is not."""
+    child = automaton
     for parent in ancestors(system, automaton):
         if parent.path:  # a node of the user's
             return parent.outline.plugin.halts_children
-        if parent.outline.name in _INTERRUPTS or (not running and parent.outline.name not in _PASSES_HALTS):
+        name = parent.outline.name
+        if name in _INTERRUPTS or (not running and name not in _PASSES_HALTS):
             return True
+        if name in _INTERRUPTS_LATER and not _is_first(parent, child):
+            return True
+        child = parent
     return False
+
+
+def _is_first(parent: Automaton, child: Automaton) -> bool:
+    assert parent.instance is not None
+    assert child.instance is not None
+    return parent.instance.children[0] == child.instance.number
 
 
 def ancestors(system: System, automaton: Automaton) -> Iterator[Automaton]:
