@@ -18,6 +18,7 @@ from roaml.rules.support import misspelled
 from roaml.rules.support.removed_events import uses_removed_events
 from roaml.rules.support.triggers import has_shadowed
 from roaml.text import Span
+from roaml.xml import Element
 
 SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
 """What answers a duty; a goal is accepted or rejected."""
@@ -84,7 +85,7 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     for handler, found in steps.items():
         if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        told = [step for step in found if not _may_be_unread(behavior, duty, step)]
+        told = [step for step in found if not _may_be_unread(context.machine, behavior, duty, step)]
         if told:
             certain = [step for step in told if step.certain and not step.ignored]
             yield (certain or told)[0], bool(certain)
@@ -110,16 +111,34 @@ def target_of(step: Step) -> Iterator[Related]:
             yield Related(element.name_span, "on this way")
 
 
-def _may_be_unread(behavior: Behavior, duty: Duty, step: Step) -> bool:
-    """Whether an element that is not known might be the answer that is missed behind a step, or take what leads to it:
-    it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
+def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: Step) -> bool:
+    """Whether an element that cannot be read might be the answer that is missed behind a step, or take what leads to
+    it: it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
     states = {state.id.value: state.element for state in behavior.chart.states if state.id}
     source = behavior.configurations[step.source]
     names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
     if step.ignored or source.owes(duty):
         names.add(source.state)
     elements = [step.handler.element, *(states[name] for name in names if name in states)]
-    return any(not e.prefix and HL_SCXML.find(e.name) is None for element in elements for e in element.walk())
+    unresolved = {
+        user.element
+        for chart in machine.charts
+        for user in (*chart.executed, *(handler for state in chart.states for handler in state.handlers))
+        if isinstance(user, Communicate | Handler) and "name" in user.type.attributes
+        if find_handle(machine, user) is None
+    }
+    return any(e in unresolved or _is_misspelled(e) for element in elements for e in element.walk())
+
+
+def _is_misspelled(element: Element) -> bool:
+    """Whether an element is not known, or one of its attributes is a misspelled other one."""
+    if element.prefix:
+        return False
+    type_ = HL_SCXML.find(element.name)
+    if type_ is None:
+        return True
+    missing = [name for name in type_.attributes if element.get(name) is None]
+    return any(misspelled.attribute(element, name, type_.attributes) for name in missing)
 
 
 # ------------------------------------------------------------ place in the tree
@@ -132,10 +151,10 @@ _ASKS_ONCE = _SWITCHES | {
 """They do not tick a child again that has ended, before they have ended themselves (docs/spec/nodes.md)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """They halt their child only when they are halted."""
-_INTERRUPTS = _SWITCHES | {
-    *("ReactiveSequence", "ReactiveFallback", "Parallel", "WhileDoElse", "Timeout", "BlackboardCheckInt")
-}
+_INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}
 """They halt children that are running of their own accord."""
+_INTERRUPTS_LATER = frozenset(("ReactiveSequence", "ReactiveFallback", "WhileDoElse"))
+"""They ask their first child at every tick, and by its answer halt those behind it that are running."""
 
 
 def is_ticked_again(system: System, automaton: Automaton) -> bool:
@@ -147,12 +166,23 @@ def is_ticked_again(system: System, automaton: Automaton) -> bool:
 
 def is_halted(system: System, automaton: Automaton, *, running: bool) -> bool:
     """Whether a node may be halted while it is running, or while it is not."""
+    child = automaton
     for parent in ancestors(system, automaton):
         if parent.path:  # a node of the user's
             return parent.outline.plugin.halts_children
-        if parent.outline.name in _INTERRUPTS or (not running and parent.outline.name not in _PASSES_HALTS):
+        name = parent.outline.name
+        if name in _INTERRUPTS or (not running and name not in _PASSES_HALTS):
             return True
+        if name in _INTERRUPTS_LATER and not _is_first(parent, child):
+            return True
+        child = parent
     return False
+
+
+def _is_first(parent: Automaton, child: Automaton) -> bool:
+    assert parent.instance is not None
+    assert child.instance is not None
+    return parent.instance.children[0] == child.instance.number
 
 
 def ancestors(system: System, automaton: Automaton) -> Iterator[Automaton]:
