@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import pytest
-from translating import errors, translated
+from translating import errors, lowered, translated
 
 from roaml.jani.model import Model
+from roaml.scxml.writer import write
 
 MAIN = """
 <roaml>
@@ -50,3 +51,23 @@ def test_combinations_are_bounded() -> None:
 @pytest.mark.parametrize("value", ["0", "10001", "-5", "many", "2.5"])
 def test_counts_that_are_refused(value: str) -> None:
     assert [d.code for d in errors(files(f'<random_values value="{value}"/>'))] == ["invalid-value"]
+
+
+@pytest.mark.parametrize(
+    ("value", "named"), [("Math.random()", "float64"), ("Math.floor(Math.random() * 10)", "int64")]
+)
+def test_what_is_drawn_for_a_parameter_has_a_type_of_the_language(value: str, named: str) -> None:
+    sender = WORLD.replace(
+        '<assign location="x" expr="{value}"/>', f'<send event="e"><param name="p" expr="{value}"/></send>'
+    )
+    receiver = """
+<ascxml name="Receiver" version="1.0" initial="wait">
+    <state id="wait"><transition event="e" target="wait"/></state>
+</ascxml>
+"""
+    texts = files("") | {"world.ascxml": sender, "receiver.ascxml": receiver}
+    texts["main.xml"] = texts["main.xml"].replace(
+        "</node_models>", '<input type="node-ascxml" src="receiver.ascxml"/></node_models>'
+    )
+    written = "".join(text for _, text in write(lowered(texts)))
+    assert f"<!-- TYPE random_0:{named} -->" in written

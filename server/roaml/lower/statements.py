@@ -10,7 +10,7 @@ from typing import TypeAlias
 from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, leaves, unwrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
@@ -27,6 +27,8 @@ from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, State
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
+_NAMED = {"int": BASE_TYPES["int64"], "real": REAL}
+"""The type of a variable for a value whose type has no name, by the kind of the value."""
 
 MAX_COMBINATIONS = 10_000
 """Of random numbers that are drawn at once in one assignment: each combination is a destination in JANI."""
@@ -180,7 +182,8 @@ class StatementLowering:
         count = len(self.drawn)
         while (found := f"random_{count}") in taken:
             count += 1
-        self.drawn.append(Data(found, type_, zero(type_), origin))
+        named = _NAMED.get(type_.kind, type_) if isinstance(type_, Scalar) and not type_.name else type_
+        self.drawn.append(Data(found, named, zero(named), origin))
         return self.drawn[-1]
 
     def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:
