@@ -30,7 +30,8 @@ const file = path.join(out, measures ? "measure.mjs" : "all.test.mjs");
 const options = measures ? [] : ["--test", "--test-reporter=spec"];
 const names = [first, ...others].filter((name) => name !== undefined && !name.startsWith("--"));
 const patterns = names.map((name) => `--test-name-pattern=${name}`);
-const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit" });
+const env = first === "--pictures" ? { ...process.env, AS2FM_PICTURES: "yes" } : process.env;
+const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit", env });
 if (done.status === 0 && first === "--pictures") {
     for (const folder of ["screenshots", "walkthrough"]) {
         for (const name of fs.readdirSync(path.join(here, folder))) {
