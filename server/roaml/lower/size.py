@@ -10,7 +10,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
@@ -77,10 +78,18 @@ def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
     most = program.parameters.max_array_size
     for automaton, machine in _members(program):
         for chart, copies in _charts(machine):
+            single = 0
             for name, type_ in _variables(chart, program).items():
+                count = cells_of(type_, most)
+                if count == 1:
+                    single += copies
+                    continue
                 symbol = Symbol(automaton.path, "data", name, chart.scope) if automaton.path else None
                 words = f"the variable `{name}` of `{automaton.outline.name}`"
-                yield Share(copies * cells_of(type_, most), words, automaton.path, symbol)
+                yield Share(copies * count, words, automaton.path, symbol)
+            if single:
+                words = f"the variables of `{automaton.outline.name}` that have one value"
+                yield Share(single, words, automaton.path, _machine_symbol(automaton))
     for variable in globals_.values():
         source = variable.source
         words = f"the event parameter `{variable.event}__{variable.parameter}`"
@@ -134,9 +143,9 @@ def _parts(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
         children = len(automaton.instance.children) if automaton.instance else 0
         key = (id(machine), children)
         if key not in counted:
-            charts = [(copies, _Count(machine, chart, children, program)) for chart, copies in _charts(machine)]
-            parts = sum(copies * count.chart() for copies, count in charts)
-            counted[key] = parts, sum(copies * count.actions() for copies, count in charts)
+            charts = [(copies, _count(machine, chart, children, program)) for chart, copies in _charts(machine)]
+            parts = sum(copies * count.parts for copies, count in charts)
+            counted[key] = parts, sum(copies * count.actions for copies, count in charts)
         yield Share(counted[key][0], f"`{automaton.outline.name}`", automaton.path, _machine_symbol(automaton))
         automata += sum(copies for _, copies in _charts(machine))
         syncs += counted[key][1] + sum(timer.users for timer in automaton.outline.timers)
@@ -147,17 +156,53 @@ def _machine_symbol(automaton: Automaton) -> Symbol | None:
     return Symbol(automaton.path, "machine", automaton.outline.name) if automaton.path else None
 
 
+class _Query(NamedTuple):
+    """An expression whose type was needed for a count, and the type."""
+
+    tree: Expr
+    handler: Handler | None
+    part: str
+    type: Type
+
+
+class _Counted(NamedTuple):
+    """What was counted of a chart, and on what it depends besides the chart: on types that other files declare."""
+
+    parts: int
+    actions: int
+    variables: dict[str, Type]
+    queries: tuple[_Query, ...]
+
+
+def _count(machine: Machine, chart: Chart, children: int, program: Program) -> _Counted:
+    """The counts of one copy of a chart. They are kept with the chart: a key changes one machine of a system."""
+    parameters = program.parameters
+    known: dict[object, _Counted] = chart.__dict__.setdefault("translation_parts", {})
+    key = (children, parameters.max_array_size, parameters.random_values)
+    counter = _Counter(machine, chart, children, program, _variables(chart, program))
+    counted = known.get(key)
+    if counted is None or counted.variables != counter.variables or not all(map(counter.confirms, counted.queries)):
+        parts, actions = counter.chart(), counter.actions()
+        known[key] = counted = _Counted(parts, actions, counter.variables, tuple(counter.queries))
+    return counted
+
+
 @dataclass(eq=False)
-class _Count:
+class _Counter:
     """Counts the parts of one copy of a chart, for a node with so many children."""
 
     machine: Machine
     of: Chart
     children: int
     program: Program
+    variables: dict[str, Type]
+    queries: list[_Query] = field(default_factory=list)
+
+    def confirms(self, query: _Query) -> bool:
+        """Whether an expression still has the type that it had."""
+        return self.inferred(query.tree, query.handler, query.part) == query.type
 
     def chart(self) -> int:
-        self.variables = _variables(self.of, self.program)
         entries = {s.id.value: self.body(s.entry.statements, None) for s in self.of.states if s.id and s.entry}
         events = {self.trigger(handler) for state in self.of.states for handler in state.handlers}
         return sum(self.state(state, entries, len(events)) for state in self.of.states)
@@ -301,6 +346,11 @@ class _Count:
         return count
 
     def type(self, tree: Expr, handler: Handler | None, part: str = "body") -> Type:
+        type_ = self.inferred(tree, handler, part)
+        self.queries.append(_Query(tree, handler, part, type_))
+        return type_
+
+    def inferred(self, tree: Expr, handler: Handler | None, part: str) -> Type:
         known = bindings(handler, part, self.machine, self.program.environment) if handler else {}
         return infer(tree, {**self.variables, **known}.get)[0]
 

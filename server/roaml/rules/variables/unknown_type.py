@@ -30,8 +30,9 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
 
 
 def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
-    """What is wrong with a type. If `complete`, there are no other structs, whose declarations cannot be read; else only
-    what looks like a base type is reported. A machine that is checked `alone` cannot know the structs of its system."""
+    """What is wrong with a type. If `complete`, there are no other structs, whose declarations cannot be read; else
+    only what looks like a base type is reported. A machine that is checked `alone` cannot know the structs of its
+    system."""
     if type_.name is None:
         yield _no_type(type_)
         return
