@@ -30,15 +30,14 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
 
 
 def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
-    """What is wrong with a type. If `complete`, there are no other structs, whose declarations cannot be read; else
-    only what looks like a base type is reported. A machine that is checked `alone` cannot know the structs of its
-    system."""
+    """What is wrong with a type. `complete` tells that there are no other structs, whose declarations cannot be read.
+    A machine that is checked `alone` cannot know the structs of its system."""
     if type_.name is None:
         yield _no_type(type_)
         return
     known = [*BASE_TYPES, *structs]
     base = type_.name.base
-    if base not in known and (complete or base in FOREIGN_TYPES or close_names(base, BASE_TYPES)):
+    if base not in known and (complete or base in FOREIGN_TYPES):
         close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else close_names(base, known)
         brackets = type_.text[len(base) :]
         fixes = replacements(type_.span, [name + brackets for name in close])
