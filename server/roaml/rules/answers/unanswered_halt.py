@@ -10,14 +10,13 @@ from roaml.edit.elements import halts, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import State
 from roaml.model.system import Automaton
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
     behaviors,
-    deaf_states,
+    deaf,
     is_spelled,
     missed,
     place,
@@ -77,26 +76,18 @@ def _message(step: Step, certain: bool) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
     """States in which the plugin waits and that have no `<bt_halt>`."""
-    told: set[State] = set()
-    for automaton in automata:
-        for state, standing in deaf_states(context, behavior, automaton, HALT):
-            if state not in told and state.id is not None:
-                told.add(state)
-                how = "while the plugin is running " if standing == "running" else ""
-                message = f"a halt that comes {how}in the state `{state.id.value}` is never taken, so that the tree "
-                message += "waits for ever; add a `<bt_halt>`"
-                fixes = _add_handler(context, state)
-                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
-        if context.system is None or not is_readable(context.system, automaton):
-            continue
-        possible = Instants(context.system, automaton).possible
-        for state, _ in deaf_states(context, behavior, automaton, HALT, possible):
-            if state not in told and state.id is not None:
-                told.add(state)
-                message = f"a halt that comes in the state `{state.id.value}` is not taken before time has passed, but "
-                message += "the clock waits until it is answered; add a `<bt_halt>`"
-                fixes = _add_handler(context, state)
-                yield RULE.at(state.id.span, message, *fixes, severity=Severity.WARNING)
+    for waiting in deaf(context, behavior, automata, HALT):
+        if waiting.needs_time:
+            message = f"a halt that comes in the state `{waiting.name}` is not taken before time has passed, but the "
+            message += "clock waits until it is answered; add a `<bt_halt>`"
+        else:
+            how = "while the plugin is running " if waiting.standing == "running" else ""
+            message = (
+                f"a halt that comes {how}in the state `{waiting.name}` is never taken, so that the tree waits for "
+            )
+            message += "ever; add a `<bt_halt>`"
+        fixes = _add_handler(context, waiting.state)
+        yield RULE.at(waiting.span, message, *fixes, severity=Severity.WARNING)
 
 
 def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:

@@ -10,13 +10,12 @@ from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.system import Automaton
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
     behaviors,
-    deaf_states,
+    deaf,
     is_spelled,
     missed,
     place,
@@ -72,24 +71,18 @@ def _message(step: Step, certain: bool) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
     """States in which the plugin waits and that have no `<bt_tick>`."""
-    told = set()
-    for automaton in automata:
-        for state, standing in deaf_states(context, behavior, automaton, TICK):
-            if state not in told and state.id is not None:
-                told.add(state)
-                message = f"a tick that comes in the state `{state.id.value}` is never taken, so that the tree waits "
-                message += "for ever; add a `<bt_tick>`"
-                severity = Severity.WARNING if standing == "ended" else None
-                yield RULE.at(state.id.span, message, *_take(context, state.element), severity=severity)
-        if context.system is None or not is_readable(context.system, automaton):
-            continue
-        possible = Instants(context.system, automaton).possible
-        for state, _ in deaf_states(context, behavior, automaton, TICK, possible):
-            if state not in told and state.id is not None:
-                told.add(state)
-                message = f"a tick that comes in the state `{state.id.value}` is not taken before time has passed, but "
-                message += "the clock waits until it is answered; add a `<bt_tick>` that answers RUNNING"
-                yield RULE.at(state.id.span, message, *_take(context, state.element), severity=Severity.WARNING)
+    for waiting in deaf(context, behavior, automata, TICK):
+        if waiting.needs_time:
+            message = f"a tick that comes in the state `{waiting.name}` is not taken before time has passed, but the "
+            message += "clock waits until it is answered; add a `<bt_tick>` that answers RUNNING"
+        else:
+            message = (
+                f"a tick that comes in the state `{waiting.name}` is never taken, so that the tree waits for ever; "
+            )
+            message += "add a `<bt_tick>`"
+        severity = Severity.WARNING if waiting.needs_time or waiting.standing == "ended" else None
+        fixes = _take(context, waiting.state.element)
+        yield RULE.at(waiting.span, message, *fixes, severity=severity)
 
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:

@@ -4,12 +4,14 @@ on a path is shown: at the handler that takes the step."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
 from roaml.model.behavior.explore import Behavior, Duty, Step, explore
+from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
 from roaml.model.typing import find_handle
@@ -191,6 +193,36 @@ def ancestors(system: System, automaton: Automaton) -> Iterator[Automaton]:
     while number is not None and (above := system.by_instance.get(number)) is not None:
         yield above
         number = above.instance.parent if above.instance else None
+
+
+class Deaf(NamedTuple):
+    """A state in which a tick or halt may come and is not taken.
+
+    Attributes:
+        name, span: the identifier of the state.
+        standing: how the node stands there: "" (it has not been ticked yet), "running" or "ended".
+        needs_time: the state is left, but only after time has passed.
+    """
+
+    state: State
+    name: str
+    span: Span
+    standing: str
+    needs_time: bool
+
+
+def deaf(context: MachineContext, behavior: Behavior, automata: Iterable[Automaton], duty: Duty) -> Iterator[Deaf]:
+    """The states in which a tick or halt is not taken by one of the nodes that a plugin is, each once."""
+    seen: set[State] = set()
+    for automaton in automata:
+        ways: list[tuple[Possible, bool]] = [(always, False)]
+        if context.system is not None and is_readable(context.system, automaton):
+            ways.append((Instants(context.system, automaton).possible, True))
+        for possible, needs_time in ways:
+            for state, standing in deaf_states(context, behavior, automaton, duty, possible):
+                if state not in seen and state.id is not None:
+                    seen.add(state)
+                    yield Deaf(state, state.id.value, state.id.span, standing, needs_time)
 
 
 def deaf_states(
