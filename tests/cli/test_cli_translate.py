@@ -109,7 +109,7 @@ def test_properties_by_name(command: Command, robot: Path) -> None:
 
 
 def test_parts_of_properties_without_effect(command: Command, robot: Path) -> None:
-    """Comments on what is no operator of the formula itself."""
+    """Comments change nothing in a translation, wherever they are."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
     plain = command("translate", "main.xml", "-o", "-").out
