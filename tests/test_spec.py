@@ -26,7 +26,7 @@ from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
 from roaml.model.system import Automaton
 from roaml.model.system_file import Parameters
 from roaml.model.translated import is_synchronising
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 
 ROOT = Path(__file__).resolve().parents[1]
 SPEC = ROOT / "docs" / "spec"

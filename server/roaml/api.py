@@ -30,7 +30,7 @@ from roaml.disk import MAX_DATA, NotReadableError, Problem, required
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.reader import read_model
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import NO_OVERRIDES, Overrides

@@ -19,7 +19,7 @@ import as2fm_lsp.cli.progress
 import as2fm_lsp.cli.translate
 from roaml import api
 from roaml.jani.reader import read_model
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.language.resources import schema_path
 from roaml.smc.fault import FaultError
 

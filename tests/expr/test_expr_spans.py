@@ -8,7 +8,7 @@ import pytest
 from roaml.expr.parse import parse, tokens
 from roaml.expr.tree import Binary, Member, walk
 from roaml.text import Decoded, apply_edits
-from roaml.xml import parse as parse_xml
+from roaml.xml_syntax import parse as parse_xml
 
 SPANS = [
     # attribute value as written, the parts of it that the subexpressions are, outer before inner

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 
 from fuzz.elements import attributes_of, elements_of, piece, put
 from roaml.text import Span, decode
-from roaml.xml.escapes import escape
+from roaml.xml_syntax.escapes import escape
 
 Damage: TypeAlias = Callable[[Random, str, Sequence[str]], str]
 """(random, text, other texts) -> damaged text."""

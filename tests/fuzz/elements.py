@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.text import Span
-from roaml.xml import Attribute, Element, parse
+from roaml.xml_syntax import Attribute, Element, parse
 
 
 def elements_of(text: str) -> list[Element]:

@@ -24,7 +24,7 @@ from roaml.diagnostics import Severity
 from roaml.project.settings import Settings
 from roaml.text import Span, apply_edits
 from roaml.text import TextEdit as Edit
-from roaml.xml import Element, parse
+from roaml.xml_syntax import Element, parse
 
 SYSTEM = Path(__file__).with_name("pairs.txt")
 _WORD = re.compile(r"/?[A-Za-z_][\w/.]{2,}\Z")

@@ -12,7 +12,7 @@ from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.jani.typecheck import check_model
 from roaml.jani.writer import write as jani_text
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.project.workspace import Snapshot
 from roaml.scxml.writer import write as scxml_texts
 from roaml.smc.fault import FaultError

@@ -16,7 +16,7 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.describe.comment import remark
 from roaml.ide.describe.markdown import file, name, names, plain, prose
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 FILES = split_files(ROBOT)
 

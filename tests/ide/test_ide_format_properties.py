@@ -18,7 +18,7 @@ from roaml.ide.formatting import can_format, format_edits
 from roaml.ide.formatting.layout import Layout
 from roaml.project.settings import Settings
 from roaml.text import apply_edits
-from roaml.xml import Element, Instruction, Node, Text, parse
+from roaml.xml_syntax import Element, Instruction, Node, Text, parse
 
 SPACES = ["", " ", "  ", "\n", "\n\n", "\n \n\n", "\t", "\r\n", " \r\n\r\n ", "\n      ", "\n" + " " * 40]
 LAYOUTS = st.builds(

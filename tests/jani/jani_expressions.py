@@ -8,7 +8,7 @@ from typing import Any
 from roaml.jani.expressions import Expression
 from roaml.jani.notes import Notes
 from roaml.jani.read_formulas import FormulaReader
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 
 def expression(text: str) -> Expression:

@@ -14,7 +14,7 @@ from test_jani_writer import read, written
 import conformance
 from roaml.jani.reader import read_model, read_properties
 from roaml.jani.writer import write_properties
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 
 @pytest.mark.parametrize("path", [*conformance.REFERENCES, *conformance.WHOLE_MODELS], ids=lambda path: path.name)

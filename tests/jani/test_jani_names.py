@@ -24,7 +24,7 @@ from roaml.jani.types import (
     fits,
     join,
 )
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 KNOWN = ["topic_level_msg__ros_fields__data", "topic_level_msg.valid", "seen.valid", "level", "idle", "n"]
 

@@ -39,7 +39,7 @@ from roaml.jani.reader import read_properties
 from roaml.jani.typecheck import check_property
 from roaml.jani.types import BOOL, INT
 from roaml.jani.writer import write_properties
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.text import apply_edits
 
 

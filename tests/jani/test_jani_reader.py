@@ -22,7 +22,7 @@ from roaml.jani.model import Edge, Model
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.reader import read_model, read_properties
 from roaml.jani.writer import write
-from roaml.json import MAX_DEPTH, parse
+from roaml.json_syntax import MAX_DEPTH, parse
 from roaml.text import Span, apply_edits
 
 PLACES = {

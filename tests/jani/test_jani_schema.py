@@ -19,7 +19,7 @@ from roaml.jani.operators import BINARY_OPERATORS, DISTRIBUTIONS, NUMBER_CONSTAN
 from roaml.jani.properties import Formula, Property
 from roaml.jani.reader import read_properties
 from roaml.jani.writer import write_properties
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "schemas" / "jani-properties.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = Draft202012Validator(SCHEMA)

@@ -44,7 +44,7 @@ from roaml.jani.reader import read_model, read_properties
 from roaml.jani.types import BOOL, INT, ArrayType, BoundedType
 from roaml.jani.write_formulas import FormulaWriter
 from roaml.jani.writer import write, write_properties
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 
 def written(model: Model) -> str:

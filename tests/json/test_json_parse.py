@@ -12,7 +12,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from roaml.json import (
+from roaml.json_syntax import (
     MAX_DEPTH,
     JsonArray,
     JsonBool,

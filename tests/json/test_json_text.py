@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml.json import indented, parse, quote
-from roaml.json.values import JsonString
+from roaml.json_syntax import indented, parse, quote
+from roaml.json_syntax.values import JsonString
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
 from roaml.language.resources import schema_path
 from roaml.language.validate import validate
 from roaml.text import decode
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 SCXML = "http://www.w3.org/2005/07/scxml"
 GRAMMARS = {root: grammar for grammar in (HL_SCXML, SYSTEM, BEHAVIOR_TREE, STRUCTS) for root in grammar.roots}

@@ -28,7 +28,7 @@ from roaml.language.validate import (
     validate,
 )
 from roaml.text import Span
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 MACHINE = '<ascxml name="m" version="1.0" initial="s">{}</ascxml>'
 STATE = MACHINE.format('<state id="s">{}</state>')

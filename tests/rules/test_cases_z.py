@@ -21,7 +21,7 @@ from roaml.rules import BY_CODE
 from roaml.rules.elements import schema_violation
 from roaml.rules.rule import FileContext
 from roaml.text import SourceFile
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 FILES = sorted((Path(__file__).parent / "cases_z").glob("*.txt"))
 

@@ -12,7 +12,7 @@ import pytest
 import conformance
 from roaml.jani.model import Model
 from roaml.jani.reader import read_model
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
 from roaml.smc.run import Options

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from roaml.jani.reader import read_model
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.model import Checker
 

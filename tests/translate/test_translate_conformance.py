@@ -20,7 +20,7 @@ from roaml import api
 from roaml.jani.reader import read_model
 from roaml.jani.typecheck import check_model
 from roaml.jani.writer import write
-from roaml.json import parse
+from roaml.json_syntax import parse
 
 if sys.version_info >= (3, 11):
     import tomllib

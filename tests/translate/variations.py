@@ -8,8 +8,8 @@ from random import Random
 from typing import TypeAlias
 
 from fuzz.elements import elements_of, piece, put
-from roaml.xml import Attribute, Element
-from roaml.xml.escapes import escape
+from roaml.xml_syntax import Attribute, Element
+from roaml.xml_syntax.escapes import escape
 
 Change: TypeAlias = Callable[[Random, str], str]
 

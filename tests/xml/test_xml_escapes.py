@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from roaml.text import Span
-from roaml.xml.escapes import decoded, escape, unescape
+from roaml.xml_syntax.escapes import decoded, escape, unescape
 
 REFERENCES = [
     # written, meant

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from roaml.text import Span, apply_edits
-from roaml.xml import Element, Node, parse
-from roaml.xml.names import is_local_name
-from roaml.xml.parse import MAX_DEPTH, MAX_FINDINGS
+from roaml.xml_syntax import Element, Node, parse
+from roaml.xml_syntax.names import is_local_name
+from roaml.xml_syntax.parse import MAX_DEPTH, MAX_FINDINGS
 
 PIECES = [
     *"<>/=\"'&;! \n\r\t?-[]:ab1é\u00a0\0\ud800",

@@ -7,7 +7,7 @@ import pytest
 from xml_cases import shape
 
 from marked import Case, found
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 CASES = {
     # ------------------------------------------------------------ start tags

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from roaml.text import Span
-from roaml.xml import Element, Text, children_text, parse
+from roaml.xml_syntax import Element, Text, children_text, parse
 
 TEXT = """<?xml version="1.0"?>\r
 <!-- start -->

@@ -10,7 +10,7 @@ complete; `'text'`, `!comment`, `?instruction`, `{CDATA}`.
 
 from __future__ import annotations
 
-from roaml.xml import CData, Comment, Document, Element, Instruction, Node
+from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Node
 
 
 def shape(document: Document) -> str:

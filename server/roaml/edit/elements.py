@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from roaml.diagnostics import Fix
 from roaml.text import Span, TextEdit
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 _LEVEL = "    "
 

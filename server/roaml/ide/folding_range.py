@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from roaml.ide.json_tree import values
 from roaml.ide.syntax import xml_file
-from roaml.json import JsonArray, JsonObject
+from roaml.json_syntax import JsonArray, JsonObject
 from roaml.project.analysis import Analysis
 from roaml.text import SourceFile, Span
-from roaml.xml import CData, Comment, Document, Element
+from roaml.xml_syntax import CData, Comment, Document, Element
 
 
 class FoldKind(enum.Enum):

@@ -38,10 +38,10 @@ from roaml.model.machine import (
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import Automaton, System
 from roaml.model.tree import TreeNode, nodes
-from roaml.model.typing import TypedValue, Use, find_handle, port_type
+from roaml.model.value_types import TypedValue, Use, find_handle, port_type
 from roaml.project.analysis import Analysis
 from roaml.text import Location, Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 INSTANCE = "tree-instance"
 """The kind of a symbol that stands for a node of an executed tree: `path` is the system, `name` the number."""

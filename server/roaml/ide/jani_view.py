@@ -9,7 +9,7 @@ from roaml.ide.formatting.json import gaps
 from roaml.ide.formatting.layout import Layout, edits
 from roaml.ide.navigation.document_symbol import DocumentSymbol
 from roaml.ide.navigation.jani_symbols import jani_symbols
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.text import apply_edits
 
 _LAYOUT = Layout(width=2)

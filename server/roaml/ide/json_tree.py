@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.text import Span
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from roaml.ide.syntax import xml_file
 from roaml.project.analysis import Analysis
 from roaml.text import Span, TextEdit
-from roaml.xml import CData, Comment, Document, Element, Instruction, parse
+from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, parse
 
 TRIGGERS = (">", "/")
 

@@ -11,7 +11,7 @@ from roaml.ide.syntax import Typed, expressions, path_at, xml_file
 from roaml.model.syntax import Expression
 from roaml.project.analysis import Analysis
 from roaml.text import Span
-from roaml.xml import CData, Comment, Document, Element, Instruction, Text
+from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Text
 
 
 def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:

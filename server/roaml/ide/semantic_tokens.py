@@ -17,14 +17,14 @@ from typing import NamedTuple
 from roaml.expr import parse as expr
 from roaml.ide.json_tree import values
 from roaml.ide.syntax import Typed, XmlFile, expression_sources, walk, xml_file
-from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, Member
+from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, Member
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, AttributeType
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import name_of
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis import Analysis
 from roaml.text import Decoded, Span
-from roaml.xml import Attribute
+from roaml.xml_syntax import Attribute
 
 
 class TokenKind(enum.Enum):

@@ -11,7 +11,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
 from roaml.text import Decoded
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 GRAMMARS = {
     FileKind.MACHINE: HL_SCXML,

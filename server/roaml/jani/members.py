@@ -13,7 +13,7 @@ from typing import NamedTuple
 from roaml.diagnostics import Severity
 from roaml.jani.node import Origin
 from roaml.jani.notes import SYNTAX, Notes
-from roaml.json import JsonArray, JsonBool, JsonError, JsonNumber, JsonObject, JsonString, JsonValue, kind
+from roaml.json_syntax import JsonArray, JsonBool, JsonError, JsonNumber, JsonObject, JsonString, JsonValue, kind
 from roaml.text import Span
 
 HARMLESS = frozenset(("comment", "metadata"))

@@ -7,8 +7,8 @@ import itertools
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.jani.notes import NAME, Notes
-from roaml.json import JsonString
-from roaml.json.strings import quote
+from roaml.json_syntax import JsonString
+from roaml.json_syntax.strings import quote
 from roaml.text import Span, TextEdit
 
 

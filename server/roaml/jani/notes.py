@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.jani.suggest import nearest
-from roaml.json import quote
+from roaml.json_syntax import quote
 from roaml.text import Span, TextEdit
 
 SYNTAX = "jani-syntax"

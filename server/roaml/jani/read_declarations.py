@@ -21,7 +21,7 @@ from roaml.jani.names import Names
 from roaml.jani.notes import SYNTAX, Notes
 from roaml.jani.read_formulas import FormulaReader
 from roaml.jani.types import INT, REAL, UNKNOWN, ArrayType, BasicType, BoundedType, DatatypeType, OptionType, Type
-from roaml.json import JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonObject, JsonString, JsonValue
 from roaml.text import Span
 
 _ACTION = shape("an action", "name", "comment")

@@ -71,7 +71,7 @@ from roaml.jani.properties import (
     UnaryPath,
     UnaryPathOperator,
 )
-from roaml.json import JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.text import Span, TextEdit
 
 E = TypeVar("E", bound=enum.Enum)

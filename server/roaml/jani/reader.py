@@ -4,7 +4,7 @@
 - Never fails: what cannot be read is reported and left out, the rest is read all the same. A model that was read
   without errors can be written, checked and run.
 - Codes of findings: `jani-syntax` (not of the shape that JANI has), `jani-name` (undefined or declared twice),
-  `jani-type`. What JSON itself is wrong about was reported by `roaml.json.parse` and is not reported again.
+  `jani-type`. What JSON itself is wrong about was reported by `roaml.json_syntax.parse` and is not reported again.
 - Every origin is a place in the file.
 """
 
@@ -35,7 +35,7 @@ from roaml.jani.notes import SYNTAX, Notes
 from roaml.jani.properties import Property
 from roaml.jani.read_declarations import DeclarationReader
 from roaml.jani.typecheck import check_model
-from roaml.json import JsonNull, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonNull, JsonObject, JsonString, JsonValue
 
 
 def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Finding, ...]]:

@@ -58,7 +58,7 @@ from roaml.jani.properties import (
     UnaryPath,
     UnaryPathOperator,
 )
-from roaml.json import quote
+from roaml.json_syntax import quote
 
 Part: TypeAlias = "str | Formula"
 """A piece of JSON: text, or a formula that is still to be written."""

@@ -36,7 +36,7 @@ from roaml.jani.node import never
 from roaml.jani.properties import Property
 from roaml.jani.types import ArrayType, BasicType, BoundedType, DatatypeType, OptionType, Type, UnknownType
 from roaml.jani.write_formulas import FormulaWriter
-from roaml.json import indented, quote
+from roaml.json_syntax import indented, quote
 
 
 def write(model: Model, indent: int | None = None) -> Iterator[str]:

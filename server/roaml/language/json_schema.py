@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.resources import schema_path
 
 Schema: TypeAlias = Mapping[str, Any]

@@ -20,8 +20,8 @@ from lxml import etree
 from roaml.language.grammar import AttributeType, ElementType, Grammar, SimpleType
 from roaml.language.resources import schema_path
 from roaml.text import Span
-from roaml.xml import Attribute, CData, Document, Element, Text
-from roaml.xml.names import SPACE, is_local_name
+from roaml.xml_syntax import Attribute, CData, Document, Element, Text
+from roaml.xml_syntax.names import SPACE, is_local_name
 
 _UNREAD = ("xml-syntax", "nesting-too-deep")
 """Findings that say that the tree is not the whole document, or not yet."""

@@ -17,7 +17,7 @@ from roaml.model.machine import Chart, Communicate, Data, Declaration, Handler, 
 from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import PortRead
 from roaml.model.system import Automaton, Channel
-from roaml.model.typing import bindings, find_handle, port_type
+from roaml.model.value_types import bindings, find_handle, port_type
 from roaml.text import Decoded, Location, Span
 
 

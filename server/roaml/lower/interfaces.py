@@ -11,7 +11,7 @@ from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.system import Automaton, Channel, Endpoint, safe_name, sanitise
-from roaml.model.typing import INTERFACE_KINDS, Environment
+from roaml.model.value_types import INTERFACE_KINDS, Environment
 
 
 def topic_event(topic: str) -> str:

@@ -23,7 +23,7 @@ from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, Send, State, Target, Transition
 

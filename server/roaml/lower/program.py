@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from roaml.model.machine import Machine
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import Parameters
-from roaml.model.typing import Environment
+from roaml.model.value_types import Environment
 from roaml.text import Location, Span
 
 

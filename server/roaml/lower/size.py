@@ -40,7 +40,7 @@ from roaml.model.machine import (
 from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Automaton, Channel
-from roaml.model.typing import bindings
+from roaml.model.value_types import bindings
 
 _EDGE = 4
 """What an edge counts besides its expressions: it has a destination, an action and two locations."""

@@ -22,7 +22,7 @@ from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
-from roaml.model.typing import STATUSES, unset_fields
+from roaml.model.value_types import STATUSES, unset_fields
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
 from roaml.text import Location
 

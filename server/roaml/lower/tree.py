@@ -8,7 +8,7 @@ from roaml.lower.build import equal, event_data, integer
 from roaml.lower.program import Program
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.translated import TREE_HAS_FINISHED, TREE_ROOT_PREFIX
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 from roaml.scxml.model import Automaton, Role, Send, State, Target, Transition
 
 ANSWER = f"bt_{ROOT_NUMBER}_response"

@@ -42,7 +42,7 @@ from roaml.model.syntax import (
     value_of,
 )
 from roaml.text import Span
-from roaml.xml import Comment, Document, Element
+from roaml.xml_syntax import Comment, Document, Element
 
 INTERFACE_ATTRIBUTES = ("topic", "service_name", "action_name")
 

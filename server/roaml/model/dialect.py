@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.model.machine import Dialect, Machine
-from roaml.xml import Document
+from roaml.xml_syntax import Document
 
 _FOREIGN_ATTRIBUTES = ("targetexpr", "eventexpr")
 

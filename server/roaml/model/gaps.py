@@ -20,9 +20,9 @@ from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
 from roaml.model.spelling import close_names, meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
-from roaml.model.typing import INTERFACE_KINDS, TypedMachine, Use, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, Use, find_handle
 from roaml.text import Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 ANYTHING = ""
 """The act of a gap that may say whatever there is to say."""

@@ -17,7 +17,7 @@ from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
-from roaml.model.typing import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS
 
 FIELD_PREFIX = "ros_fields__"
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from roaml.diagnostics import Finding
 from roaml.expr.types import TypeName
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.model.structs import MemberDeclaration, StructDeclaration
 from roaml.model.syntax import Name, TypeRef
 

@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from roaml.language import ElementType
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 class Dialect(enum.Enum):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 
 VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
 EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")

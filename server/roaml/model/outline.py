@@ -31,8 +31,8 @@ from roaml.model.machine import (
     Statement,
 )
 from roaml.model.syntax import Expression, Name, PortRead
-from roaml.model.typing import TypedMachine, Use, find_handle
-from roaml.xml import Element
+from roaml.model.value_types import TypedMachine, Use, find_handle
+from roaml.xml_syntax import Element
 
 
 @dataclass(frozen=True, slots=True)

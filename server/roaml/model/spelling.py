@@ -8,7 +8,7 @@ import functools
 from collections.abc import Container, Iterable
 
 from roaml.model.syntax import Name, name_of
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:

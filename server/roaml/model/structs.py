@@ -10,7 +10,7 @@ from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
 from roaml.model.nesting import Extent, extents
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
 from roaml.text import Span
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 
 @dataclass(frozen=True, slots=True)

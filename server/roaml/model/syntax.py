@@ -11,7 +11,7 @@ from roaml.expr.parse import parse
 from roaml.expr.tree import Expr
 from roaml.expr.types import TypeName, parse_type
 from roaml.text import Decoded, Span
-from roaml.xml import Attribute, Document, Element
+from roaml.xml_syntax import Attribute, Document, Element
 
 
 @dataclass(frozen=True, slots=True)

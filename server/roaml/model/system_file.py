@@ -10,7 +10,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.spelling import close_names, meant
 from roaml.model.syntax import Name, name_of
 from roaml.text import Span
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 SECTIONS = ("data_declarations", "behavior_tree", "node_models", "properties")
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
-from roaml.xml import Attribute, Document, Element
+from roaml.xml_syntax import Attribute, Document, Element
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 SUBTREES = ("SubTree", "SubTreePlus")

@@ -22,8 +22,8 @@ from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
 from roaml.jani.reader import read_properties
-from roaml.json import JsonValue
-from roaml.json import parse as parse_json
+from roaml.json_syntax import JsonValue
+from roaml.json_syntax import parse as parse_json
 from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
@@ -50,13 +50,13 @@ from roaml.model.system_file import (
     wanted_kind,
 )
 from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
-from roaml.model.typing import INTERFACE_KINDS, Environment, TypedMachine, type_machine
+from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
 from roaml.text import SourceFile, Span
-from roaml.xml import Document
-from roaml.xml import parse as parse_xml
+from roaml.xml_syntax import Document
+from roaml.xml_syntax import parse as parse_xml
 
 T = TypeVar("T")
 
@@ -82,7 +82,7 @@ NO_STRUCTS = Structs((), {}, complete=True)
 
 
 class _MachineEnvironment:
-    """`roaml.model.typing.Environment` for one machine."""
+    """`roaml.model.value_types.Environment` for one machine."""
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Finding
 from roaml.text import Span
-from roaml.xml import Comment, Document, Element, Node, Text
+from roaml.xml_syntax import Comment, Document, Element, Node, Text
 
 _COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
 

@@ -104,7 +104,7 @@ from roaml.rules.interfaces import (
     unset_field,
     unused_handle,
 )
-from roaml.rules.json import jani_type
+from roaml.rules.json_syntax import jani_type
 from roaml.rules.properties import ignored_bounds, model_fault, unknown_property_variable, unsupported_property
 from roaml.rules.rule import Rule
 from roaml.rules.states import (
@@ -162,7 +162,7 @@ from roaml.rules.variables import (
     unknown_type,
     unused_variable,
 )
-from roaml.rules.xml import document_type, foreign_namespace, ignored_encoding, stray_text, undecodable_text
+from roaml.rules.xml_syntax import document_type, foreign_namespace, ignored_encoding, stray_text, undecodable_text
 
 GROUPS = (
     "answers",
@@ -171,13 +171,13 @@ GROUPS = (
     "expressions",
     "files",
     "interfaces",
-    "json",
+    "json_syntax",
     "properties",
     "states",
     "systems",
     "trees",
     "variables",
-    "xml",
+    "xml_syntax",
 )
 """The packages with rules."""
 

@@ -16,7 +16,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
 from roaml.interfaces.registry import NotFound
 from roaml.jani.properties import Property
-from roaml.json import JsonValue
+from roaml.json_syntax import JsonValue
 from roaml.language import Grammar
 from roaml.language.validate import Violation
 from roaml.model.expand import TreeFileOutline
@@ -30,9 +30,9 @@ from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
 from roaml.model.tree import TreeFile
-from roaml.model.typing import TypedMachine
+from roaml.model.value_types import TypedMachine
 from roaml.text import SourceFile, Span, TextEdit
-from roaml.xml import Document
+from roaml.xml_syntax import Document
 
 
 @dataclass(frozen=True, slots=True)

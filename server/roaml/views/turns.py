@@ -18,7 +18,7 @@ from roaml.jani.node import Origin
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.system import builtin_plugins
 from roaml.model.translated import is_generated, is_length, received_by, sent_by
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 from roaml.smc.record import Change, Part, Plain, TraceStep
 from roaml.smc.story import Story
 

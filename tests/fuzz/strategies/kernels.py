@@ -12,7 +12,7 @@ from fuzz.networks import Json, network
 from fuzz.strategy import Failure, Strategy
 from roaml import api
 from roaml.jani.reader import read_model
-from roaml.json import parse
+from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from twin import difference
 

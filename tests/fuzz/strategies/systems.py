@@ -20,7 +20,7 @@ from fuzz.corpus import Model, snippets, systems
 from fuzz.elements import elements_of, piece, put
 from fuzz.strategy import Failure, Strategy
 from roaml.text import Span
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 LONGEST = 300_000
 """Characters of one file. That greater ones take their time is no failure."""

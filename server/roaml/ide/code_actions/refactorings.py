@@ -16,7 +16,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives == "result")
 """The handlers of the results that an action may have."""

@@ -18,7 +18,7 @@ from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 _MOST_CHOICES = 20
 

@@ -20,9 +20,9 @@ from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
-from roaml.model.typing import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
+from roaml.model.value_types import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
 from roaml.text import Decoded, Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 _NAME = re.compile(r"[A-Za-z_$][\w$]*\Z|\Z", re.ASCII)
 _BEHIND = re.compile(r"[\w$]*", re.ASCII)

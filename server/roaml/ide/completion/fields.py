@@ -13,8 +13,8 @@ from roaml.ide.completion.request import Request, Subject
 from roaml.language import ElementType
 from roaml.model.machine import Communicate, Declaration
 from roaml.model.ros import InterfaceType
-from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
-from roaml.xml import Element
+from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.xml_syntax import Element
 
 
 def field_names(request: Request, subject: Subject) -> Iterator[Item]:

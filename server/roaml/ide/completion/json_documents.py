@@ -10,7 +10,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet, escaped
 from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import kind_in
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue, Member
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Schema
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis

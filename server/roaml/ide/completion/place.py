@@ -13,7 +13,7 @@ from typing import TypeAlias
 from roaml.ide.on_type import open_element
 from roaml.ide.syntax import Typed, XmlFile, path_at
 from roaml.text import Span
-from roaml.xml import Attribute, CData, Comment, Document, Element, Instruction, Text
+from roaml.xml_syntax import Attribute, CData, Comment, Document, Element, Instruction, Text
 
 _WORD_BEFORE = re.compile(r"[\w:.-]*\Z")
 _WORD_AFTER = re.compile(r"[\w:.-]*")

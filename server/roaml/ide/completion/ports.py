@@ -16,8 +16,8 @@ from roaml.language import ElementType
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
-from roaml.model.typing import INTERFACE_KINDS
-from roaml.xml import Element
+from roaml.model.value_types import INTERFACE_KINDS
+from roaml.xml_syntax import Element
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,10 +14,10 @@ from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
 from roaml.model.machine import Chart, Communicate, Handler, Machine
 from roaml.model.system import System
-from roaml.model.typing import Environment
+from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 class Subject(NamedTuple):

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from roaml.xml import Comment, Document, Element, Node, Text
+from roaml.xml_syntax import Comment, Document, Element, Node, Text
 
 _TYPE = re.compile(r"[,;]?\s*\bTYPE\s+\w+\s*:\s*[\w\[\]]+")
 _LICENCE = re.compile(r"SPDX-|Copyright|Licen[cs]ed under", re.IGNORECASE)

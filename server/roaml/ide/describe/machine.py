@@ -22,10 +22,10 @@ from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import Automaton, System, sanitise
-from roaml.model.typing import TypedMachine, Use
+from roaml.model.value_types import TypedMachine, Use
 from roaml.project.analysis import Analysis
 from roaml.text import Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 _OCCASIONS = {
     "": "by itself",

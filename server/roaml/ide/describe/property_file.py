@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from roaml.ide.describe.markdown import code, lines, name, paragraphs
 from roaml.ide.json_tree import members
 from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
-from roaml.json import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 
 _DEPTH = 12
 _LENGTH = 400

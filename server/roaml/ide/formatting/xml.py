@@ -16,8 +16,8 @@ from collections.abc import Iterator, Sequence
 
 from roaml.ide.formatting.layout import Gap, Layout, breaks, new_line
 from roaml.text import Span
-from roaml.xml import CData, Comment, Document, Element, Instruction, Node, Text
-from roaml.xml.names import SPACE
+from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Node, Text
+from roaml.xml_syntax.names import SPACE
 
 _HARMLESS = {"duplicate-attribute", "undefined-entity", "document-type"}
 _MARKERS = {"else", "elseif"}

@@ -16,7 +16,7 @@ from roaml.ide.names.lookup import occurrences_at, systems_of
 from roaml.ide.navigation import definition_of
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import KIND_NAMES, Definition, Kind
-from roaml.model.typing import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 

@@ -25,7 +25,7 @@ from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.text import Span
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 SEPARATOR = "\n\n---\n\n"
 

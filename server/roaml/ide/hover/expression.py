@@ -11,7 +11,7 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.names.lookup import systems_of
 from roaml.ide.syntax import XmlFile, expression_at
 from roaml.model.machine import Handler, Machine
-from roaml.model.typing import STATUSES, bindings
+from roaml.model.value_types import STATUSES, bindings
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 

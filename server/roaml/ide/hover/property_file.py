@@ -11,7 +11,7 @@ from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.markdown import code, paragraphs
 from roaml.ide.json_tree import members
 from roaml.ide.names.lookup import systems_of
-from roaml.json import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
+from roaml.json_syntax import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
 from roaml.model.system import Automaton, System
 from roaml.project.analysis import Analysis

@@ -10,13 +10,13 @@ from roaml.ide.describe.machine import duration, rate
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
 from roaml.ide.describe.property_file import formula
 from roaml.ide.json_tree import members
-from roaml.json import JsonArray, JsonObject, JsonString
+from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import NANOSECONDS
 from roaml.project.analysis import Analysis
 from roaml.project.files import resolve
 from roaml.text import Span
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 
 def listed_file(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:

@@ -42,7 +42,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
 from roaml.model.system import sanitise
-from roaml.model.typing import INTERFACE_KINDS, STATUSES, Environment, bindings, find_handle, interface_part
+from roaml.model.value_types import INTERFACE_KINDS, STATUSES, Environment, bindings, find_handle, interface_part
 from roaml.text import Span
 
 INTERFACE_SYMBOLS = {"msg": "topic", "srv": "service", "action": "action"}

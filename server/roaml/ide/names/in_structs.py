@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import type_use
 from roaml.ide.names.occurrence import Occurrence
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 from roaml.model.structs import StructDeclaration
 from roaml.model.syntax import Name
 from roaml.text import Span

@@ -15,7 +15,7 @@ from roaml.model.syntax import Name
 from roaml.model.system import System
 from roaml.model.tree import SUBTREES, NodeModel, PortSetting, TreeNode, blackboard_variable, nodes
 from roaml.text import Span
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 
 def in_tree(document: Document, path: str, trees: Trees, system: System | None) -> Iterator[Occurrence]:

@@ -13,7 +13,7 @@ from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
 from roaml.lower.nodes import node_file
 from roaml.model.system import System
-from roaml.model.typing import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.project.files import resolve
 from roaml.text import Location, Span

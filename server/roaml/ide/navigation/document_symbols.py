@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from roaml.ide.json_tree import members
 from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
 from roaml.ide.navigation.jani_symbols import jani_symbols
-from roaml.json import JsonArray, JsonObject, JsonString
+from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Chart, Data, Declaration, Handler, Machine, Port, State, Thread
 from roaml.model.structs import StructDeclaration
@@ -20,7 +20,7 @@ from roaml.model.system_file import SystemFile
 from roaml.model.tree import TreeFile, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.text import Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from roaml.ide.describe.property_file import formula
 from roaml.ide.json_tree import members
 from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
-from roaml.json import JsonArray, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 
 _LONGEST = 80
 

@@ -21,7 +21,7 @@ from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, RESERVED, VARIABLE, variable_problem
 from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
 

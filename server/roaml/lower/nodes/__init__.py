@@ -17,7 +17,7 @@ from roaml.lower.program import Program
 from roaml.model.build_machine import build_machine
 from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT, Automaton
-from roaml.xml import parse
+from roaml.xml_syntax import parse
 
 _ALIASES = {"RetryUntilSuccesful": "RetryUntilSuccessful", "SequenceStar": "SequenceWithMemory"}
 """Names of version 3."""

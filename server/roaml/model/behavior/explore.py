@@ -40,7 +40,7 @@ from roaml.model.machine import (
     statements,
 )
 from roaml.model.syntax import Expression
-from roaml.model.typing import STATUSES, find_handle
+from roaml.model.value_types import STATUSES, find_handle
 from roaml.text import Span
 
 MOST_CONFIGURATIONS = 4000

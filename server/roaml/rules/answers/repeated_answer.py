@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
 from roaml.model.behavior.explore import Behavior, Duty, Event, Fault, Step
 from roaml.model.machine import Communicate, Handler, If, ReturnHalted, ReturnStatus, Statement, statements
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import SENT, answered_in, behaviors, place, plugins
 from roaml.text import TextEdit

@@ -23,7 +23,7 @@ from roaml.rules.support.answers import (
     plugins,
     target_of,
 )
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

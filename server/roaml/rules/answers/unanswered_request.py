@@ -10,7 +10,7 @@ from roaml.edit.elements import last_in
 from roaml.model.behavior.explore import Behavior, Duty, Step
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.support.interfaces import response

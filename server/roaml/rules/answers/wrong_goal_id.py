@@ -14,7 +14,7 @@ from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Communicate, If, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, is_spelled, place
 from roaml.rules.support.interfaces import declared

@@ -10,7 +10,7 @@ from roaml.model.vocabulary import BRANCH_MARKERS
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import own_elements
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import known_elements
-from roaml.xml import Attribute, Element, children_text
+from roaml.xml_syntax import Attribute, Element, children_text
 
 VALUE_ELEMENTS = ("expr", "lower_bound_incl", "upper_bound_incl", "topic", "service_name", "action_name", "rate_hz")
 

@@ -14,7 +14,7 @@ from roaml.language.grammar import ElementType
 from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext
 from roaml.rules.support.elements import known_elements
 from roaml.text import Span, TextEdit
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 ROOT = "ascxml"
 EXTENSION = ".ascxml"

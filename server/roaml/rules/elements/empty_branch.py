@@ -11,7 +11,7 @@ from roaml.language.validate import is_foreign
 from roaml.model.machine import If
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import stands_alone
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 MARKERS = ("elseif", "else")
 

@@ -11,7 +11,7 @@ from roaml.language import AttributeType
 from roaml.rules.rule import FileContext, Rule
 from roaml.rules.support.elements import known_elements
 from roaml.text import TextEdit
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 CHANGES_MEANING = ("delay", "delayexpr", "initial", "src")
 SPEAKS_FOR = {("param", "location"): "expr"}

@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.machine import NoEffect
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import stands_alone
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -15,7 +15,7 @@ from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 DEFAULTS = {"version": "1.0", "unit": "s"}
 

@@ -14,7 +14,7 @@ from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.children import has_counted_children
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: FileContext) -> Iterator[Finding]:

@@ -14,7 +14,7 @@ from roaml.model.syntax import Value
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -12,7 +12,7 @@ from roaml.language.validate import TooManyElements, is_foreign
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support.children import has_counted_children
 from roaml.rules.support.elements import own_elements
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 ONCE: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("ascxml", "scxml", "ros_action_thread"), ("datamodel",)),

@@ -10,7 +10,7 @@ from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownName
 from roaml.model.syntax import Expression
-from roaml.model.typing import Place, TypedValue, Use
+from roaml.model.value_types import Place, TypedValue, Use
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
 from roaml.rules.support.event_data import known_here

@@ -11,7 +11,7 @@ from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, i
 from roaml.model.machine import Communicate, Declaration, Param, Send
 from roaml.model.outline import SentField
 from roaml.model.system import Event
-from roaml.model.typing import TypedValue, Use, find_handle
+from roaml.model.value_types import TypedValue, Use, find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 from roaml.rules.support.types import phrase

@@ -11,7 +11,7 @@ from roaml.model.behavior.explore import Event
 from roaml.model.behavior.instants import comes_again
 from roaml.model.machine import CallChild, Communicate, Handler, Send, Statement, statements
 from roaml.model.syntax import Expression
-from roaml.model.typing import Place, TypedValue, Use, find_handle
+from roaml.model.value_types import Place, TypedValue, Use, find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
 

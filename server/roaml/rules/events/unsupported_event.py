@@ -10,7 +10,7 @@ from roaml.edit.elements import indent_of, removal
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, listing
 from roaml.text import TextEdit
-from roaml.xml import Attribute, Element
+from roaml.xml_syntax import Attribute, Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.tree import Conditional, access_path
 from roaml.expr.types import BOOL, Array, fits, is_kind, is_number
 from roaml.model.syntax import Expression
-from roaml.model.typing import TypedValue, Use
+from roaml.model.value_types import TypedValue, Use
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit

@@ -12,7 +12,7 @@ from roaml.expr.tree import Binary, Expr, Index, Member, Name, Unary, walk
 from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
 from roaml.model.syntax import Expression
-from roaml.model.typing import Place, TypedValue, Use
+from roaml.model.value_types import Place, TypedValue, Use
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 

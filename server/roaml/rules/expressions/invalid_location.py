@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Index, Member, Name, access_path
 from roaml.expr.types import Type
 from roaml.model.syntax import Expression
-from roaml.model.typing import TypedValue, Use
+from roaml.model.value_types import TypedValue, Use
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
 

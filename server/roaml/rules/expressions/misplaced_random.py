@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import RandomUsed
-from roaml.model.typing import Use
+from roaml.model.value_types import Use
 from roaml.rules.rule import MachineContext, Rule
 
 WHERE = {

@@ -12,7 +12,7 @@ from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, Str
 from roaml.expr.types import Array, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
-from roaml.model.typing import TypedValue, Use
+from roaml.model.value_types import TypedValue, Use
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type

@@ -11,7 +11,7 @@ from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Array, Struct, unwrap
 from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
-from roaml.model.typing import TypedValue
+from roaml.model.value_types import TypedValue
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
 from roaml.rules.support.fields import is_ros
 from roaml.text import Span, TextEdit

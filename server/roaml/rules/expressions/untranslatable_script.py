@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.model.tree import nodes
 from roaml.rules.rule import Rule, TreeContext
-from roaml.xml import Attribute
+from roaml.xml_syntax import Attribute
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
 from roaml.model.machine import Communicate, Declaration, Handler
 from roaml.model.syntax import Name, PortRead
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule, unused
 from roaml.text import Span, TextEdit
 

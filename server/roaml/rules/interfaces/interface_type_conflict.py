@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.interfaces.registry import NotFound
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, CLOCK_TYPE, Channel, System
-from roaml.model.typing import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, other_kind
 from roaml.text import TextEdit

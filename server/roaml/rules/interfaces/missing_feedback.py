@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.model.machine import Declaration, Handler
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.system import System
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.interfaces import Naming, named_here, other_kind
 from roaml.text import Span, TextEdit

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
 from roaml.model.machine import Communicate, Declaration
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled

@@ -10,7 +10,7 @@ from roaml.edit.elements import last_in
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, find_use, name_span, response
 

@@ -16,7 +16,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 from roaml.rules.support import misspelled
 from roaml.rules.support.interfaces import other_kind
 from roaml.text import Span, TextEdit
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

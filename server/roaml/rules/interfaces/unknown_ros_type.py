@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.interfaces.registry import NotFound, Reason
-from roaml.model.typing import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.text import Span, TextEdit
 

@@ -11,7 +11,7 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel
-from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
 from roaml.rules.support.interfaces import declared, other_kind

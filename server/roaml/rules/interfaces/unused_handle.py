@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.edit.elements import remove
 from roaml.model.machine import Communicate, Handler
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.rules.rule import MachineContext, Rule
 

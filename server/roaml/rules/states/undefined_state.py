@@ -12,7 +12,7 @@ from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 STATES = ("state", "parallel", "final", "history")
 VALID = re.compile(r"[A-Za-z_][\w.-]*\Z", re.ASCII)

@@ -14,13 +14,13 @@ from roaml.model.behavior.explore import Behavior, Duty, Step, explore
 from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext
 from roaml.rules.support import misspelled
 from roaml.rules.support.removed_events import uses_removed_events
 from roaml.rules.support.triggers import has_shadowed
 from roaml.text import Span
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
 """What answers a duty; a goal is accepted or rejected."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from roaml.diagnostics import Fix
 from roaml.edit.elements import after, first_in, last_in
 from roaml.model.machine import Handler, ReturnStatus, State, statements
-from roaml.model.typing import STATUSES
+from roaml.model.value_types import STATUSES
 from roaml.rules.rule import MachineContext, unused
 from roaml.text import TextEdit
 

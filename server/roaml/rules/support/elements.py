@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.language import Grammar
 from roaml.language.grammar import ElementType
 from roaml.language.validate import is_foreign
-from roaml.xml import Document, Element
+from roaml.xml_syntax import Document, Element
 
 
 def own_elements(document: Document) -> Iterator[Element]:

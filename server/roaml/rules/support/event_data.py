@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from roaml.model.typing import Place, bound_in
+from roaml.model.value_types import Place, bound_in
 
 
 def known_here(place: Place) -> list[str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from roaml.expr.types import Struct
 from roaml.model.machine import Communicate
 from roaml.model.ros import InterfaceType
-from roaml.model.typing import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
 from roaml.rules.rule import MachineContext
 
 ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")

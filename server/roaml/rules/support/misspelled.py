@@ -9,7 +9,7 @@ from functools import lru_cache
 from roaml.language import HL_SCXML, Grammar
 from roaml.model.machine import Machine
 from roaml.rules.rule import close_names
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def attribute(element: Element, name: str, known: Iterable[str]) -> bool:

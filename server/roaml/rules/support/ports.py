@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
-from roaml.model.typing import TypedMachine
+from roaml.model.value_types import TypedMachine
 
 
 def reads(machine: Machine, typed: TypedMachine) -> Iterator[Name]:

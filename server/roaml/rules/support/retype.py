@@ -10,7 +10,7 @@ from roaml.expr.tree import Name
 from roaml.expr.types import INTEGER_RANGES
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression
-from roaml.model.typing import TypedValue, Use
+from roaml.model.value_types import TypedValue, Use
 from roaml.rules.rule import MachineContext
 from roaml.text import TextEdit
 

@@ -9,7 +9,7 @@ from roaml.model.behavior.explore import condition_facts
 from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
-from roaml.model.typing import find_handle
+from roaml.model.value_types import find_handle
 from roaml.rules.support.conditions import covered
 
 TOPIC = "message"

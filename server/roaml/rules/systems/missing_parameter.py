@@ -10,7 +10,7 @@ from roaml.edit.elements import first_in
 from roaml.language import SYSTEM
 from roaml.rules.rule import Rule, SystemContext
 from roaml.rules.support import misspelled
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 MAX_TIME = '<max_time value="100" unit="s" />'
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
 from roaml.rules.rule import Rule, SystemContext
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

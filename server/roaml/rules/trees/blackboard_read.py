@@ -10,7 +10,7 @@ from roaml.expr.tree import Name, walk
 from roaml.model.expand import Reference
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
-from roaml.model.typing import TypedValue, Use
+from roaml.model.value_types import TypedValue, Use
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
 

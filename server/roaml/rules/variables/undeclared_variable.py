@@ -14,7 +14,7 @@ from roaml.expr.types import BOOL, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
-from roaml.model.typing import STATUSES, TypedValue, Use
+from roaml.model.value_types import STATUSES, TypedValue, Use
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled

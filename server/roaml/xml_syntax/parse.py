@@ -16,9 +16,9 @@ from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
 from roaml.text import Span, TextEdit, span_of
-from roaml.xml.escapes import PREDEFINED, REFERENCE, is_character, unescape
-from roaml.xml.names import ASCII_NAME, SPACE, is_name, leading_local_name
-from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
+from roaml.xml_syntax.escapes import PREDEFINED, REFERENCE, is_character, unescape
+from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_name
+from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 MAX_DEPTH = 100
 """Elements nested deeper than this are reported and left out of the tree."""

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.diagnostics import Finding
 from roaml.text import Decoded, Span, joined
-from roaml.xml.escapes import decoded
+from roaml.xml_syntax.escapes import decoded
 
 
 class Attribute(NamedTuple):

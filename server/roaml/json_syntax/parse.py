@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple, NoReturn
 
 from roaml.diagnostics import Finding, Fix, Related
-from roaml.json.strings import quote, unescape
-from roaml.json.values import (
+from roaml.json_syntax.strings import quote, unescape
+from roaml.json_syntax.values import (
     JsonArray,
     JsonBool,
     JsonError,

@@ -4,8 +4,8 @@
 Knows XML 1.0 and namespaces only; what the elements mean is stated in `roaml.language`.
 """
 
-from roaml.xml.parse import parse
-from roaml.xml.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
+from roaml.xml_syntax.parse import parse
+from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 __all__ = [
     "Attribute",

@@ -5,7 +5,7 @@
   hundreds of thousands of values in one JANI file, and a second object for each would double the time to read them.)
 - Where something is missing or unreadable there is a `JsonError` (or a `Member` without value), so the rest of the tree
   stays usable; a finding has said why.
-- Values may nest up to `roaml.json.parse.MAX_DEPTH`: functions over trees must not recurse.
+- Values may nest up to `roaml.json_syntax.parse.MAX_DEPTH`: functions over trees must not recurse.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ from roaml.model.machine import (
 )
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.xml import Element
+from roaml.xml_syntax import Element
 
 
 class Environment(Protocol):

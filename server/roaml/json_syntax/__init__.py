@@ -4,10 +4,10 @@
 Knows RFC 8259 only; what the members mean is stated by the packages above.
 """
 
-from roaml.json.layout import indented
-from roaml.json.parse import MAX_DEPTH, parse
-from roaml.json.strings import quote
-from roaml.json.values import (
+from roaml.json_syntax.layout import indented
+from roaml.json_syntax.parse import MAX_DEPTH, parse
+from roaml.json_syntax.strings import quote
+from roaml.json_syntax.values import (
     JsonArray,
     JsonBool,
     JsonError,
