@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
@@ -96,7 +97,7 @@ class Include:
     package: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class TreeFile:
     """One file. `format` is "" if it is not given."""
 
@@ -106,6 +107,11 @@ class TreeFile:
     trees: tuple[Tree, ...]
     models: tuple[NodeModel, ...]
     includes: tuple[Include, ...]
+
+    @cached_property
+    def nodes_by_tree(self) -> Mapping[str, tuple[TreeNode, ...]]:
+        """The nodes of each tree, parents before children, by its name; of equal names the first counts."""
+        return {tree.id.value if tree.id else "": tuple(nodes(tree)) for tree in reversed(self.trees)}
 
 
 def build_tree_file(document: Document) -> TreeFile | None:

@@ -64,16 +64,25 @@ def other_kind(kind: str) -> str:
 
 def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, Automaton, Channel]]:
     """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
-    if context.system is None:
-        return
+    of_kind = [d for d in context.machine.declarations if d.kind == kind and d.handle is not None]
     for automaton in context.automata:
-        for declaration in context.machine.declarations:
-            if declaration.kind != kind or declaration.handle is None:
-                continue
-            use = find_use(automaton, declaration)
-            channel = context.system.channel(automaton, use) if use else None
+        for declaration in of_kind:
+            channel = _channel(context, automaton, declaration)
             if channel is not None:
                 yield declaration, automaton, channel
+
+
+def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[tuple[Automaton, Channel]]:
+    """What one declaration means, in each automaton that the machine is."""
+    for automaton in context.automata:
+        channel = _channel(context, automaton, declaration)
+        if channel is not None:
+            yield automaton, channel
+
+
+def _channel(context: MachineContext, automaton: Automaton, declaration: Declaration) -> Channel | None:
+    use = find_use(automaton, declaration)
+    return context.system.channel(automaton, use) if context.system and use else None
 
 
 def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton, InterfaceUse]]:
@@ -94,11 +103,7 @@ def port_span(node: TreeNode, key: str) -> Span:
 
 def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
     """The outline of a declaration."""
-    handle = declaration.handle.value if declaration.handle else ""
-    for use in automaton.outline.interfaces:
-        if use.kind == declaration.kind and use.handle == handle:
-            return use
-    return None
+    return automaton.outline.use(declaration.kind, declaration.handle.value if declaration.handle else "")
 
 
 def name_span(declaration: Declaration) -> Span:
