@@ -45,7 +45,7 @@ _Edits = dict[str, tuple[TextEdit, ...]]
 
 def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """What can be done about a diagnostic, apart from what its rule offers."""
-    repair = _REPAIRS.get(diagnostic.code)
+    repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
         yield from repair(snapshot, diagnostic)
 
@@ -378,7 +378,7 @@ def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
 
 
-_REPAIRS: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
+FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
     "blackboard-type-conflict": _type_conflict,
     "input-count": _no_tree,
     "invalid-name": _name,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from fixture import Case, read_cases
 
-CASES_FOLDER = Path(__file__).parent / "cases"
-RULES_FOLDER = Path(__file__).parents[2] / "server" / "roaml" / "rules"
+CASES_FOLDER = Path(__file__).parent / "rules" / "cases"
+RULES_FOLDER = Path(__file__).parents[1] / "server" / "roaml" / "rules"
 ALL_RULES = "one_report"
 """The folder of the cases whose marks are of all rules."""
 
