@@ -16,12 +16,11 @@ from typing import Any
 from lxml import etree
 
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
 from roaml.roles import SymbolKind
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
-
-UNBOUNDED = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)

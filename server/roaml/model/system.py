@@ -41,10 +41,10 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.spelling import close_names
 from roaml.model.system_file import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
+from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
 CLOCK_TYPE = "builtin_interfaces/Time"
