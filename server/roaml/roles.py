@@ -16,6 +16,10 @@ class RoleValue(enum.Enum):
     # Members are compared by identity. `Enum` hashes the name, in Python, which is slow in keys of dictionaries.
     __hash__ = object.__hash__
 
+    def __lt__(self, other: RoleValue) -> bool:
+        """The order of the words, so that tuples with members can be sorted."""
+        return str(self.value) < str(other.value)
+
 
 class SymbolKind(RoleValue):
     """What a name names: what the value of an attribute defines or refers to, and what else the editor describes."""
@@ -74,11 +78,3 @@ ELSEWHERE = frozenset(
 )
 """What no schema says: parts of the languages themselves, ROS types, names on the blackboard, nodes of the executed
 tree, variables of the translation."""
-
-
-def _refuse(self, *_):  # TEMPORARY
-    raise AssertionError("implicit text of " + repr(self))
-
-
-RoleValue.__format__ = _refuse
-RoleValue.__str__ = _refuse

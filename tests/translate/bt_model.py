@@ -34,7 +34,7 @@ Step: TypeAlias = tuple[int, str]
 """What happens to a node: its number, and "tick", "halt", the status that it answers, or "halted"."""
 
 
-class NeverEnds(Exception):
+class NeverEnds(Exception):  # noqa: N818 - it is an outcome, no error
     """A tick of the tree does not come to an end."""
 
 

@@ -50,7 +50,7 @@ def _index(found: Iterable[Occurrence]) -> Uses:
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
     ordered: list[Occurrence] = []
-    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind.value)):
+    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind)):
         there = by_span.setdefault(each.span, [])
         if each not in there:
             there.append(each)

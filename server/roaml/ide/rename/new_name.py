@@ -40,7 +40,7 @@ def problem(analysis: Analysis, found: Thing, new: str) -> str:
     for symbol in found.symbols:
         if symbol.name == new:
             return f"it is called `{new}` already"
-    for kind in sorted(found.kinds, key=lambda kind: kind.value):
+    for kind in sorted(found.kinds):
         if reason := _form(kind, new, found):
             return reason
     for symbol in found.symbols:
