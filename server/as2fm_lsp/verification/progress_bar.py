@@ -14,21 +14,21 @@ from roaml.smc.goal import Question
 from roaml.smc.lss import Search
 from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
 
-PAUSE = 0.1
-"""Seconds between two pictures."""
-PATIENCE = 0.7
-"""Seconds before the first one."""
+REFRESH_INTERVAL_S = 0.1
+DELAY_S = 0.7
+"""The time before the bar is first shown."""
 WIDTH = 20
+"""The width of the bar, in characters."""
 _CLEAR = "\r\033[K"
 
 
-class Bar:
+class ProgressBar:
     """Within `with`; shows nothing where standard error is no terminal. The line is gone at the end."""
 
     def __init__(self) -> None:
         self._is_shown = False
         self._is_wanted = sys.stderr.isatty()
-        self._next = time.monotonic() + PATIENCE
+        self._next = time.monotonic() + DELAY_S
         self._question: Question | None = None
         self._search: Search | None = None
         self._options = Options()
@@ -36,7 +36,7 @@ class Bar:
         self._began = time.monotonic()
         self._first = 0
 
-    def __enter__(self) -> Bar:
+    def __enter__(self) -> ProgressBar:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
@@ -71,7 +71,7 @@ class Bar:
         now = time.monotonic()
         if not self._is_wanted or now < self._next or self._question is None:
             return
-        self._next = now + PAUSE
+        self._next = now + REFRESH_INTERVAL_S
         self._is_shown = True
         width = shutil.get_terminal_size().columns - 1
         if self._search is None:
