@@ -12,8 +12,9 @@ import xmlschema
 from lxml import etree
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM
-from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar, Occurrence
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
 
 GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE]
 XS = "{http://www.w3.org/2001/XMLSchema}"

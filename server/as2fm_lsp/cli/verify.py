@@ -21,11 +21,11 @@ from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import complain, flush, print_text
-from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.cli.progress_bar import ProgressBar
+from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
-from as2fm_lsp.verification.progress_bar import ProgressBar
 from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
@@ -109,10 +109,10 @@ def _run(options: argparse.Namespace) -> int:
     only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
     names = options.property or None
     try:
-        with Progress() as progress:
-            progress.stage("reading and translating")
+        with StatusLine() as status:
+            status.stage("reading and translating")
             target = api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
-            progress.stage("compiling")
+            status.stage("compiling")
             verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
     except api.ModelError as error:
         return _errors(options, error.result.diagnostics, error.result.source, error.result.files)

@@ -16,11 +16,10 @@ from typing import Any
 from lxml import etree
 
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
-
-UNBOUNDED = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)

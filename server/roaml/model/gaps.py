@@ -18,9 +18,10 @@ from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import misfits
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
-from roaml.model.spelling import close_names, meant
+from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, Use, find_handle
+from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
 

@@ -41,9 +41,9 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.spelling import close_names
 from roaml.model.system_file import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
 CLOCK_TYPE = "builtin_interfaces/Time"

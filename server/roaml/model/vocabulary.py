@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from roaml.interfaces import types as interfaces
 from roaml.language import HL_SCXML
 
 DECLARING_ELEMENTS = {
@@ -35,9 +36,7 @@ DEFAULT_TYPES = {"int": "int32", "real": "float64", "bool": "bool", "string": "s
 """The type of a declaration for a value, by the kind of the value."""
 
 FOREIGN_TYPES = {
-    "int": "int32", "integer": "int32", "uint": "uint32", "long": "int64", "short": "int16", "byte": "uint8",
-    "char": "uint8", "float": "float32", "double": "float64", "real": "float64", "number": "float64",
-    "boolean": "bool", "str": "string", "String": "string", "integer8": "int8", "integer16": "int16",
-    "integer32": "int32", "integer64": "int64",
+    **interfaces.FOREIGN_TYPES, "byte": "uint8", "char": "uint8", "String": "string",
+    "integer8": "int8", "integer16": "int16", "integer32": "int32", "integer64": "int64",
 }  # fmt: skip
 """Names of types in other languages, with the names that they have here."""

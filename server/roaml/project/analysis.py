@@ -36,7 +36,6 @@ from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
-from roaml.model.spelling import close_names
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
@@ -54,6 +53,7 @@ from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, 
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
+from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
 from roaml.xml_syntax import parse as parse_xml

@@ -18,7 +18,7 @@ from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.machine import Declaration, Machine
-from roaml.model.name_forms import EVENT, RESERVED, VARIABLE, variable_problem
+from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
 from roaml.model.value_types import STATUSES
@@ -93,14 +93,14 @@ def _form(kind: str, new: str, found: Thing) -> str:
         case "parameter":
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
         case "member":
-            right = VARIABLE.match(new) and not new.endswith("_") and new != "length" and not RESERVED.match(new)
+            right = VARIABLE.match(new) and not new.endswith("_") and new != "length" and not is_reserved(new)
         case "struct":
-            right = VARIABLE.match(new) and new not in BASE_TYPES and not RESERVED.match(new)
+            right = VARIABLE.match(new) and new not in BASE_TYPES and not is_reserved(new)
         case "port":
             right = VARIABLE.match(new) and not new.startswith("_") and new not in ("name", "ID", "CHILDREN_COUNT")
         case "blackboard":
             right = VARIABLE.match(new) and not new.startswith("_") and not new.endswith("_")
-            right = right and not RESERVED.match(new) and new not in ("name", "ID")
+            right = right and not is_reserved(new) and new not in ("name", "ID")
         case "topic" | "service" | "action":
             right = _INTERFACE.match(new)
         case "machine" | "plugin":

@@ -15,10 +15,10 @@ from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
 from roaml.model.system import ANY_TYPE
 from roaml.model.tree import (
-    RESERVED,
     PortModel,
     TreeNode,
     blackboard_variable,
+    is_reserved_variable,
     is_variable_name,
     looks_like_reference,
     nodes,
@@ -58,7 +58,7 @@ def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
             yield RULE.at(value.span, message)
     elif not variable:
         yield RULE.at(value.span, "the variable in the braces has no name")
-    elif RESERVED.match(variable):
+    elif is_reserved_variable(variable):
         yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
     elif not is_variable_name(variable) and not (is_subtree and variable == "="):
         rule = "letters, digits, `_` and `$`, not beginning with a digit"

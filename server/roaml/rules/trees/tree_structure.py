@@ -13,6 +13,7 @@ from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
 from roaml.rules.support import misspelled
+from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
 
 MAIN = "MainTree"
@@ -197,7 +198,7 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
 def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
     """The only tree is executed whatever it is called (docs/spec/trees.md#main-tree), but hardly on purpose. See
     `_no_tree`."""
-    known = context.system is not None or close_names(wanted.value, [executed])
+    known = context.system is not None or are_similar(wanted.value, executed)
     if known and not context.missing_includes:
         message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"
         yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
