@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from roaml.facts import Facts
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span, TextEdit
 
 
@@ -43,7 +44,7 @@ class Symbol(NamedTuple):
     """
 
     path: str
-    kind: str
+    kind: SymbolKind
     name: str
     scope: str = ""
 

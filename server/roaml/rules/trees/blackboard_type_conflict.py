@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.facts import Facts
 from roaml.model.system import BoundPort
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.blackboard import places
 
@@ -43,7 +44,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _related(*ports: BoundPort) -> list[Related]:
     return [
-        Related(Symbol(bound.automaton.path, "port", bound.port.key), f"declared as `{bound.port.type}`")
+        Related(Symbol(bound.automaton.path, SymbolKind.PORT, bound.port.key), f"declared as `{bound.port.type}`")
         for bound in ports
         if bound.automaton.path
     ]

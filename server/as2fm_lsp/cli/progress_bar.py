@@ -16,7 +16,7 @@ from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
 BAR_CHARACTERS = 20
 
 
-class Bar:
+class ProgressBar:
     """Within `with`; shows nothing where standard error is not a terminal. The line is gone at the end."""
 
     def __init__(self) -> None:
@@ -28,7 +28,7 @@ class Bar:
         self._began = time.monotonic()
         self._first = 0
 
-    def __enter__(self) -> Bar:
+    def __enter__(self) -> ProgressBar:
         self._line.__enter__()
         return self
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from as2fm_lsp.verification.stuck import PlaceOf
 from roaml.jani.model import Model
+from roaml.views.story import PlaceOf
 
 _NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")
@@ -25,11 +25,11 @@ def explained(text: str, model: Model, place_of: PlaceOf) -> str:
     if not mentioned:
         return ""
     origins = {automaton.name: automaton.origin for automaton in model.automata}
-    found = []
+    explanations = []
     for automaton in model.automata:
         node = _NODE.fullmatch(automaton.name)
         if node and int(node[1]) in mentioned:
             origin = origins.get(f"bt_{node[1]}_tick")
             place = f" ({place_of(origin)})" if origin is not None else ""
-            found.append(f"bt_{node[1]} is {node[2]}{place}")
-    return f"nodes of the behavior tree: {', '.join(found)}\n" if found else ""
+            explanations.append(f"bt_{node[1]} is {node[2]}{place}")
+    return f"nodes of the behavior tree: {', '.join(explanations)}\n" if explanations else ""

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The least and the greatest value over all schedulers, by Storm (https://www.stormchecker.org), where there are few
-states: they are counted first."""
+"""Exact minimum and maximum over all schedulers, computed by Storm (https://www.stormchecker.org).
+
+The states are counted first; Storm is asked only if there are few.
+"""
 
 from __future__ import annotations
 
@@ -8,23 +10,24 @@ import importlib
 import json
 from typing import Any
 
-from as2fm_lsp.verification.choices import asks_for_minimum
-from as2fm_lsp.verification.expectations import Expectation, Verdict
-from as2fm_lsp.verification.report import Exact
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
 from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
 from roaml.smc.goal import Asked, Question
 from roaml.smc.model import Checker
+from roaml.verification.expectations import Expectation, Verdict
+from roaml.verification.results import Exact
+from roaml.verification.schedulers import asks_for_minimum
 
 _SLACK = 1e-6
+"""The accuracy of Storm's values."""
 
 
 class ExactError(ValueError):
     """There is no exact answer; the message says why."""
 
 
-def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
+def exact_values(checker: Checker, asked: Asked, limit: int) -> Exact:
     """The exact least and greatest value of a property.
 
     Args:
@@ -54,8 +57,8 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
     if asked.property not in checker.model.properties:
         raise ExactError("this can be asked by traces only; leave --exact out")
     document = json.loads("".join(write(checker.model)))
-    (property_,) = (each for each in document["properties"] if each["name"] == asked.question.name)
-    found = []
+    (property_,) = (row for row in document["properties"] if row["name"] == asked.question.name)
+    extremes = []
     for operator in ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax"):
         expression = _inner(property_["expression"])
         expression["op"] = operator
@@ -65,14 +68,14 @@ def exactly(checker: Checker, asked: Asked, limit: int) -> Exact:
             model, properties = stormpy.parse_jani_model_from_string(json.dumps(document))
             built = stormpy.build_model(model, properties)
             result = stormpy.model_checking(built, properties[0], only_initial_states=True)
-            found.append(float(result.get_value(built.initial_states[0])))
+            extremes.append(float(result.get_value(built.initial_states[0])))
         except (RuntimeError, IndexError) as error:
             raise ExactError(f"Storm cannot answer: {error}") from None
-    return Exact(found[0], found[1], states)
+    return Exact(extremes[0], extremes[1], states)
 
 
-def judged(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
-    """Whether an expectation holds of the value that is asked for: the least or the greatest."""
+def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
+    """Whether the value that a property asks for, the minimum or the maximum, meets an expectation."""
     threshold = expectation.threshold
     what, value = ("least", exact.least) if asks_for_minimum(question) else ("greatest", exact.greatest)
     if threshold.relation is BinaryOperator.EQUAL:

@@ -12,7 +12,7 @@ import os
 import time
 from typing import Any
 
-from as2fm_lsp.write import write_file
+from as2fm_lsp.atomic_write import write_file
 from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
 from roaml.smc.goal import Question
@@ -20,17 +20,16 @@ from roaml.smc.run import Options, Tally
 from roaml.smc.stored import tally_from_json
 
 VERSION = 3
-MAX_STATE = 64 * MEGABYTE
-"""Bytes; the state of some hundred properties has a few million."""
-PAUSE = 1.0
-"""Seconds between two times of writing."""
+MAX_STATE_BYTES = 64 * MEGABYTE
+"""The state of some hundred properties has a few million."""
+WRITE_INTERVAL_S = 1.0
 
 
 class StateError(ValueError):
     """The file cannot be used; the message says why."""
 
 
-class State:
+class SavedState:
     """The tallies of several properties, kept in a file."""
 
     def __init__(self, path: str, options: Options) -> None:
@@ -71,7 +70,7 @@ class State:
         Raises:
             OSError: the file cannot be written; it is as it was.
         """
-        if not now and time.monotonic() - self._written < PAUSE:
+        if not now and time.monotonic() - self._written < WRITE_INTERVAL_S:
             return
         self._written = time.monotonic()
         self._properties[name] = {
@@ -86,7 +85,7 @@ class State:
 
     def _read(self) -> None:
         try:
-            value = json.loads(required(self.path, MAX_STATE).decode("utf-8"))
+            value = json.loads(required(self.path, MAX_STATE_BYTES).decode("utf-8"))
         except (ValueError, RecursionError):
             value = None
         if not isinstance(value, dict) or "version" not in value:
@@ -94,6 +93,6 @@ class State:
         if value["version"] != VERSION:
             raise StateError(f"{self.path} was written by another version; remove it to begin again")
         properties = value.get("properties")
-        if not isinstance(properties, dict) or not all(isinstance(each, dict) for each in properties.values()):
+        if not isinstance(properties, dict) or not all(isinstance(row, dict) for row in properties.values()):
             raise StateError(f"{self.path} is not the state of a verification")
         self._properties = properties

@@ -117,7 +117,7 @@ def check_range(expectation: Expectation, question: Question) -> None:
 
 
 def judge(expectation: Expectation, answer: Answer) -> Verdict:
-    """Hold an answer against what was expected."""
+    """Whether an answer meets an expectation."""
     threshold, tally = expectation.threshold, answer.tally
     if tally.traces == 0:
         return Verdict(expectation, False, False)

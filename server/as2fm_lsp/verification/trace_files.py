@@ -14,21 +14,23 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 
-from as2fm_lsp.verification.stuck import time_of
-from as2fm_lsp.verification.subject import Subject
-from as2fm_lsp.write import write_file
+from as2fm_lsp.atomic_write import write_file
 from roaml.jani.node import Origin
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Seen
+from roaml.verification.stuck import time_of
+from roaml.verification.target import Target
 from roaml.views.waiting import waits
 
-LIMIT = 10
-"""Traces of each verdict, if nothing else is said."""
+DEFAULT_LIMIT = 10
+"""The number of traces of each verdict that are written."""
 _UNSAFE = re.compile(r"[^\w.-]")
 
 
-def write_traces(folder: str, subject: Subject, recorder: Recorder, answer: Answer, limit: int = LIMIT) -> list[str]:
+def write_traces(
+    folder: str, target: Target, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
+) -> list[str]:
     """Write the first traces of each verdict, and the shortest; the files' names.
 
     Raises:
@@ -43,7 +45,7 @@ def write_traces(folder: str, subject: Subject, recorder: Recorder, answer: Answ
             chosen[shortest.trace] = None
         for trace in sorted(chosen):
             name = f"{_UNSAFE.sub('_', answer.question.name)}-{trace:07}-{VERDICTS[verdict]}"
-            texts = {"csv": csv_lines(recorder, trace, subject.clock), "json": json_lines(subject, recorder, trace)}
+            texts = {"csv": csv_lines(recorder, trace, target.clock), "json": json_lines(target, recorder, trace)}
             for extension, lines in texts.items():
                 path = os.path.join(folder, f"{name}.{extension}")
                 write_file(path, lines)
@@ -79,7 +81,7 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
     yield row(number, values, end_of(recording))
 
 
-def json_lines(subject: Subject, recorder: Recorder, trace: int) -> Iterator[str]:
+def json_lines(target: Target, recorder: Recorder, trace: int) -> Iterator[str]:
     """The text of a trace: one line for each step."""
     recording = Recording(trace)
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
@@ -88,14 +90,14 @@ def json_lines(subject: Subject, recorder: Recorder, trace: int) -> Iterator[str
     yield f' "initial": {_json(start)},\n "steps": ['
     comma = "\n  "
     for step in recorder.walk(recording):
-        yield comma + _json(step_row(subject, recorder, step))
+        yield comma + _json(step_row(target, recorder, step))
         comma = ",\n  "
     verdict = VERDICTS.get(recording.verdict, "fault")
     yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
     if recording.end is End.STUCK:
         rows = [
-            {"who": wait.who, "what": wait.what, **_place(subject, wait.origin)}
-            for wait in waits(recorder.standstill(), time_of(subject, recorder))
+            {"who": wait.who, "what": wait.what, **_place(target, wait.origin)}
+            for wait in waits(recorder.standstill(), time_of(target, recorder))
         ]
         yield ',\n "waits": [' + "".join(f"\n  {_json(row)}," for row in rows).removesuffix(",") + "\n ]"
     yield "\n}\n"
@@ -106,7 +108,7 @@ def end_of(recording: Recording) -> str:
     return "fault" if recording.problem is not None else recording.end.key
 
 
-def step_row(subject: Subject, recorder: Recorder, step: TraceStep) -> dict[str, object]:
+def step_row(target: Target, recorder: Recorder, step: TraceStep) -> dict[str, object]:
     """A step as a value for JSON."""
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     return {
@@ -118,7 +120,7 @@ def step_row(subject: Subject, recorder: Recorder, step: TraceStep) -> dict[str,
                 "from": part.source,
                 "to": part.destination.location,
                 "action": part.edge.action,
-                **_place(subject, part.edge.origin),
+                **_place(target, part.edge.origin),
             }
             for part in step.parts
         ],
@@ -133,12 +135,12 @@ def step_row(subject: Subject, recorder: Recorder, step: TraceStep) -> dict[str,
     }
 
 
-def _place(subject: Subject, origin: Origin | None) -> dict[str, object]:
-    place = subject.place(origin)
+def _place(target: Target, origin: Origin | None) -> dict[str, object]:
+    place = target.place(origin)
     if place is None:
         return {}
     path, line, column = place
-    folder = os.path.dirname(os.path.abspath(subject.path))
+    folder = os.path.dirname(os.path.abspath(target.path))
     return {"file": os.path.relpath(path, folder).replace(os.sep, "/"), "line": line, "column": column}
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How an editor wants properties to be verified: `as2fm.verify` of its settings, and the options of one call.
+"""How an editor asks to verify properties: `as2fm.verify` of its settings, and the options of one call.
 
     {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
                 "stuck": "warning"}}
 
-The options of a call have the same form, besides `seed` and `silent`, and count more. What makes no sense is told, and
-counts as not said.
+The options of a call have the same form, besides `seed` and `silent`, and take precedence. A value that is not valid is
+reported, and the default is used.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from as2fm_lsp.verification.expectations import Expectation, parse
-from as2fm_lsp.verification.stuck import LEVELS, WARNING
 from roaml.smc.run import LEAST_EPSILON, Options
+from roaml.verification.expectations import Expectation, parse
+from roaml.verification.stuck import LEVELS, WARNING
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class VerificationSettings:
     """Attributes:
-    is_silent: whether the results are not told as messages.
-    stuck: what it is that a system gets stuck, one of `stuck.LEVELS`.
-    problems: what makes no sense, in sentences.
+    is_silent: whether the results are not shown as messages.
+    stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
+    problems: the values that are not valid, in sentences.
     """
 
     options: Options
@@ -34,21 +34,21 @@ class Wishes:
     stuck: str = WARNING
 
 
-def wishes(settings: object, options: object = None) -> Wishes:
+def verification_settings(settings: object, options: object = None) -> VerificationSettings:
     """
     Args:
         settings: the client's settings, as they came.
         options: those of one call.
     """
     section = settings.get("verify") if isinstance(settings, Mapping) else None
-    said = {**_mapping(section), **_mapping(options)}
+    values = {**_mapping(section), **_mapping(options)}
     problems: list[str] = []
 
-    def number(key: str, otherwise: Any, makes_sense: Callable[[Any], bool], wanted: str) -> Any:
-        value = said.get(key, otherwise)
-        if isinstance(value, (int, float)) and not isinstance(value, bool) and makes_sense(value):
+    def number(key: str, otherwise: Any, is_valid: Callable[[Any], bool], range_: str) -> Any:
+        value = values.get(key, otherwise)
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and is_valid(value):
             return value
-        problems.append(f"verify.{key} must be {wanted}, not {value!r}.")
+        problems.append(f"verify.{key} must be {range_}, not {value!r}.")
         return otherwise
 
     default = Options()
@@ -61,16 +61,16 @@ def wishes(settings: object, options: object = None) -> Wishes:
         seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
     )
     expectations = []
-    for name, text in _mapping(said.get("expectations")).items():
+    for name, text in _mapping(values.get("expectations")).items():
         try:
             expectations.append(parse(f"{name} {text}"))
         except ValueError:
             problems.append(f"What is expected of {name} must be like '>= 0.95', not {text!r}.")
-    level = said.get("stuck", WARNING)
+    level = values.get("stuck", WARNING)
     if level not in LEVELS:
         problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
         level = WARNING
-    return Wishes(chosen, tuple(expectations), said.get("silent") is True, tuple(problems), level)
+    return VerificationSettings(chosen, tuple(expectations), values.get("silent") is True, tuple(problems), level)
 
 
 def _mapping(value: object) -> Mapping[str, Any]:

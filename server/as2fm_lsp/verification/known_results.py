@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is known of the properties of an editor's systems: for as long as the server runs, in memory.
 
-An answer belongs to the texts that it was found for: it is stale as long as a file of the system says something else,
-and is not when that is taken back.
+A result belongs to the texts that it was computed for: it is stale as long as a file of the system differs, and is not
+when that is taken back.
 """
 
 from __future__ import annotations
@@ -11,47 +11,40 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from as2fm_lsp.verification.report import Result
-from as2fm_lsp.verification.subject import Subject
 from roaml.ide.verifiable import Texts, fingerprint
 from roaml.project.analysis import Analysis
-from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
-from roaml.smc.run import Options
+from roaml.verification.results import Result
+from roaml.verification.target import Target
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
-    """An answer, and what it takes to tell why it is so."""
+class KnownResult:
+    """A result, with the models and the texts that it was computed for."""
 
     result: Result
-    subject: Subject
     analysis: Analysis
-    checker: Checker
-    asked: Asked
-    options: Options
     texts: Texts
 
 
 @dataclass(slots=True)
-class Verified:
-    """System -> property -> what is known of it. `changes` counts how often something was added."""
+class KnownResults:
+    """System -> property -> what is known of it. `changes` is the number of results that were added."""
 
     changes: int = 0
-    _known: dict[str, dict[str, Known]] = field(default_factory=dict)
-    _subject: tuple[Texts, Subject] | None = None
+    _known: dict[str, dict[str, KnownResult]] = field(default_factory=dict)
+    _target: tuple[Texts, Target] | None = None
 
-    def put(self, system: str, known: Known) -> None:
+    def put(self, system: str, known: KnownResult) -> None:
         self._known.setdefault(system, {})[known.result.name] = known
         self.changes += 1
 
-    def get(self, system: str, name: str) -> Known | None:
+    def get(self, system: str, name: str) -> KnownResult | None:
         return self._known.get(system, {}).get(name)
 
-    def is_stale(self, known: Known, analysis: Analysis, system: str) -> bool:
+    def is_stale(self, known: KnownResult, analysis: Analysis, system: str) -> bool:
         return known.texts != fingerprint(analysis, system)
 
-    def all(self) -> Iterator[tuple[str, Known]]:
+    def all(self) -> Iterator[tuple[str, KnownResult]]:
         """All that is known, with the system that it is known of."""
         for system, properties in self._known.items():
             yield from ((system, known) for known in properties.values())
@@ -62,16 +55,16 @@ class Verified:
 
     # A user asks for one property after the other: the translation for the first serves the others.
 
-    def subject(self, texts: Texts) -> Subject | None:
+    def target(self, texts: Texts) -> Target | None:
         """The last translation, if it was made from these texts."""
-        return self._subject[1] if self._subject and self._subject[0] == texts else None
+        return self._target[1] if self._target and self._target[0] == texts else None
 
-    def keep_subject(self, texts: Texts, subject: Subject) -> None:
-        self._subject = (texts, subject)
+    def keep_target(self, texts: Texts, target: Target) -> None:
+        self._target = (texts, target)
 
 
 def short(result: Result) -> str:
-    """An answer in a few characters: `0.48 [0.47, 0.49]`."""
+    """A result in a few characters: `0.48 [0.47, 0.49]`."""
     answer = result.answer
     if answer is None or answer.tally.traces == 0:
         return ""
@@ -80,7 +73,7 @@ def short(result: Result) -> str:
 
 
 def missed(result: Result) -> str:
-    """What was expected and is not so; empty if all is."""
+    """What was expected and is not met; empty if all is."""
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
 
 
