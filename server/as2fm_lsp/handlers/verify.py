@@ -40,6 +40,7 @@ from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
+from roaml.project.paths import is_on_disk
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
@@ -147,7 +148,7 @@ def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[ty
     tells = not _shows_hints(server)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
-        if system in broken or not os.path.isabs(system):
+        if system in broken or not is_on_disk(system):
             continue
         uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
         found = verifiable(on.analysis, system)

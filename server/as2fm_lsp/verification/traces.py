@@ -18,6 +18,7 @@ from as2fm_lsp.verification.stuck import time_of
 from as2fm_lsp.verification.subject import Subject
 from as2fm_lsp.write import write_file
 from roaml.jani.node import Origin
+from roaml.project.paths import seen_from
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Seen
@@ -138,8 +139,7 @@ def _place(subject: Subject, origin: Origin | None) -> dict[str, object]:
     if place is None:
         return {}
     path, line, column = place
-    folder = os.path.dirname(os.path.abspath(subject.path))
-    return {"file": os.path.relpath(path, folder).replace(os.sep, "/"), "line": line, "column": column}
+    return {"file": seen_from(path, os.path.abspath(subject.path)), "line": line, "column": column}
 
 
 def _json(value: object) -> str:

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator
 from roaml.disk import Problem, Roots, read, status_of
 from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, FileKind, kind_of
 from roaml.project.files import Files
+from roaml.project.paths import is_below
 from roaml.text import decode
 
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
@@ -50,16 +51,11 @@ def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Root
 def is_candidate(path: str, roots: Iterable[str], exclude: tuple[str, ...] = ()) -> bool:
     """Whether `candidates` gives a path if there is such a file."""
     for root in roots:
-        if is_inside(path, root):
+        if is_below(path, root):
             *folders, name = os.path.relpath(path, root).split(os.sep)
             if not any(map(_is_skipped, folders)) and _may_be_ours(name):
                 return not _is_excluded(path, root, exclude)
     return False
-
-
-def is_inside(path: str, folder: str) -> bool:
-    """Whether a path lies somewhere below a folder."""
-    return path.startswith(os.path.join(folder, ""))
 
 
 def _may_be_ours(name: str) -> bool:

@@ -17,6 +17,7 @@ from roaml.diagnostics import Severity
 from roaml.model.kinds import CONFIG_FILE
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.project.paths import full
 from roaml.rules import BY_CODE
 from roaml.rules.rule import close_names, did_you_mean
 from roaml.toml import Path
@@ -105,7 +106,7 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             continue
         name = _FIELDS.get(key, key.replace("-", "_"))
         if key in _FOLDERS:
-            read = tuple(_full(folder, path) for path in read)
+            read = tuple(full(folder, path) for path in read)
         if key == "exclude":
             read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
         if key in _LIMITS:
@@ -121,15 +122,11 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
     for key in _FOLDERS:
         value = table.get(key)
         if isinstance(value, str):
-            yield Folder((key,), value, _full(folder, value))
+            yield Folder((key,), value, full(folder, value))
         elif isinstance(value, list):
             for index, each in enumerate(value):
                 if isinstance(each, str):
-                    yield Folder((key, index), each, _full(folder, each))
-
-
-def _full(folder: str, path: str) -> str:
-    return os.path.normpath(os.path.join(folder, path.replace("\0", "\ufffd")))
+                    yield Folder((key, index), each, full(folder, each))
 
 
 _Reader = Callable[[Path, Any, list[Mistake]], Any]
