@@ -30,7 +30,7 @@ def register(context: Context) -> None:
             session.convert.uri(item.path),
             session.convert.range(source, item.span),
             session.convert.range(source, item.name_span),
-            detail=symbol.kind,
+            detail=symbol.kind.value,
             data=pack(symbol),
         )
 
