@@ -17,19 +17,19 @@ import time
 from collections.abc import Callable, Iterable
 from contextlib import AsyncExitStack
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from lsprotocol import types
 
+from as2fm_lsp.client import Client
 from as2fm_lsp.inbox import Inbox
-from as2fm_lsp.progress import Progress, progress
+from as2fm_lsp.progress import Progress, ProgressReporter
 from as2fm_lsp.session import Moment, Session
+from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.project.memo import Interrupted
+from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -51,11 +51,12 @@ class Diagnostics:
     finished: called when all that is known of a change has been told.
     """
 
-    def __init__(self, server: Server, session: Session, inbox: Inbox) -> None:
+    def __init__(self, client: Client, session: Session, inbox: Inbox, progress: ProgressReporter) -> None:
         self.session = session
         self.pushes = True
         self.finished: Callable[[], None] = lambda: None
-        self._server = server
+        self._client = client
+        self._progress = progress
         self._inbox = inbox
         self._gives_way = False
         self._sent: dict[str, tuple[int | None, list[types.Diagnostic]]] = {}
@@ -86,7 +87,7 @@ class Diagnostics:
         if self.pushes:
             await self._check_all()
         else:
-            self._server.ask_to_pull()
+            self._client.refresh_diagnostics()
         self._waiting.clear()
         self._all_waiting = False
         self.finished()
@@ -113,7 +114,7 @@ class Diagnostics:
             told: Progress | None = None
             for number, path in enumerate(there):
                 if told is None and self._all_waiting and time.monotonic() - started > QUICK:
-                    told = await shown.enter_async_context(progress(self._server, TITLE))
+                    told = await shown.enter_async_context(self._progress.show(TITLE))
                 if told is not None:
                     told.report(number, len(there))
                 await self._check(moment, path)
@@ -152,8 +153,7 @@ class Diagnostics:
         if before[1] == found and (before[0] == version or not found):
             return
         self._sent[path] = (version, found)
-        params = types.PublishDiagnosticsParams(self.session.convert.uri(path), found, version)
-        self._server.text_document_publish_diagnostics(params)
+        self._client.publish_diagnostics(self.session.convert.uri(path), found, version)
 
     # ------------------------------------------------------------------ pull
 
@@ -163,10 +163,16 @@ class Diagnostics:
         source = snapshot.analysis.source(path)
         if source is None:
             return []
-        found = snapshot.checker.diagnostics(path)
-        related = {r.location.path for d in found for r in d.related}
+        return self.converted(snapshot, source, snapshot.checker.diagnostics(path))
+
+    def converted(
+        self, snapshot: Snapshot, source: SourceFile, diagnostics: Iterable[Diagnostic]
+    ) -> list[types.Diagnostic]:
+        """Diagnostics of a file, as the client takes them."""
+        diagnostics = tuple(diagnostics)
+        related = {r.location.path for d in diagnostics for r in d.related}
         sources: dict[str, SourceFile] = {p: s for p in related if (s := snapshot.analysis.source(p)) is not None}
-        return [self.session.convert.diagnostic(d, source, sources) for d in found]
+        return [self.session.convert.diagnostic(d, source, sources) for d in diagnostics]
 
     def document_report(
         self, path: str, previous: str | None

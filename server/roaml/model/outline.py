@@ -33,6 +33,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, Use, find_handle
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -67,7 +68,7 @@ class InterfaceUse:
         awaited: of a subscriber, that the machine can come into a state in which it waits for this topic alone.
     """
 
-    kind: str
+    kind: SymbolKind
     handle: str
     name: str
     port: str
@@ -168,12 +169,12 @@ class MachineOutline:
     def port(self, key: str) -> PortOutline | None:
         return next((port for port in self.ports if port.key == key), None)
 
-    def use(self, kind: str, handle: str) -> InterfaceUse | None:
+    def use(self, kind: SymbolKind, handle: str) -> InterfaceUse | None:
         """The first declaration of that kind and handle."""
         return self._uses.get((kind, handle))
 
     @cached_property
-    def _uses(self) -> Mapping[tuple[str, str], InterfaceUse]:
+    def _uses(self) -> Mapping[tuple[SymbolKind, str], InterfaceUse]:
         return {(use.kind, use.handle): use for use in reversed(self.interfaces)}
 
 
@@ -280,10 +281,10 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 (part, tuple(SentField(name, type_) for name, type_ in known.items()))
                 for part, known in fields[declaration.element].items()
             ),
-            declaration.kind == "subscriber" and any(chart.awaits(declaration) for chart in charts),
+            declaration.kind is SymbolKind.SUBSCRIBER and any(chart.awaits(declaration) for chart in charts),
         )
         for declaration in machine.declarations
-        if declaration.kind != "timer"
+        if declaration.kind is not SymbolKind.TIMER
     )
 
 
@@ -340,7 +341,7 @@ def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
             )
             for chart in machine.charts
         )
-        for name in {d.handle.value for d in machine.declarations if d.kind == "timer" and d.handle}
+        for name in {d.handle.value for d in machine.declarations if d.kind is SymbolKind.TIMER and d.handle}
     }
     return tuple(
         TimerOutline(
@@ -350,7 +351,7 @@ def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
             users[declaration.handle.value],
         )
         for declaration in machine.declarations
-        if declaration.kind == "timer" and declaration.handle
+        if declaration.kind is SymbolKind.TIMER and declaration.handle
     )
 
 

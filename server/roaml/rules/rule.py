@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
+from roaml.facts import Facts
 from roaml.interfaces.registry import NotFound
 from roaml.jani.properties import Property
 from roaml.json_syntax import JsonValue
@@ -25,12 +26,13 @@ from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
-from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
+from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
+from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.xml_syntax import Document
 
@@ -137,6 +139,7 @@ class Rule:
     summary: one sentence on what is wrong.
     file, machine, tree, system, structs, properties: the checks for files of these kinds.
     plain: the machine check also holds for plain SCXML.
+    facts: the type of the facts of its findings, for rules whose fixes read facts.
     """
 
     code: str
@@ -149,6 +152,7 @@ class Rule:
     structs: Callable[[StructsContext], Iterable[Finding]] | None = None
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
     plain: bool = False
+    facts: type[Facts] | None = None
 
     def at(
         self,
@@ -158,16 +162,10 @@ class Rule:
         severity: Severity | None = None,
         related: Iterable[Related] = (),
         tags: tuple[Tag, ...] = (),
+        facts: Facts | None = None,
     ) -> Finding:
-        return Finding(self.code, span, message, severity, fixes, tuple(related), tags)
-
-
-# --------------------------------------------------------------- did you mean?
-
-
-def did_you_mean(close: tuple[str, ...]) -> str:
-    """`; did you mean …?` or nothing."""
-    return f"; did you mean `{close[0]}`?" if close else ""
+        assert facts is None or type(facts) is self.facts
+        return Finding(self.code, span, message, severity, fixes, tuple(related), tags, facts)
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:

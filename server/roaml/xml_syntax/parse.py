@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import codecs
 import re
-from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
+from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit, span_of
-from roaml.xml_syntax.escapes import PREDEFINED, REFERENCE, is_character, unescape
+from roaml.xml_syntax.escapes import FORBIDDEN, PREDEFINED, REFERENCE, is_character, unescape
 from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_name
 from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
@@ -45,7 +45,6 @@ _TAG_END = re.compile(r"\s*(/?>)")
 _JUNK = re.compile(r"\s*([^\s<>/]+|/(?!>))")
 _TAG_SPACE = re.compile(r"\s*")
 _ODD_SPACE = re.compile(rf"[^\S{SPACE}]+")
-_BAD_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _LESS = re.compile("<")
 _AMPERSAND = re.compile("&")
 _LONGEST_ODD_VALUE = 5000
@@ -60,7 +59,6 @@ _XML_DECLARATION = re.compile(
     (?:{_SPACE}+encoding{_SPACE}*={_SPACE}*(["'])(?P<encoding>[A-Za-z][A-Za-z0-9._-]*)\2)?
     (?:{_SPACE}+standalone{_SPACE}*={_SPACE}*(["'])(?:yes|no)\4)?{_SPACE}*""".replace("\n    ", "")
 )
-_LONGEST_SIMILAR_NAME = 100
 
 
 def parse(text: str) -> Document:
@@ -483,7 +481,7 @@ class _Parser:
     # ---------------------------------------------------------------- checks
 
     def check_characters(self) -> None:
-        if bad := _BAD_CHARACTER.search(self.text):
+        if bad := FORBIDDEN.search(self.text):
             self.report(Span(*bad.span()), f"the character U+{ord(bad[0]):04X} is not allowed in XML")
 
     def check_references(self, span: Span) -> None:
@@ -629,8 +627,7 @@ def resemble(name: str, wanted: str) -> bool:
     """Whether the end tag `name` was probably meant to close `wanted`."""
     if name.rpartition(":")[2] == wanted.rpartition(":")[2]:
         return True
-    short = max(len(name), len(wanted)) <= _LONGEST_SIMILAR_NAME
-    return short and SequenceMatcher(None, name, wanted).ratio() > 0.6
+    return are_similar(name, wanted)
 
 
 def shown(name: str) -> str:

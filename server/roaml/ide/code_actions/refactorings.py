@@ -15,7 +15,8 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
-from roaml.text import Span, TextEdit
+from roaml.roles import SymbolKind
+from roaml.text import Edit, Span
 from roaml.xml_syntax import Element
 
 _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives == "result")
@@ -34,7 +35,7 @@ def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]
     yield from migrate.actions(snapshot, path, place)
 
 
-def _edited(analysis: Analysis, path: str, *edits: TextEdit) -> Change:
+def _edited(analysis: Analysis, path: str, *edits: Edit) -> Change:
     source = analysis.source(path)
     return Change({path: tuple(in_layout(source, edits))}) if source else Change()
 
@@ -63,7 +64,7 @@ def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> It
     if document is None or state is None or state.id is None or not state.element.complete:
         return
     for client in machine.declarations:
-        if client.kind != "action-client" or client.handle is None or not _sends_goals(machine, client):
+        if client.kind is not SymbolKind.ACTION_CLIENT or client.handle is None or not _sends_goals(machine, client):
             continue
         known_handlers = [
             h for h in state.handlers if h.trigger == "result" and h.handle and h.handle.value == client.handle.value

@@ -4,17 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import first_in, last_in, remove
+from roaml.facts import Facts
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
 from roaml.model.machine import Chart, Thread
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.children import has_counted_children
-from roaml.text import Span, TextEdit
+from roaml.text import Edit, Span, TextEdit
 from roaml.xml_syntax import Element
+
+
+@dataclass(frozen=True, slots=True)
+class MissingChild(Facts):
+    """`parent` has no child `name`."""
+
+    parent: str
+    name: str
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -26,7 +36,8 @@ def check(context: FileContext) -> Iterator[Finding]:
         if wanted is None:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
                 message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
-                yield RULE.at(element.name_span, message, *_leave_out(context, element))
+                facts = MissingChild(element.name, violation.names[0])
+                yield RULE.at(element.name_span, message, *_leave_out(context, element), facts=facts)
         elif not has_counted_children(violation.type):
             children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
@@ -67,7 +78,7 @@ def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
 def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
     name = chart.initial.value if chart.initial else "initial"
     if chart.element.complete:
-        edits = [last_in(context.document, chart.element, f'<state id="{name}" />')]
+        edits: list[Edit] = [last_in(context.document, chart.element, f'<state id="{name}" />')]
         at = chart.element.name_span.end
         if chart.element.get("initial") is None and not chart.scope:
             edits.append(TextEdit(Span(at, at), f' initial="{name}"'))
@@ -75,5 +86,10 @@ def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
 
 
 RULE = Rule(
-    "missing-element", Severity.ERROR, "An element lacks a child that it needs.", file=check, machine=check_machine
+    "missing-element",
+    Severity.ERROR,
+    "An element lacks a child that it needs.",
+    file=check,
+    machine=check_machine,
+    facts=MissingChild,
 )

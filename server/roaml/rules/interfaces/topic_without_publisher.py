@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import has_publisher, named_here
 
@@ -14,7 +15,7 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    unpublished = [n for n in named_here(context, "subscriber") if not has_publisher(system, n.channel)]
+    unpublished = [n for n in named_here(context, SymbolKind.SUBSCRIBER) if not has_publisher(system, n.channel)]
     published = [t.name for t in system.topics.values() if t.sources] if unpublished else []
     for naming in unpublished:
         topic = naming.channel

@@ -48,7 +48,7 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
     if not isinstance(interface, InterfaceType) or field not in dict(interface.optional).get(part, frozenset()):
         return
     for _, channel in channels_of(context, declaration):
-        unread = context.system.may(f"{other_kind(declaration.kind)} {part} field", channel.name)
+        unread = context.system.may(f"{other_kind(declaration.kind).value} {part} field", channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(node.name_span, f"nobody sets the field `{field}` of `{channel.name}`: it is always empty")
             return
