@@ -100,7 +100,7 @@ class Possible:
             return frozenset((S, R))
         if known.kind.value == "condition" or known.running is False:
             return frozenset((S, F))
-        return ANYTHING
+        return ANYTHING - {K} if known.kind.value == "action" else ANYTHING
 
     def _decorator(self, node: TreeNode, name: str, child: Answers) -> Answers:
         match name:

@@ -20,14 +20,17 @@ def check(context: TreeContext) -> Iterator[Finding]:
     entries = entries_of(forest)
     by_entry = entries.by_entry()
     written = {key for key, uses in by_entry.items() if any(use.writes is not False for use in uses)}
-    names = sorted({use.name for key in written for use in by_entry[key]})
+    names: dict[str, list[str]] = {}
+    for key in written:
+        for use in by_entry[key]:
+            names.setdefault(use.tree, []).append(use.name)
     for key, uses in by_entry.items():
         hosted = any(use.name.removeprefix("@") in forest.host_entries for use in uses)
         if key in written or hosted or not any(use.reads for use in uses):
             continue
         for use in uses:
             if use.path == context.source.path and use.reads and not use.script:
-                yield _finding(use, names)
+                yield _finding(use, names.get(use.tree, []))
 
 
 def _finding(use: Use, names: list[str]) -> Finding:

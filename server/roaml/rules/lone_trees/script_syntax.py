@@ -14,7 +14,9 @@ from roaml.script.infer import statements_without_effect
 def check(context: TreeContext) -> Iterator[Finding]:
     for _, use, script, problems in scripts(context):
         for problem in problems:
-            yield RULE.at(problem.span, f"script of `{use.attribute.name}`: {problem.message}", *fixes(problem))
+            yield RULE.at(
+                problem.span, f"script of `{use.attribute.name}`: {problem.message}", *fixes(context, use, problem)
+            )
         if not problems:
             for problem in statements_without_effect(script):
                 yield RULE.at(problem.span, problem.message, severity=Severity.WARNING)

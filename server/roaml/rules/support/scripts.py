@@ -26,7 +26,8 @@ def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tup
             yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
 
 
-def fixes(problem: Problem) -> Iterator[Fix]:
+def fixes(context: TreeContext, use: ScriptUse, problem: Problem) -> Iterator[Fix]:
     if problem.replacement:
-        edit = TextEdit(problem.span, escape(problem.replacement))
+        quote = context.source.text[use.attribute.value_span.start - 1]
+        edit = TextEdit(problem.span, escape(problem.replacement, quote))
         yield Fix(f"Change to `{problem.replacement}`", (edit,), preferred=True)
