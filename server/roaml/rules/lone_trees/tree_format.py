@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator
 
@@ -11,7 +12,7 @@ from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext
-from roaml.text import Span, TextEdit
+from roaml.text import Edit, Span, TextEdit, computed
 from roaml.xml_syntax import Attribute
 
 CURRENT = "4"
@@ -28,14 +29,18 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if context.forest.is_version_3:
         span = version.value_span if version else root.name_span
         message = "this file is written for version 3 of BehaviorTree.CPP; version 4 reads it differently"
-        fix = Fix("Convert to version 4", tuple(sorted(_edits(context))), preferred=True)
+        fix = Fix("Convert to version 4", functools.partial(_plan, context), preferred=True)
         yield RULE.at(span, message, fix)
     elif version is not None and context.file.format != CURRENT:
         fix = Fix(f"Change to `{CURRENT}`", (TextEdit(version.value_span, CURRENT),), preferred=True)
         yield RULE.at(version.value_span, f"the format is `3` or `4`, not `{version.value}`", fix)
 
 
-def _edits(context: TreeContext) -> Iterator[TextEdit]:
+def _plan(context: TreeContext) -> tuple[TextEdit, ...]:
+    return tuple(sorted(computed(_edits(context))))
+
+
+def _edits(context: TreeContext) -> Iterator[Edit]:
     """The edits that make a file of version 4 of it."""
     root = context.file.element
     version = root.get("BTCPP_format")
@@ -48,7 +53,7 @@ def _edits(context: TreeContext) -> Iterator[TextEdit]:
             yield from _node(context, node)
 
 
-def _node(context: TreeContext, node: TreeNode) -> Iterator[TextEdit]:
+def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
     name = node.plugin.value if node.plugin else ""
     renamed = CPP.renamed.get(name)
     if node.is_subtree:
@@ -65,7 +70,7 @@ def _node(context: TreeContext, node: TreeNode) -> Iterator[TextEdit]:
                 yield TextEdit(attribute.name_span, _PARALLEL[attribute.name])
 
 
-def _subtree(context: TreeContext, node: TreeNode) -> Iterator[TextEdit]:
+def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
     """In version 3, the values of a `SubTree` name entries without braces; those of a `SubTreePlus` are as now."""
     has_current = node.element.get("_autoremap") is not None
     for attribute in node.element.attributes:
