@@ -7,8 +7,11 @@ from ide_case import FOLDER, path_of
 
 from roaml.ide.completion import complete, document
 from roaml.ide.hover import hover
+from roaml.ide.names.lookup import thing_at
+from roaml.ide.rename import Renaming, rename
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import apply_edits
 
 NAV2 = """<root BTCPP_format="4">
   <BehaviorTree ID="A">
@@ -98,3 +101,88 @@ def test_hover_tells_ports_and_defaults() -> None:
     assert "must be set" in told(NAV2, 'go|al="{goal}"')
     assert "10.0" in told(NAV2, 'h|z="1.0"')
     assert "translated" not in told(MODELS, "<Pre|condition")
+
+
+MAIN = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <include path="inner.xml"/>
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Script code="count := 1; @total := count"/>
+      <SetBlackboard value="3" output_key="count"/>
+      <SubTree ID="Inner" number="{count}" _autoremap="true"/>
+      <Grasp force="{count}" _skipIf="count &lt; 2 &amp;&amp; total == 1"/>
+    </Sequence>
+  </BehaviorTree>
+  <TreeNodesModel><Action ID="Grasp"><input_port name="force" type="int"/></Action></TreeNodesModel>
+</root>
+"""
+INNER = """<root BTCPP_format="4">
+  <BehaviorTree ID="Inner">
+    <Sequence><Repeat num_cycles="{number}"><AlwaysSuccess/></Repeat><Script code="total += number"/></Sequence>
+  </BehaviorTree>
+</root>
+"""
+OTHER = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <include path="inner.xml"/>
+  <BehaviorTree ID="Main"><SubTree ID="Inner" number="4"/></BehaviorTree>
+</root>
+"""
+FILES = {"main": MAIN, "inner": INNER, "other": OTHER}
+
+
+def renamed(name: str, piece: str, new: str) -> dict[str, str]:
+    """The texts after a rename at the caret `|` in a piece of a file."""
+    before, _, after = piece.partition("|")
+    analysis = snapshot_of(**FILES).analysis
+    at = FILES[name].index(before + after) + len(before)
+    result = rename(analysis, path_of(f"{name}.xml"), at, new)
+    assert isinstance(result, Renaming), result
+    return {each: apply_edits(text, result.edits.get(path_of(f"{each}.xml"), ())) for each, text in FILES.items()}
+
+
+def test_a_subtree_is_renamed_in_all_files() -> None:
+    texts = renamed("inner", 'ID="In|ner"', "Core")
+    assert texts == {each: text.replace('ID="Inner"', 'ID="Core"') for each, text in FILES.items()}
+    assert renamed("main", 'SubTree ID="In|ner"', "Core") == texts
+
+
+def test_trees_of_one_name_in_separate_files_are_two() -> None:
+    texts = renamed("other", 'BehaviorTree ID="Ma|in"', "Other")
+    assert texts["main"] == MAIN
+    assert texts["other"] == OTHER.replace('"Main"', '"Other"')
+
+
+def test_an_entry_is_renamed_in_scripts_and_ports() -> None:
+    texts = renamed("main", '<Grasp force="{cou|nt}"', "tries")
+    assert texts["main"] == MAIN.replace("count", "tries")
+    assert texts["inner"] == INNER
+    assert renamed("main", 'code="cou|nt :=', "tries") == texts
+
+
+def test_an_entry_that_is_remapped_is_renamed_inside() -> None:
+    texts = renamed("inner", "total += num|ber", "amount")
+    assert texts["inner"] == INNER.replace("number", "amount")
+    assert texts["main"] == MAIN.replace("number=", "amount=")
+    assert texts["other"] == OTHER.replace("number=", "amount=")
+
+
+def test_an_automatically_remapped_entry_is_one() -> None:
+    texts = renamed("inner", "to|tal +=", "sum")
+    assert texts["inner"] == INNER.replace("total", "sum")
+    assert texts["main"] == MAIN.replace("total", "sum")
+
+
+def test_the_definition_of_a_node_is_its_model() -> None:
+    analysis = snapshot_of(**FILES).analysis
+    thing = thing_at(analysis, path_of("main.xml"), MAIN.index("<Grasp") + 2)
+    assert thing is not None
+    assert [(place.path, MAIN[place.span.start - 4 : place.span.end]) for place in thing.definitions] == [
+        (path_of("main.xml"), 'ID="Grasp')
+    ]
+
+
+def test_the_definition_of_a_subtree_is_in_its_file() -> None:
+    analysis = snapshot_of(**FILES).analysis
+    thing = thing_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
+    assert thing is not None
+    assert [place.path for place in thing.definitions] == [path_of("inner.xml")]

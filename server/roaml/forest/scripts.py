@@ -49,6 +49,15 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
                 yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
 
 
+def script_attributes(node: TreeNode) -> Iterator[Attribute]:
+    """The attributes of a node that are scripts, whatever models say of the node."""
+    yield from (attribute for attribute in node.scripts if attribute.has_value)
+    for port in _SCRIPT_PORTS.get(node.plugin.value if node.plugin else "", ()):
+        attribute = node.element.get(port)
+        if attribute is not None and attribute.has_value:
+            yield attribute
+
+
 @functools.lru_cache(maxsize=2048)
 def parsed(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
     """The script in a text, remembered: many rules ask."""

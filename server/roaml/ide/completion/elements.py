@@ -149,7 +149,7 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
     for name in request.trees.trees if bare else ():
         around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
         if name and (around is None or around.value != name):
-            about = Symbol(request.trees.owner, SymbolKind.TREE, name)
+            about = request.trees.tree_symbol(request.path, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
             yield Item(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
     yield from _known_nodes(request, bare=bare)

@@ -244,7 +244,7 @@ def _tree_names(request: Request, subject: Subject) -> Iterator[Item]:
     for name, (path, _) in request.trees.trees.items():
         if name:
             file = path.replace("\\", "/").rpartition("/")[2]
-            yield Item(name, ItemKind.PLUGIN, detail=file, about=Symbol(request.trees.owner, SymbolKind.TREE, name))
+            yield Item(name, ItemKind.PLUGIN, detail=file, about=request.trees.tree_symbol(request.path, name))
 
 
 def _some(names: Iterable[str]) -> str:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
+from roaml.forest.scripts import names_in as names_in_script
+from roaml.forest.scripts import script_attributes
 from roaml.ide.names.occurrence import Form, tree_node
 from roaml.model.expand import ROOT_NUMBER, extent, main_tree, tree_file_outline
 from roaml.model.syntax import Name
@@ -79,10 +81,12 @@ class Trees:
 
     Args:
         paths: of the files.
-        owner: the system file, or the tree file if it is looked at alone.
+        owner: the system file, or the first tree file if there is no system.
+        is_alone: there is no system, so scripts name variables, too.
     """
 
-    def __init__(self, analysis: Analysis, paths: tuple[str, ...], owner: str) -> None:
+    def __init__(self, analysis: Analysis, paths: tuple[str, ...], owner: str, *, is_alone: bool = False) -> None:
+        self.is_alone = is_alone
         found = ((path, analysis.tree(path)) for path in paths)
         self.files: dict[str, TreeFile] = {path: file for path, file in found if file is not None}
         self.owner = owner
@@ -90,6 +94,24 @@ class Trees:
         for path, file in self.files.items():
             for tree in file.trees:
                 self.trees.setdefault(tree.id.value if tree.id else "", (path, tree))
+
+    def tree_symbol(self, path: str, name: str) -> Symbol:
+        """The tree that a name means in a file. Without a system, files that are not included by each other may have
+        trees of one name."""
+        home = self.owner
+        if self.is_alone:
+            defining = [p for p, file in self.files.items() if any(t.id and t.id.value == name for t in file.trees)]
+            if len(defining) > 1:
+                home = path if path in defining else defining[0]
+        return Symbol(home, SymbolKind.TREE, name)
+
+    def names_in(self, tree: Tree) -> Iterator[str]:
+        """The variables that a tree refers to."""
+        yield from names_in(tree)
+        if self.is_alone:
+            for node in nodes(tree):
+                for attribute in script_attributes(node):
+                    yield from (name for name, _ in names_in_script(attribute.value))
 
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
@@ -171,7 +193,7 @@ class Trees:
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
-                if self.variable(*key, symbol.name) == symbol and new in names_in(tree):
+                if self.variable(*key, symbol.name) == symbol and new in self.names_in(tree):
                     return True
         for frame in self.frames:
             own = self.variable(*frame.key, symbol.name) == symbol and symbol.name in frame.names
@@ -271,7 +293,7 @@ class _Walk:
         return self.known_names[tree]
 
     def names_of(self, tree: Tree) -> frozenset[str]:
-        found = set(names_in(tree))
+        found = set(self.trees.names_in(tree))
         for node in nodes(tree):
             plugin = node.plugin.value if node.plugin else ""
             for key, setting in self.trees.defaults.get(plugin, {}).items():
@@ -285,7 +307,7 @@ class _Walk:
         if node.name is not None:
             source, written = tree_node(*frame.key, position, node.name.value), node.name.value
         else:
-            source, written = Symbol(self.trees.owner, SymbolKind.TREE, node.plugin.value), node.plugin.value
+            source, written = self.trees.tree_symbol(frame.path, node.plugin.value), node.plugin.value
         word = re.sub(r"\W", "_", written, flags=re.ASCII)
         lead = "" if word[:1].isalpha() or word[:1] == "_" else "_"
         above, suffix = "".join(piece[0] for piece in frame.prefix), ""
