@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How parts hold together: no import circles in the faces, one module for what is private in pygls, no deep ancestry."""
+"""How parts hold together: no import circles in the faces, one module that knows pygls, no chains of classes."""
 
 from __future__ import annotations
 
