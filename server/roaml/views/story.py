@@ -14,6 +14,7 @@ from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Change, Plain
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
+from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
 LONGEST = 60
@@ -241,7 +242,7 @@ def _chance(probability: Clause | None) -> str:
 
 
 def _message(message: Message) -> str:
-    values = ", ".join(f"{name}: {_plain(value)}" for name, value in message.values.items())
+    values = ", ".join(f"{name}: {shown_value(value)}" for name, value in message.values.items())
     return f"{message.name}({_short(values)})" if values else message.name
 
 
@@ -251,28 +252,8 @@ def _change(change: Change) -> str:
 
 def _shown(before: Plain, after: Plain) -> str:
     if isinstance(before, list) and isinstance(after, list):
-        return f"→ {_short(_plain(after))}"
-    return f"{_plain(before)} → {_plain(after)}"
-
-
-def _plain(value: Plain) -> str:
-    match value:
-        case bool():
-            return "true" if value else "false"
-        case list():
-            return _text(value) or f"[{', '.join(map(_plain, value))}]"
-        case float():
-            return f"{value:g}"
-        case _:
-            return str(value)
-
-
-def _text(value: list[Plain]) -> str:
-    """A string, which JANI has as an array of bytes filled up with zeros; "" if it is none."""
-    while value and value[-1] == 0:
-        value = value[:-1]
-    printable = all(isinstance(each, int) and 32 <= each < 127 for each in value)
-    return repr("".join(chr(each) for each in value if isinstance(each, int))) if value and printable else ""
+        return f"→ {_short(shown_value(after))}"
+    return f"{shown_value(before)} → {shown_value(after)}"
 
 
 def _short(text: str) -> str:
