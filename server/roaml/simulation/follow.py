@@ -94,8 +94,7 @@ class Follower:
                 self._status[node] = NodeStatus.TICKED
             case "response":
                 status = self.events.parameters(event).get("status")
-                is_known = isinstance(status, int) and status in _STATUS_NAMES
-                self._status[node] = _STATUS_NAMES[status] if is_known else NodeStatus.IDLE
+                self._status[node] = _STATUS_NAMES.get(status if isinstance(status, int) else 0, NodeStatus.IDLE)
             case "halt_response":
                 self._status[node] = NodeStatus.IDLE
 

@@ -18,6 +18,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.model import Checker
 from roaml.smc.program import FAULTY, UNKNOWN
 from roaml.smc.record import Plain, StepReader, TraceStep, Variable
+from roaml.smc.standstill import Standstill
 
 
 class RunError(ValueError):
@@ -183,6 +184,10 @@ class Run:
     def end(self) -> End | None:
         """Why no further step changes anything; None if one does."""
         return End(self._kernel.standstill()) if self._kernel.ended() else None
+
+    def standstill(self) -> Standstill:
+        """The state, for those who ask who waits for whom."""
+        return self._reader.standstill(self.checker.model.system)
 
     def enabled(self) -> list[Enabled]:
         """What can happen next."""

@@ -19,7 +19,8 @@ from roaml.smc.end import End
 from roaml.smc.goal import Asked
 from roaml.smc.model import Checker
 from roaml.smc.program import UNKNOWN
-from roaml.smc.record import VERDICTS, TraceStep
+from roaml.smc.record import VERDICTS, Recording, TraceStep
+from roaml.smc.story import Story, clock_times
 
 FORMAT_VERSION = 1
 ENGINE_VERSION = 1
@@ -178,6 +179,25 @@ class Session:
         saved = SavedSession(run.asked.question.name, run.seed, run.trace, self.position, decisions)
         return Session(run.checker, run.asked, clock=self._clock, saved=saved)
 
+    def story(self) -> Story:
+        """The run up to the position, as a story of all turns."""
+        steps = tuple(self._run.steps[: self.position])
+        question = self._run.asked.question
+        end = End.DECIDED if self.is_decided else self.end or End.CUT
+        standstill = self._run.standstill() if end is End.STUCK else None
+        return Story(
+            question.name,
+            Recording(self._run.trace, self._run.status, end),
+            steps,
+            tuple(clock_times(steps, self._clock)),
+            tuple(range(len(steps))),
+            question.variables,
+            self._automata,
+            self._run.start,
+            standstill,
+            is_whole=True,
+        )
+
     # ------------------------------------------------------------ moving
 
     def step(self, choice: Choice | None = None, outcome: Outcome | None = None) -> TraceStep | None:
@@ -219,6 +239,18 @@ class Session:
                 return True
         return False
 
+    def has_event(self, name: str) -> bool:
+        """Whether the system sends an event of this name, or one of a topic, service or action of this name."""
+        return any(self._follower.is_named(sent_by(action or ""), name) for _, action in self._run.legend.vectors)
+
+    def is_machine(self, instance: int) -> bool:
+        """Whether an automaton is a state machine or a plugin, not one that the translation adds."""
+        return self._follower.is_machine(instance)
+
+    def automaton(self, instance: int) -> str:
+        """The name of the automaton of an instance."""
+        return self._automata[instance].name
+
     def turn(self) -> bool:
         """Go on until a state machine has handled an event to its end; False if nothing changes any more before.
 
@@ -244,17 +276,17 @@ class Session:
             )
         )
 
-    def until_time(self, seconds: float) -> bool:
+    def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
         """Go on until the clock shows at least `seconds`; False if it never does."""
-        return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds)
+        return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
 
-    def until_sent(self, event: str) -> bool:
+    def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
         """Go on until an event is sent; it may be named as in plain SCXML or by its topic, service or action."""
-        return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event))
+        return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
 
-    def until_decided(self) -> bool:
+    def until_decided(self, limit: int = MAX_STEPS) -> bool:
         """Go on until the property is decided; False if it stays undecided."""
-        return self.is_decided or self.go_on(lambda _: self.is_decided) or self.is_decided
+        return self.is_decided or self.go_on(lambda _: self.is_decided, limit) or self.is_decided
 
     def back(self, steps: int = 1) -> None:
         """Take back steps."""

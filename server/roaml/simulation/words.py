@@ -64,7 +64,8 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
             return f"{actor} answers its tick"
         case "response", False:
             status = parameters.get("status")
-            return f"{actor} receives {_STATUS_NAMES.get(status, status) if isinstance(status, int) else ''} from {child}"
+            answer = _STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
+            return f"{actor} receives {answer} from {child}"
         case _, True:
             return f"{actor} answers that it has halted"
         case _:

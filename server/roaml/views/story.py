@@ -50,7 +50,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
 
 def _told(story: Story, place_of: PlaceOf) -> list[Line]:
     told = turns(story)
-    folded = range(FIRST, len(told) - LAST)
+    folded = _folded(story, told)
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
         found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
@@ -114,6 +114,8 @@ def heading(story: Story) -> str:
         text = f"{story.property}: trace {story.recording.trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):
         text += f" ({story.recording.end.text})"
+    if story.is_whole:
+        return text
     text += f", of which {len(story.relevant):,} matter"
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
@@ -125,7 +127,7 @@ def as_mermaid(story: Story, place_of: PlaceOf) -> str:
 
 def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
     told = turns(story)
-    folded = range(FIRST, len(told) - LAST)
+    folded = _folded(story, told)
     lanes = {turn.instance for turn in told}
     names: dict[str, str] = {}
     body: list[str] = []
@@ -205,6 +207,11 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 {body}
 </body></html>
 """
+
+
+def _folded(story: Story, told: Sequence[Turn]) -> range:
+    """The turns that are not shown."""
+    return range(0) if story.is_whole else range(FIRST, len(told) - LAST)
 
 
 def _more(folded: range) -> str:
