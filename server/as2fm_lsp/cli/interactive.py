@@ -11,8 +11,8 @@ from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import flush, print_text
 from roaml.model.system_file import duration
 from roaml.simulation import Choice, Outcome, Session
-from roaml.views.values import shown_value
 from roaml.verification.target import Target
+from roaml.views.values import shown_value
 
 HELP = """\
   Enter        take the step that the seed decides

@@ -26,7 +26,7 @@ from roaml import api
 from roaml.model.system_file import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
-from roaml.simulation import RunError, SavedSession, Session
+from roaml.simulation import RunError, SavedSession, Session, SystemState
 from roaml.smc.fault import FaultError
 from roaml.text import Location
 from roaml.verification.target import Target
@@ -175,23 +175,26 @@ def _csv(session: Session) -> str:
     """A row for each step: its number, the time, the action, and all variables after it."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    last = session.position
-    for position in range(last + 1):
+    for position in range(session.position + 1):
         session.jump(position)
-        state = session.state()
-        values = {f"{machine.name}.{name}": value for machine in state.machines for name, value in machine.variables.items()}
-        values |= {f"{machine.name}.state": machine.state for machine in state.machines}
-        values |= {f"bt_{node.number}": node.status.value for node in state.nodes}
-        values |= dict(state.shared)
+        values = _values(session.state())
         if position == 0:
             writer.writerow(["step", "time", "action", *values])
+        time = session.state().time
         action = session.steps[position - 1].action or "" if position else ""
-        writer.writerow([position, "" if state.time is None else f"{state.time:g}", action, *map(_cell, values.values())])
+        writer.writerow([position, "" if time is None else f"{time:g}", action, *values.values()])
     return text.getvalue()
 
 
-def _cell(value: Any) -> Any:
-    return str(value).lower() if isinstance(value, bool) else value
+def _values(state: SystemState) -> dict[str, Any]:
+    """The columns of a state: variables of machines, their states, and the statuses of the nodes of the tree."""
+    values: dict[str, Any] = {}
+    for machine in state.machines:
+        values |= {f"{machine.name}.{name}": value for name, value in machine.variables.items()}
+        values[f"{machine.name}.state"] = machine.state
+    values |= {f"bt_{node.number}": node.status.value for node in state.nodes}
+    values |= {**state.blackboard, **state.shared}
+    return {name: str(value).lower() if isinstance(value, bool) else value for name, value in values.items()}
 
 
 def _as_json(session: Session, target: Target) -> dict[str, Any]:
@@ -238,7 +241,11 @@ def parser() -> ArgumentParser:
     add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
     add("--trace", type=natural, default=0, metavar="N", help="number of the trace (0)")
     add("--for", dest="for_", type=time_of, metavar="TIME", help='end after this time of the model, such as "10 s"')
-    add("--until", metavar="NAME", help="end when this property is decided, or this topic, service, action or event is sent")
+    add(
+        "--until",
+        metavar="NAME",
+        help="end when this property is decided, or this topic, service, action or event is sent",
+    )
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
     add("--script", metavar="FILE", help="the run that --save wrote")
     add("--save", metavar="FILE", help="write the decisions of the run, which --script takes again")

@@ -17,7 +17,7 @@ from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
 from roaml.model.translated import CLOCK_ACTION, is_timer, received_by, sent_by
 from roaml.simulation.run import Decision, Enabled, EnabledEdges
-from roaml.simulation.words import CLOCK_NAME, resting, tree_text, who
+from roaml.simulation.words import CLOCK_NAME, TREE_NAME, resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.record import Plain
 from roaml.views.event_words import said
@@ -168,6 +168,8 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
         takers = [name for name in names if name != CLOCK_NAME]
         if not takers:
             return "a timer ticks"
+        if takers == [TREE_NAME]:
+            return "the tree begins its next tick"
         return f"{_listed(takers)} {_verb(takers, 'takes', 'take')} {said(event, takers[0], clients, taken=True)}"
     if event:
         parameters = _parameters(events.parameters(event))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.translated import BLACKBOARD, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
+from roaml.model.translated import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
 from roaml.model.value_types import STATUSES
 from roaml.simulation.state import (
     NODE_AUTOMATON,
@@ -157,7 +157,7 @@ class Follower:
 
     def _events(self, locations: Sequence[str]) -> Iterator[EventState]:
         for event, (step, sender, parameters) in self._sent.items():
-            if is_timer(event) or TREE_EVENT.fullmatch(event):
+            if sender == CLOCK or is_timer(event) or TREE_EVENT.fullmatch(event):
                 continue
             holder = self._holders.get(event)
             yield EventState(

@@ -73,6 +73,7 @@ class Run:
         decisions: for each of them.
         position: the number of steps before the present state.
         status: what is known of the property in the present state (`roaml.smc.program`).
+        has_ended: whether no further step changes anything.
 
     Raises:
         RunError: one of the decisions cannot be taken.
@@ -109,6 +110,7 @@ class Run:
         self.position = 0
         self.status = self._kernel.begin(self.seed, self.trace)
         self._check()
+        self.has_ended = self._kernel.ended()
         self._reader.start()
 
     def _check(self) -> None:
@@ -127,7 +129,7 @@ class Run:
             RunError: the decision cannot be taken here.
             FaultError: something that has no meaning happens in the step, such as a division by zero.
         """
-        if self._kernel.ended():
+        if self.has_ended:
             return None
         if decision is not None:
             self._check_possible(decision)
@@ -157,15 +159,15 @@ class Run:
         if decision is None:
             until = until or self.position + 1
             while self._kernel.outcome()[0] < until:
-                self.status = self._kernel.advance(until)
-                self._check()
+                self._learn(self._kernel.advance(until))
             self.position = until
         else:
-            self.status = self._kernel.go(decision.vector, list(decision.picks), list(decision.ways))
-            if self.status == UNKNOWN:
-                self.status = self._kernel.look()
-            self._check()
+            self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
+            self._learn(self._kernel.look())
             self.position += 1
+        self.has_ended = self._kernel.ended()
+        if self.has_ended:
+            self._learn(self._kernel.close())
 
     def _check_possible(self, decision: Decision) -> None:
         for enabled in self.enabled():
@@ -178,12 +180,18 @@ class Run:
                     return
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
+    def _learn(self, status: int) -> None:
+        """What a step has shown of the property; what is decided stays so."""
+        if self.status == UNKNOWN or status == FAULTY:
+            self.status = status
+            self._check()
+
     # ------------------------------------------------------------ the state
 
     @property
     def end(self) -> End | None:
         """Why no further step changes anything; None if one does."""
-        return End(self._kernel.standstill()) if self._kernel.ended() else None
+        return End(self._kernel.standstill()) if self.has_ended else None
 
     def standstill(self) -> Standstill:
         """The state, for those who ask who waits for whom."""
