@@ -29,6 +29,7 @@ COMMANDS = {
     "migrate": "move systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "estimate the probabilities of properties",
+    "simulate": "run a system step by step",
     "init": "write a small working system",
 }
 """What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
@@ -43,6 +44,7 @@ examples:
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
+  as2fm-lsp simulate main.xml             one run as a story; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
   as2fm-lsp                               language server on standard input and output
