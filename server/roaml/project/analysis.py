@@ -406,10 +406,19 @@ class Analysis:
     def family(self, path: str) -> tuple[str, ...]:
         """The tree files that belong to no system and are connected with one by includes, in whichever direction;
         those that no other includes come first."""
-        return self._families.get(path) or self.trees_from(path)
+        return tuple(file.path for file in self.family_outlines(path))
+
+    def family_outlines(self, path: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the family of a tree file."""
+        outlines: dict[str, TreeFileOutline] = {}
+        for top in self._tops.get(path, (path,)):
+            for file in self.outlines_from(top):
+                outlines.setdefault(file.path, file)
+        return tuple(outlines.values())
 
     @cached_property
-    def _families(self) -> Mapping[str, tuple[str, ...]]:
+    def _tops(self) -> Mapping[str, tuple[str, ...]]:
+        """Tree file -> those of its family that no other includes."""
         files = [p for p in self._listed_files if self.kind(p) is FileKind.TREE and p not in self.memberships]
         linked: dict[str, set[str]] = {}
         included: set[str] = set()
@@ -426,9 +435,7 @@ class Analysis:
                     new = linked.get(pending.pop(), set()) - members
                     members |= new
                     pending += new
-                tops = sorted(members - included) or sorted(members)
-                family = tuple(dict.fromkeys(p for top in tops for p in self.trees_from(top)))
-                found.update(dict.fromkeys(members, family))
+                found.update(dict.fromkeys(members, tuple(sorted(members - included) or sorted(members))))
         return found
 
     def forest(self, path: str) -> Forest | None:
@@ -525,7 +532,7 @@ class Analysis:
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
-        instances = expand(trees)
+        instances = expand(trees).instances
         return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
