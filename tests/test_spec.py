@@ -25,8 +25,8 @@ from roaml.language import BEHAVIOR_TREE, HL_SCXML
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
 from roaml.model.system import Automaton
 from roaml.model.system_file import Parameters
-from roaml.model.translated import is_synchronising
 from roaml.model.value_types import STATUSES
+from roaml.scxml.names import is_synchronising
 
 ROOT = Path(__file__).resolve().parents[1]
 SPEC = ROOT / "docs" / "spec"

@@ -17,8 +17,8 @@ from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
-from roaml.model.translated import ACTION_HANDLER_PREFIX
-from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, Send, State, Statement
+from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, ScxmlEvent, Send, State, Statement
+from roaml.scxml.names import ACTION_HANDLER_PREFIX
 from roaml.text import Location
 
 GOAL_ID = "goal_id"
@@ -81,9 +81,9 @@ def _store(parameter: str, origin: Location) -> Statement:
 
 
 def _to_client(
-    action: Channel, event: Callable[[SystemAutomaton], str], params: tuple[Param, ...], origin: Location
+    action: Channel, event: Callable[[SystemAutomaton], ScxmlEvent], params: tuple[Param, ...], origin: Location
 ) -> Body:
-    """Sends the client with the remembered goal id the event that `event` names for it. (An action that nobody uses has
+    """Sends the client with the remembered goal id the event that `event` gives for it. (An action that nobody uses has
     a handler, too.)"""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)

@@ -19,6 +19,7 @@ from roaml.model.syntax import PortRead
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings, find_handle, port_type
 from roaml.roles import SymbolKind
+from roaml.scxml.model import ScxmlEvent
 from roaml.text import Decoded, Location, Span
 
 
@@ -39,7 +40,7 @@ class Context:
     chart: Chart
     name: str
     thread: int | None
-    timers: Mapping[str, str]
+    timers: Mapping[str, ScxmlEvent]
     ports: Mapping[str, str]
     variables: Mapping[str, Type]
 

@@ -10,7 +10,7 @@ from roaml.lower.build import event_data, name
 from roaml.lower.data import lower_data
 from roaml.lower.program import Program
 from roaml.model.system import Channel, Endpoint
-from roaml.scxml.model import Assign, Body, Data, Param, Statement, Target, Transition
+from roaml.scxml.model import Assign, Body, Data, Param, ScxmlEvent, Statement, Target, Transition
 from roaml.text import Location
 
 
@@ -28,7 +28,7 @@ def variables(fields: dict[str, Type], origin: Location) -> tuple[Data, ...]:
     return tuple(data for field, type_ in fields.items() for data in lower_data(field, type_, None, origin))
 
 
-def on(event: str, target: str, body: Iterable[Statement], origin: Location) -> Transition:
+def on(event: ScxmlEvent, target: str, body: Iterable[Statement], origin: Location) -> Transition:
     return Transition(event, None, (Target(target, 1.0, tuple(body), origin),), origin)
 
 

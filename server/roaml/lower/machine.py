@@ -9,11 +9,12 @@ from decimal import Decimal, InvalidOperation
 
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
+from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import Context, type_of, variables_of
 from roaml.lower.data import lower_data
 from roaml.lower.expressions import Scope, lower_expr
-from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
 from roaml.lower.program import Program
 from roaml.lower.statements import StatementLowering, literal_index
@@ -22,13 +23,13 @@ from roaml.model.expand import Constant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.model.value_types import STATUSES
 from roaml.roles import SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
-from roaml.scxml.model import Data, Role, Send, State, Target, Transition
+from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
+from roaml.scxml.names import named
 
-TimerEvents = Mapping[tuple[str, str], str]
+TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""
 
 
@@ -143,13 +144,13 @@ class _ChartLowering:
         self.state_ids.add(identifier)
         assert target.state is not None
         body = self.statements.body(target.body, scope)
-        answered = Transition(BLACKBOARD_ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
+        answered = Transition(ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
         return State(identifier, (), (), (answered,), origin)
 
     def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
         """The first half of such a handler: its trigger and condition, and the question to the blackboard."""
         origin = self.context.origin(handler.element.span)
-        ask = (Send(BLACKBOARD_REQUEST, (), origin),)
+        ask = (Send(REQUEST, (), origin),)
         for event, cond in self.triggers(handler):
             yield Transition(event, cond, (Target(waiting, 1.0, ask, origin),), origin)
 
@@ -180,7 +181,7 @@ class _ChartLowering:
             found.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
         return tuple(found)
 
-    def triggers(self, handler: Handler) -> Iterator[tuple[str, Expr | None]]:
+    def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         """The events that the handler waits for, each with its condition; mostly one."""
         cond = self.condition(handler)
         match handler.trigger:
@@ -202,30 +203,30 @@ class _ChartLowering:
             scope = replace(scope, constants=STATUSES)
         return lower_expr(handler.cond.tree, scope)
 
-    def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[str, Expr | None]]:
+    def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         assert handler.child is not None
         answer = "response" if handler.trigger == "child-status" else "halt_response"
         children = self.statements.children
         if (index := literal_index(handler.child)) is not None:
-            yield f"bt_{children[index]}_{answer}", cond
+            yield tree_event(children[index], answer), cond
             return
         variable = name(handler.child.value, handler.child.span)
         for i, child in enumerate(children):
-            yield f"bt_{child}_{answer}", both(cond, equal(variable, integer(i)))
+            yield tree_event(child, answer), both(cond, equal(variable, integer(i)))
 
-    def event(self, handler: Handler) -> str:
+    def event(self, handler: Handler) -> ScxmlEvent | None:
         automaton, trigger = self.context.automaton, handler.trigger
         match trigger:
             case "":
-                return ""
+                return None
             case "event":
                 assert handler.event is not None
-                return handler.event.value
+                return named(handler.event.value)
             case "tick":
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
             case "bt-tick" | "bt-halt":
-                return f"bt_{self.statements.number}_{trigger.removeprefix('bt-')}"
+                return tree_event(self.statements.number, trigger.removeprefix("bt-"))
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:

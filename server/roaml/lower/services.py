@@ -8,8 +8,8 @@ from roaml.lower.handlers import copied, declared_at, handler_place, on, stored,
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Channel, safe_name, sanitise
-from roaml.model.translated import SERVICE_HANDLER_PREFIX
 from roaml.scxml.model import Automaton, Role, Send, State
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX
 
 
 def service_handler(service: Channel, program: Program) -> Automaton:

@@ -12,18 +12,19 @@ from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
+from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
 from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
-from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import STATUSES, unset_fields
-from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
+from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, ScxmlEvent, Send, Statement
+from roaml.scxml.names import named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
@@ -64,13 +65,13 @@ class StatementLowering:
             case hl.Send():
                 assert statement.event is not None
                 sent = [p for param in statement.params for p in self.params(param, "", scope)]
-                yield from self.send(statement.event.value, sent, origin)
+                yield from self.send(named(statement.event.value), sent, origin)
             case Communicate():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
-                yield Send(f"bt_{self.number}_response", (self.status(statement, scope, origin),), origin)
+                yield Send(tree_event(self.number, "response"), (self.status(statement, scope, origin),), origin)
             case ReturnHalted():
-                yield Send(f"bt_{self.number}_halt_response", (), origin)
+                yield Send(tree_event(self.number, "halt_response"), (), origin)
             case CallChild():
                 yield from self.call_child(statement, origin)
             case SetOutput():
@@ -163,7 +164,7 @@ class StatementLowering:
         known = {**scope.variables, **scope.event}
         return infer(value.tree, known.get)[0]
 
-    def send(self, event: str, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
+    def send(self, event: ScxmlEvent, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
         """What is drawn at random is stored before the event can be received
         (docs/spec/plain-scxml.md#random-draws)."""
         ready = []
@@ -204,7 +205,7 @@ class StatementLowering:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
 
-    def event(self, statement: Communicate) -> str:
+    def event(self, statement: Communicate) -> ScxmlEvent:
         channel, part = self.context.channel(statement), statement.type.sends
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match part:
@@ -246,7 +247,7 @@ class StatementLowering:
         assert statement.child is not None
         children = self.children
         verb = "halt" if statement.halts else "tick"
-        calls = [Send(f"bt_{child}_{verb}", (), self.context.program.node(child)) for child in children]
+        calls = [Send(tree_event(child, verb), (), self.context.program.node(child)) for child in children]
         if (index := literal_index(statement.child)) is not None:
             yield calls[index]
         elif children:
@@ -271,7 +272,7 @@ class StatementLowering:
         assert isinstance(held, Reference)
         value = Param("value", lower_expr(statement.value.tree, scope), origin)
         type_ = self.type(statement.value, scope)
-        yield from self.send(f"{BLACKBOARD_WRITE_PREFIX}{held.variable}", ((value, type_),), origin)
+        yield from self.send(blackboard_write(held.variable), ((value, type_),), origin)
 
 
 def literal_index(child: Name) -> int | None:

@@ -26,15 +26,16 @@ from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
-from roaml.model.translated import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
 from roaml.roles import SymbolKind
 from roaml.scxml.model import (
     Assign,
     Branch,
     Data,
+    EventRole,
     If,
     Param,
     Role,
+    ScxmlEvent,
     Send,
     State,
     Statement,
@@ -42,6 +43,7 @@ from roaml.scxml.model import (
     Transition,
 )
 from roaml.scxml.model import Automaton as PlainAutomaton
+from roaml.scxml.names import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
 from roaml.text import Location
 
 
@@ -56,7 +58,7 @@ class Timer:
 
     user: str
     handle: str
-    event: str | None
+    event: ScxmlEvent | None
     period: Period
     origin: Location
 
@@ -78,8 +80,9 @@ def timers_of(program: Program, members: Iterable[tuple[Automaton, Machine]]) ->
     ]
 
 
-def _event(user: str, handle: str, alone: bool) -> str:
-    return f"{TIMER_PREFIX}{handle}" if alone else f"{TIMER_PREFIX}{handle}__{safe_name(user)}"
+def _event(user: str, handle: str, alone: bool) -> ScxmlEvent:
+    name = f"{TIMER_PREFIX}{handle}" if alone else f"{TIMER_PREFIX}{handle}__{safe_name(user)}"
+    return ScxmlEvent(name, EventRole.TIMER_TICK)
 
 
 def _declared(
@@ -117,6 +120,9 @@ def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
 # ------------------------------------------------------------------- the clock
 
 
+STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
+
+
 def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     """The automaton that counts the time and makes timers tick."""
     unit = min(timer.period.unit for timer in timers)
@@ -137,16 +143,16 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     )
     idle = State(
         "idle",
-        (Send(CLOCK_STEP, (), origin),),
+        (Send(STEP, (), origin),),
         (),
         (
             Transition(
-                CLOCK_STEP,
+                STEP,
                 binary(now, Operator.LESS, integer(end)),
                 (Target("idle", 1.0, advance, origin),),
                 origin,
             ),
-            Transition(CLOCK_STEP, None, (Target(TIME_IS_OVER, 1.0, (), origin),), origin),
+            Transition(STEP, None, (Target(TIME_IS_OVER, 1.0, (), origin),), origin),
         ),
         origin,
     )
@@ -155,7 +161,7 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     return PlainAutomaton(CLOCK, Role.CLOCK, "idle", (data,), (idle, timeout), origin)
 
 
-def _tick(event: str, due: Expr, origin: Location) -> Statement:
+def _tick(event: ScxmlEvent, due: Expr, origin: Location) -> Statement:
     return If((Branch(due, (Send(event, (), origin),), origin),), (), origin)
 
 

@@ -16,9 +16,9 @@ from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 
 FIELD_PREFIX = "ros_fields__"
 

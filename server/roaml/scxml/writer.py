@@ -56,7 +56,7 @@ def _receivers(network: Network) -> dict[str, list[str]]:
         for state in automaton.states:
             for transition in state.transitions:
                 if transition.event:
-                    found.setdefault(transition.event, {})[automaton.name] = None
+                    found.setdefault(transition.event.name, {})[automaton.name] = None
     return {event: list(names) for event, names in found.items()}
 
 
@@ -100,11 +100,11 @@ class _Writer:
         ]
         for transition in state.transitions:
             if len(transition.targets) == 1:
-                lines += self.transition(transition.event, _cond(transition), transition.targets[0])
+                lines += self.transition(_event(transition), _cond(transition), transition.targets[0])
             else:
                 drawing.append((_fresh(f"{state.id}_draw_{len(drawing) + 1}", self.ids), transition))
                 self.ids.add(drawing[-1][0])
-                attributes = {"event": transition.event, "cond": _cond(transition), "target": drawing[-1][0]}
+                attributes = {"event": _event(transition), "cond": _cond(transition), "target": drawing[-1][0]}
                 lines += _element("transition", attributes, (), transition.origin)
         yield from _element("state", {"id": state.id}, lines, state.origin, always=True)
         for identifier, transition in drawing:
@@ -144,8 +144,8 @@ class _Writer:
             Line(f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>", param.origin)
             for param in statement.params
         ]
-        for target in self.receivers.get(statement.event, (NOBODY,)):
-            attributes = {"event": statement.event, "target": target}
+        for target in self.receivers.get(statement.event.name, (NOBODY,)):
+            attributes = {"event": statement.event.name, "target": target}
             if self.automaton.role is Role.CLOCK and target == self.automaton.name:
                 attributes["delay"] = DELAY
             yield from _element("send", attributes, params, statement.origin, always=True)
@@ -166,6 +166,10 @@ class _Writer:
 def _data(data: Data) -> Lines:
     yield Line(f"<!-- TYPE {data.id}:{data.type} -->", data.origin)
     yield Line(f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>", data.origin)
+
+
+def _event(transition: Transition) -> str:
+    return transition.event.name if transition.event else ""
 
 
 def _cond(transition: Transition) -> str:

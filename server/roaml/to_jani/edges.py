@@ -17,8 +17,8 @@ from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
-from roaml.model.translated import is_internal, is_synchronising, on_receive, on_send
 from roaml.scxml.model import Assign, Body, If, Role, Send, State
+from roaml.scxml.names import on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import Event
@@ -105,7 +105,7 @@ class _FlowBuilder:
         initial = self.behavior.automaton.initial
         if self.behavior.start is not None:
             initial = self.start(self.behavior.start, initial)
-        dead = {on_receive(event) for event in events if not self.table[event].senders}
+        dead = {on_receive(self.table[event].event) for event in events if not self.table[event].senders}
         edges = tuple(draft.finished() for draft in self.drafts if draft.action not in dead)
         locations = tuple(Location(name, origin=origin) for name, origin in self.locations.items())
         return Flow(locations, initial, edges)
@@ -141,7 +141,8 @@ class _FlowBuilder:
 
     def move(self, move: Move, scope: Scope, guard: Expression | None) -> None:
         stem = f"{move.source}-{move.number}"
-        action = on_receive(move.event) if move.event else stem
+        awaited = move.transition.event
+        action = on_receive(awaited) if awaited else stem
         ways = [
             _Way(_CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin)
             for outcome in move.outcomes
@@ -168,10 +169,10 @@ class _FlowBuilder:
             return
         for event in events:
             conditions = handled.get(event, ())
-            if None not in conditions and (conditions or not is_synchronising(event)):
+            if None not in conditions and (conditions or not self.table[event].role.is_synchronising):
                 way = _Way(_CERTAIN, state.origin, state.id)
                 guard = _unless(None, conditions)
-                self.drafts.append(_Draft(state.id, on_receive(event), guard, [way], state.origin))
+                self.drafts.append(_Draft(state.id, on_receive(self.table[event].event), guard, [way], state.origin))
 
     # ------------------------------------------------------------------- bodies
 
@@ -215,13 +216,13 @@ class _FlowBuilder:
     def send(self, statement: Send, way: _Way, stem: str, scope: Scope) -> _Way:
         way.location = self.location(stem, statement.origin)
         following = self.next_way(way.location, on_send(statement.event), statement.origin)
-        if not is_internal(statement.event):
-            params = self.table[statement.event].params
+        if not statement.event.role.is_internal:
+            params = self.table[statement.event.name].params
             for param in statement.params:
                 shape = shape_of(params[param.name], self.max_array_size, sent=True)
-                variable = f"{statement.event}__{param.name}"
+                variable = f"{statement.event.name}__{param.name}"
                 following.send(stored_in(variable, shape, param.value, scope), param.origin)
-            following.send([(jani.Name(f"{statement.event}.valid"), jani.Boolean(True))], statement.origin)
+            following.send([(jani.Name(f"{statement.event.name}.valid"), jani.Boolean(True))], statement.origin)
         return following
 
     def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: Scope) -> _Way:

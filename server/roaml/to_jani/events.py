@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from roaml.expr.infer import infer
 from roaml.expr.types import UNKNOWN, Struct, Type, join
-from roaml.scxml.model import Body, Send, statements
+from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
 from roaml.text import Location
 from roaml.to_jani.moves import Behavior
 
@@ -23,12 +23,20 @@ class Event:
         origin: of what first sends it, or else first waits for it.
     """
 
-    name: str
+    event: ScxmlEvent
     origin: Location
     params: dict[str, Type] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
     senders: dict[int, None] = field(default_factory=dict)
     receivers: dict[int, None] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return self.event.name
+
+    @property
+    def role(self) -> EventRole:
+        return self.event.role
 
     @property
     def data(self) -> Struct:
@@ -53,9 +61,9 @@ def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
     for index, behavior in enumerate(behaviors):
         for _, moves in behavior.moves:
             for move in moves:
-                if move.event:
-                    origin = move.transition.origin
-                    table.setdefault(move.event, Event(move.event, origin)).receivers[index] = None
+                if (awaited := move.transition.event) is not None:
+                    event = Event(awaited, move.transition.origin)
+                    table.setdefault(awaited.name, event).receivers[index] = None
                 for outcome in move.outcomes:
                     _sent(outcome.body, index, table)
         _sent(behavior.start or (), index, table)
@@ -65,7 +73,8 @@ def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
 def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
     for statement in statements(body):
         if isinstance(statement, Send):
-            event = table.setdefault(statement.event, Event(statement.event, statement.origin))
+            sent = statement.event
+            event = table.setdefault(sent.name, Event(sent, statement.origin))
             if not event.senders:
                 event.origin = statement.origin
             event.senders[index] = None
@@ -84,7 +93,7 @@ def _infer_params(behaviors: Sequence[Behavior], table: Mapping[str, Event]) -> 
                 scope["_event"] = table[trigger].data
             for statement in statements(body):
                 if isinstance(statement, Send):
-                    params = table[statement.event].params
+                    params = table[statement.event.name].params
                     for param in statement.params:
                         type_, _ = infer(param.value, scope.get)
                         known = params.get(param.name, UNKNOWN)

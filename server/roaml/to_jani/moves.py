@@ -35,7 +35,8 @@ class Move:
 
     @property
     def event(self) -> str:
-        return self.transition.event
+        """The name of the event; "" for none."""
+        return self.transition.event.name if self.transition.event else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,7 @@ class Behavior:
             yield "", self.start
 
     def events(self) -> dict[str, None]:
-        """The events that it waits for, in order."""
+        """The names of the events that it waits for, in order."""
         return dict.fromkeys(move.event for _, moves in self.moves for move in moves if move.event)
 
 

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
-from roaml.model.translated import BLACKBOARD_REQUEST
-from roaml.scxml.model import Data, Network, Role
+from roaml.scxml.model import Data, EventRole, Network, Role
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
@@ -31,7 +30,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     automata = [_automaton(behavior, table, network) for behavior in behaviors]
     events = [event for event in table.values() if has_automaton(event)]
     # The question to the blackboard comes last, as in the reference.
-    events.sort(key=lambda event: event.name == BLACKBOARD_REQUEST)
+    events.sort(key=lambda event: event.role is EventRole.BLACKBOARD_READ)
     buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
     automata += [event_automaton(event, has_clock) for event in events]
     globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}

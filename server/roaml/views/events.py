@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.model.globals import FIELD_PREFIX
-from roaml.model.translated import is_length, received_by, sent_by
+from roaml.scxml.names import is_length, received_by, sent_by
 from roaml.smc.record import Part, Plain, TraceStep
 
 _VALID = ".valid"

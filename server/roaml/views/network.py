@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.jani.model import Model
-from roaml.model.translated import is_generated, received_by, sent_by
+from roaml.scxml.names import is_generated, received_by, sent_by
 from roaml.views.graph import Graph, Kind, Link, Node
 
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.system import builtin_plugins
-from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.value_types import STATUSES
+from roaml.scxml.names import is_generated, is_length, received_by, sent_by
 from roaml.smc.record import Change, Part, Plain, TraceStep
 from roaml.smc.story import Story
 from roaml.views.events import EventReader

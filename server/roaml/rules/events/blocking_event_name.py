@@ -9,9 +9,9 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
-from roaml.model.translated import is_synchronising
 from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule
+from roaml.scxml.names import is_synchronising
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

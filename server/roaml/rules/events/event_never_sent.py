@@ -14,8 +14,8 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import System
-from roaml.model.translated import TIMER_PREFIX
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.scxml.names import TIMER_PREFIX
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
 """Events by which plugins were called once: of these, removed-bt-event tells."""
