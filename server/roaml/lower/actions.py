@@ -17,26 +17,28 @@ from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import Program
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
+from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, ScxmlEvent, Send, State, Statement
 from roaml.scxml.names import ACTION_HANDLER_PREFIX
 from roaml.text import Location
 
 GOAL_ID = "goal_id"
 CODE = "code"
+_PARTS = (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT)
 
 
 def action_handler(action: Channel, program: Program) -> Automaton:
     events = ActionEvents(action.name)
-    goal, feedback, result = (fields(action, part, program.environment) for part in ("goal", "feedback", "result"))
+    goal, feedback, result = (fields(action, part, program.environment) for part in _PARTS)
     origin = handler_place(action, program)
     requests = []
     for number, client in enumerate(action.users):
         place = declared_at(client, program)
-        asked = copied(goal, sent_parameters(client, "goal"), place)
+        asked = copied(goal, sent_parameters(client, ProtocolPart.GOAL), place)
         passed_on = Send(events.goal, (Param(GOAL_ID, integer(number), place), *stored(goal, place)), place)
         requests.append(on(events.goal_of(client.automaton), "goal_requested", (*asked, passed_on), place))
 
-    def sent(part: str) -> set[str]:
+    def sent(part: ProtocolPart) -> set[str]:
         return set[str]().union(*(sent_parameters(server, part) for server in action.sources))
 
     remember = _store(GOAL_ID, origin)
@@ -45,7 +47,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         "waiting",
         (
             remember,
-            *copied(feedback, sent("feedback"), origin),
+            *copied(feedback, sent(ProtocolPart.FEEDBACK), origin),
             *_to_client(action, events.feedback_for, stored(feedback, origin), origin),
         ),
         origin,
@@ -57,7 +59,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         (
             _store(CODE, origin),
             remember,
-            *copied(result, sent("result"), origin),
+            *copied(result, sent(ProtocolPart.RESULT), origin),
             *_to_client(action, events.result_for, (code, *stored(result, origin)), origin),
         ),
         origin,

@@ -11,7 +11,8 @@ from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.system import Automaton, Channel, Endpoint, safe_name, sanitise
-from roaml.model.value_types import INTERFACE_KINDS, Environment
+from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
+from roaml.roles import ProtocolPart
 from roaml.scxml.model import EventRole, ScxmlEvent
 from roaml.scxml.names import named
 
@@ -105,7 +106,7 @@ class ActionEvents:
         return ScxmlEvent(f"{self.stem}_result_handle_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
-def fields(channel: Channel, part: str, environment: Environment) -> dict[str, Type]:
+def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> dict[str, Type]:
     """The leaf fields of a part of a service or action as event parameters, in the order of the ROS definition.
 
     Fields that need not be set (`InterfaceType.optional`) count only if somebody sends them.
@@ -114,13 +115,13 @@ def fields(channel: Channel, part: str, environment: Environment) -> dict[str, T
     for endpoint in channel.endpoints:
         interface = environment.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
         if interface is not None:
-            required = {parameter(path.split(".")) for path in interface.required(part)}
-            found = {parameter(path): type_ for path, type_ in leaves(interface.part(part))}
+            required = {parameter(path.split(".")) for path in interface.required(section_of(part))}
+            found = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
             return {name: type_ for name, type_ in found.items() if name in required or name in sent}
     return {}
 
 
-def sent_parameters(endpoint: Endpoint, part: str) -> set[str]:
+def sent_parameters(endpoint: Endpoint, part: ProtocolPart) -> set[str]:
     """The event parameters that one side sends for the fields of a part."""
     return {
         parameter((*field.name.split("."), *path))

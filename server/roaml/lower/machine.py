@@ -24,7 +24,7 @@ from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
 from roaml.model.value_types import STATUSES
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
 from roaml.scxml.names import named
@@ -158,7 +158,7 @@ class _ChartLowering:
 
     def transitions(self, handler: Handler) -> Iterator[Transition]:
         origin = self.context.origin(handler.element.span)
-        if handler.trigger == "goal-response":
+        if handler.trigger is ProtocolPart.GOAL_RESPONSE:
             yield from self.goal_response(handler)
             return
         for event, cond in self.triggers(handler):
@@ -185,12 +185,12 @@ class _ChartLowering:
         """The events that the handler waits for, each with its condition; mostly one."""
         cond = self.condition(handler)
         match handler.trigger:
-            case "child-status" | "child-halted":
+            case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
                 yield from self.child_triggers(handler, cond)
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 assert self.context.thread is not None
                 yield self.event(handler), equal(event_data("thread_id"), integer(self.context.thread))
-            case "result" if handler.type.code:
+            case ProtocolPart.RESULT if handler.type.code:
                 yield self.event(handler), both(cond, equal(event_data("code"), integer(handler.type.code)))
             case _:
                 yield self.event(handler), cond
@@ -199,13 +199,13 @@ class _ChartLowering:
         if handler.cond is None:
             return None
         scope = self.context.scope(handler, "cond")
-        if handler.trigger in ("child-status", "child-halted"):
+        if handler.trigger in (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED):
             scope = replace(scope, constants=STATUSES)
         return lower_expr(handler.cond.tree, scope)
 
     def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         assert handler.child is not None
-        answer = "response" if handler.trigger == "child-status" else "halt_response"
+        answer = "response" if handler.trigger is ProtocolPart.CHILD_STATUS else "halt_response"
         children = self.statements.children
         if (index := literal_index(handler.child)) is not None:
             yield tree_event(children[index], answer), cond
@@ -217,34 +217,34 @@ class _ChartLowering:
     def event(self, handler: Handler) -> ScxmlEvent | None:
         automaton, trigger = self.context.automaton, handler.trigger
         match trigger:
-            case "":
+            case None:
                 return None
-            case "event":
+            case ProtocolPart.EVENT:
                 assert handler.event is not None
                 return named(handler.event.value)
-            case "tick":
+            case ProtocolPart.TICK:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
-            case "bt-tick" | "bt-halt":
-                return tree_event(self.statements.number, trigger.removeprefix("bt-"))
+            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
+                return tree_event(self.statements.number, trigger.value.removeprefix("bt-"))
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:
-            case "message":
+            case ProtocolPart.MESSAGE:
                 return topic_event(channel.name)
-            case "request":
+            case ProtocolPart.REQUEST:
                 return service.request
-            case "response":
+            case ProtocolPart.RESPONSE:
                 return service.response_to(automaton)
-            case "goal":
+            case ProtocolPart.GOAL:
                 return action.goal
-            case "feedback":
+            case ProtocolPart.FEEDBACK:
                 return action.feedback_for(automaton)
-            case "result":
+            case ProtocolPart.RESULT:
                 return action.result_for(automaton)
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 return action.thread_start
-            case "thread-free":
+            case ProtocolPart.THREAD_FREE:
                 return action.thread_free
         raise AssertionError(f"unknown trigger {trigger}")
 

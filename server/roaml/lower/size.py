@@ -41,7 +41,7 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 
 _EDGE = 4
 """What an edge counts besides its expressions: it has a destination, an action and two locations."""
@@ -100,12 +100,17 @@ def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
     for variable_name in system.blackboard:
         type_ = BASE_TYPES[system.variable_type(variable_name)]
         yield Share(cells_of(type_, most), f"the blackboard variable `{variable_name}`", "")
-    channels: list[tuple[Channel, tuple[str, ...], str]] = []
-    channels += [(service, ("request", "response"), "service") for service in system.services.values()]
-    channels += [(action, ("goal", "feedback", "result"), "action") for action in system.actions.values()]
-    for channel, sections, kind in channels:
+    channels: list[tuple[Channel, tuple[ProtocolPart, ...], str]] = []
+    channels += [
+        (service, (ProtocolPart.REQUEST, ProtocolPart.RESPONSE), "service") for service in system.services.values()
+    ]
+    channels += [
+        (action, (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT), "action")
+        for action in system.actions.values()
+    ]
+    for channel, parts, kind in channels:
         endpoint = channel.endpoints[0]
-        held = (type_ for part in sections for type_ in fields(channel, part, program.environment).values())
+        held = (type_ for part in parts for type_ in fields(channel, part, program.environment).values())
         count = sum(cells_of(type_, most) for type_ in held)
         yield Share(count, f"what is passed on for the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
 
@@ -238,7 +243,7 @@ class _Counter:
         for state in self.of.states:
             for handler in state.handlers:
                 count += self.copies(handler) * sum(self.steps(target.body) for target in handler.targets)
-                count += handler.trigger == ""
+                count += handler.trigger is None
         return count
 
     def steps(self, body: tuple[Statement, ...]) -> int:

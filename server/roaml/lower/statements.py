@@ -23,6 +23,7 @@ from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import STATUSES, unset_fields
+from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, ScxmlEvent, Send, Statement
 from roaml.scxml.names import named
 from roaml.text import Location
@@ -201,33 +202,33 @@ class StatementLowering:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
         if statement.type.code:
             yield Param("code", integer(statement.type.code), origin)
-        if statement.type.sends == "thread-free":
+        if statement.part is ProtocolPart.THREAD_FREE:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
 
     def event(self, statement: Communicate) -> ScxmlEvent:
-        channel, part = self.context.channel(statement), statement.type.sends
+        channel, part = self.context.channel(statement), statement.part
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match part:
-            case "message":
+            case ProtocolPart.MESSAGE:
                 return topic_event(channel.name)
-            case "request":
+            case ProtocolPart.REQUEST:
                 return service.request_of(self.context.automaton)
-            case "response":
+            case ProtocolPart.RESPONSE:
                 return service.response
-            case "goal":
+            case ProtocolPart.GOAL:
                 return action.goal_of(self.context.automaton)
-            case "goal-accepted":
+            case ProtocolPart.GOAL_ACCEPTED:
                 return action.accepted
-            case "goal-rejected":
+            case ProtocolPart.GOAL_REJECTED:
                 return action.rejected
-            case "feedback":
+            case ProtocolPart.FEEDBACK:
                 return action.feedback
-            case "result":
+            case ProtocolPart.RESULT:
                 return action.result
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 return action.thread_start
-            case "thread-free":
+            case ProtocolPart.THREAD_FREE:
                 return action.thread_free
         raise AssertionError(f"unknown part {part}")
 

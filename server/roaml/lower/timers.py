@@ -26,7 +26,7 @@ from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import (
     Assign,
     Branch,
@@ -105,7 +105,7 @@ def _awaited(chart: Chart) -> set[str]:
         handler.handle.value
         for state in chart.states
         for handler in state.handlers
-        if handler.trigger == "tick" and handler.handle and handler.effective
+        if handler.trigger is ProtocolPart.TICK and handler.handle and handler.effective
     }
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.model.machine import Chart, Handler, Machine, Target
+from roaml.roles import ProtocolPart
 from roaml.views.graph import Graph, Kind, Link, Node
 
 
@@ -37,7 +38,11 @@ def _links(source: str, handler: Handler) -> Iterator[Link]:
 
 def trigger_label(handler: Handler) -> tuple[str, ...]:
     """What a transition waits for, and its condition: a line for each."""
-    words = [handler.element.name.removeprefix("ros_").removeprefix("bt_")] if handler.trigger != "event" else []
+    words = (
+        [handler.element.name.removeprefix("ros_").removeprefix("bt_")]
+        if handler.trigger is not ProtocolPart.EVENT
+        else []
+    )
     words += [name.value for name in (handler.event, handler.handle, handler.child) if name]
     lines = [" ".join(words)] if handler.trigger else []
     return (*lines, *([f"[{' '.join(handler.cond.text.split())}]"] if handler.cond else []))
