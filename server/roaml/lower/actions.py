@@ -14,7 +14,7 @@ from roaml.expr.zero import zero
 from roaml.lower.build import equal, event_data, integer, name
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
 from roaml.roles import ProtocolPart
@@ -27,7 +27,7 @@ CODE = "code"
 _PARTS = (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT)
 
 
-def action_handler(action: Channel, program: Program) -> Automaton:
+def action_handler(action: Channel, program: TranslatableSystem) -> Automaton:
     events = ActionEvents(action.name)
     goal, feedback, result = (fields(action, part, program.environment) for part in _PARTS)
     origin = handler_place(action, program)

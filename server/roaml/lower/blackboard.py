@@ -6,7 +6,7 @@ from __future__ import annotations
 from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
 from roaml.lower.build import event_data, name
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.scxml.model import (
     Assign,
     Automaton,
@@ -31,7 +31,7 @@ def blackboard_write(variable: str) -> ScxmlEvent:
     return ScxmlEvent(f"{BLACKBOARD_WRITE_PREFIX}{variable}", EventRole.BLACKBOARD_WRITE)
 
 
-def blackboard(program: Program) -> Automaton | None:
+def blackboard(program: TranslatableSystem) -> Automaton | None:
     """None if the tree uses no variables."""
     system = program.system
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
@@ -55,7 +55,7 @@ def blackboard(program: Program) -> Automaton | None:
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 
-def _place(program: Program, variable: str) -> Location:
+def _place(program: TranslatableSystem, variable: str) -> Location:
     """The first node that uses a variable."""
     instance = program.system.blackboard[variable][0].automaton.instance
     return program.node(instance.number if instance else 0)

@@ -10,8 +10,8 @@ from roaml.expr.parse import parse
 from roaml.expr.tree import Boolean, Expr, String
 from roaml.expr.types import STRING, UNKNOWN, Type, is_kind, resolve_type
 from roaml.lower.data import as_type
-from roaml.lower.expressions import Scope
-from roaml.lower.program import Program
+from roaml.lower.expressions import LoweringScope
+from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import Constant, PortValue, Reference
 from roaml.model.machine import Chart, Communicate, Data, Declaration, Handler, Machine
 from roaml.model.outline import InterfaceUse
@@ -34,7 +34,7 @@ class Context:
         variables: the chart's variables with their types.
     """
 
-    program: Program
+    program: TranslatableSystem
     automaton: Automaton
     machine: Machine
     chart: Chart
@@ -50,11 +50,11 @@ class Context:
             return Location(self.automaton.path, span)
         return self.program.place_of(self.automaton)
 
-    def scope(self, handler: Handler | None = None, part: str = "body") -> Scope:
+    def scope(self, handler: Handler | None = None, part: str = "body") -> LoweringScope:
         """What names mean in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
         if handler is None:
-            return Scope(self.variables, {}, {})
-        return Scope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
+            return LoweringScope(self.variables, {}, {})
+        return LoweringScope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
 
     def port(self, read: PortRead) -> PortValue:
         """What the port holds. A port that is not set has been reported; it counts as empty."""
@@ -85,7 +85,7 @@ class Context:
         return channel
 
 
-def variables_of(chart: Chart, program: Program) -> dict[str, Type]:
+def variables_of(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
     """The variables of a chart with their types; of equal ids the first counts."""
     found: dict[str, Type] = {}
     for data in chart.data:
@@ -94,7 +94,7 @@ def variables_of(chart: Chart, program: Program) -> dict[str, Type]:
     return found
 
 
-def type_of(data: Data, program: Program) -> Type:
+def type_of(data: Data, program: TranslatableSystem) -> Type:
     name = data.type.name if data.type else None
     return (resolve_type(name, program.environment.struct) if name else None) or UNKNOWN
 

@@ -13,10 +13,10 @@ from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import Context, type_of, variables_of
 from roaml.lower.data import lower_data
-from roaml.lower.expressions import Scope, lower_expr
+from roaml.lower.expressions import LoweringScope, lower_expr
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
 from roaml.model.expand import Constant
@@ -53,7 +53,7 @@ def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart,
 
 
 def lower_machine(
-    automaton: Automaton, machine: Machine, program: Program, timers: TimerEvents
+    automaton: Automaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
     ports = {} if automaton.path else builtin_ports(automaton, program)
     for plain_name, chart, thread in copies(automaton, machine):
@@ -137,7 +137,7 @@ class _ChartLowering:
         (docs/spec/plain-scxml.md#blackboard-read)."""
         origin = self.context.origin(handler.element.span)
         target = handler.targets[0]
-        scope = Scope(self.context.variables, {}, {})
+        scope = LoweringScope(self.context.variables, {}, {})
         identifier = f"{state}_{handler.element.name}_{number}"
         while identifier in self.state_ids:
             identifier += "_"

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, safe_name, sanitise
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Automaton, Role, Send, State
@@ -15,7 +15,7 @@ from roaml.scxml.names import SERVICE_HANDLER_PREFIX
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
 
 
-def service_handler(service: Channel, program: Program) -> Automaton:
+def service_handler(service: Channel, program: TranslatableSystem) -> Automaton:
     events = ServiceEvents(service.name)
     request, response = (fields(service, part, program.environment) for part in _PARTS)
     answered = set[str]().union(*(sent_parameters(server, ProtocolPart.RESPONSE) for server in service.sources))

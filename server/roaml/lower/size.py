@@ -19,7 +19,7 @@ from roaml.expr.tree import ArrayLiteral, Binary, Expr, Name, ObjectLiteral, Str
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Type, is_kind, resolve_type, unwrap
 from roaml.lower.interfaces import fields
 from roaml.lower.nodes import builtin_machine
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import combinations
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import (
@@ -53,7 +53,7 @@ _PLACES = 20
 """Places in synchronisations that count as one part: each of them lists all automata, most as `null`."""
 
 
-def size_of(program: Program, globals_: Mapping[str, GlobalVariable]) -> Size:
+def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Size:
     """The size of a system, the largest shares first.
 
     Args:
@@ -75,7 +75,7 @@ def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
 # ----------------------------------------------------------------------- cells
 
 
-def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
     most = program.parameters.max_array_size
     for automaton, machine in _members(program):
         for chart, copies in _charts(machine):
@@ -115,7 +115,7 @@ def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
         yield Share(count, f"what is passed on for the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
 
 
-def _members(program: Program) -> Iterator[tuple[Automaton, Machine]]:
+def _members(program: TranslatableSystem) -> Iterator[tuple[Automaton, Machine]]:
     for automaton in program.system.automata:
         machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
         if machine is not None:
@@ -128,7 +128,7 @@ def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
     yield from ((thread.chart, thread.count or 0) for thread in machine.threads)
 
 
-def _variables(chart: Chart, program: Program) -> dict[str, Type]:
+def _variables(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
     found: dict[str, Type] = {}
     for data in chart.data:
         name = data.type.name if data.type else None
@@ -141,7 +141,7 @@ def _variables(chart: Chart, program: Program) -> dict[str, Type]:
 # ----------------------------------------------------------------------- parts
 
 
-def _parts(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+def _parts(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
     counted: dict[tuple[int, int], tuple[int, int]] = {}
     events = sum(variable.parameter == "valid" for variable in globals_.values())
     automata, syncs = events, 2 * events
@@ -180,7 +180,7 @@ class _Counted(NamedTuple):
     queries: tuple[_Query, ...]
 
 
-def _count(machine: Machine, chart: Chart, children: int, program: Program) -> _Counted:
+def _count(machine: Machine, chart: Chart, children: int, program: TranslatableSystem) -> _Counted:
     """The counts of one copy of a chart. They are kept with the chart: a key changes one machine of a system."""
     parameters = program.parameters
     known: dict[object, _Counted] = chart.__dict__.setdefault("translation_parts", {})
@@ -200,7 +200,7 @@ class _Counter:
     machine: Machine
     of: Chart
     children: int
-    program: Program
+    program: TranslatableSystem
     variables: dict[str, Type]
     queries: list[_Query] = field(default_factory=list)
 

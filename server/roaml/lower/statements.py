@@ -15,7 +15,7 @@ from roaml.expr.zero import zero
 from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
-from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
+from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
@@ -53,10 +53,10 @@ class StatementLowering:
     context: Context
     drawn: list[Data] = field(default_factory=list)
 
-    def body(self, statements: Iterable[hl.Statement], scope: Scope) -> Body:
+    def body(self, statements: Iterable[hl.Statement], scope: LoweringScope) -> Body:
         return tuple(plain for statement in statements for plain in self.statement(statement, scope))
 
-    def statement(self, statement: hl.Statement, scope: Scope) -> Iterator[Statement]:
+    def statement(self, statement: hl.Statement, scope: LoweringScope) -> Iterator[Statement]:
         origin = self.context.origin(statement.element.span)
         match statement:
             case hl.Assign():
@@ -88,7 +88,7 @@ class StatementLowering:
 
     # ------------------------------------------------------------- assignments
 
-    def assign(self, statement: hl.Assign, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def assign(self, statement: hl.Assign, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         assert statement.location is not None
         target = access_of(statement.location.tree, scope)
         assert target is not None
@@ -118,12 +118,12 @@ class StatementLowering:
         yield Assign(location, used, origin)
         yield from (Assign(name(data.id), data.value, origin) for data in drawn)
 
-    def values(self, value: Value | None, scope: Scope, type_: Type) -> list[tuple[tuple[str, ...], Expr]]:
+    def values(self, value: Value | None, scope: LoweringScope, type_: Type) -> list[tuple[tuple[str, ...], Expr]]:
         if isinstance(value, Expression):
             return lower_leaves(value.tree, scope, type_)
         return [((), self.value(value, scope))]
 
-    def value(self, value: Value | None, scope: Scope) -> Expr:
+    def value(self, value: Value | None, scope: LoweringScope) -> Expr:
         """A value that is no struct. A port that is bound to the blackboard is read from the blackboard's answer."""
         match value:
             case Expression():
@@ -138,19 +138,19 @@ class StatementLowering:
 
     # ----------------------------------------------------------------- choices
 
-    def choice(self, statement: hl.If, scope: Scope, origin: Location) -> If:
+    def choice(self, statement: hl.If, scope: LoweringScope, origin: Location) -> If:
         branches = tuple(self.branch(branch, scope) for branch in statement.branches)
         otherwise = self.body(statement.otherwise.body, scope) if statement.otherwise else ()
         return If(branches, otherwise, origin)
 
-    def branch(self, branch: hl.Branch, scope: Scope) -> Branch:
+    def branch(self, branch: hl.Branch, scope: LoweringScope) -> Branch:
         assert branch.cond is not None
         cond = lower_expr(branch.cond.tree, scope)
         return Branch(cond, self.body(branch.body, scope), self.context.origin(branch.element.span))
 
     # ----------------------------------------------------------------- sending
 
-    def params(self, param: hl.Param, prefix: str, scope: Scope) -> Iterator[TypedParam]:
+    def params(self, param: hl.Param, prefix: str, scope: LoweringScope) -> Iterator[TypedParam]:
         assert param.name is not None
         origin = self.context.origin(param.element.span)
         identifier = prefix + param.name.value.replace(".", SEPARATOR)
@@ -159,7 +159,7 @@ class StatementLowering:
         for path, value in self.values(param.value, scope, type_):
             yield Param(SEPARATOR.join((identifier, *path)), value, origin), types.get(path, UNKNOWN)
 
-    def type(self, value: Value | None, scope: Scope) -> Type:
+    def type(self, value: Value | None, scope: LoweringScope) -> Type:
         if not isinstance(value, Expression):
             return UNKNOWN
         known = {**scope.variables, **scope.event}
@@ -188,14 +188,14 @@ class StatementLowering:
         self.drawn.append(Data(found, named, zero(named), origin))
         return self.drawn[-1]
 
-    def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def communicate(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
-    def arguments(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Param]:
+    def arguments(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Param]:
         """What is sent besides the fields (docs/spec/plain-scxml.md#events)."""
         for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
@@ -234,7 +234,7 @@ class StatementLowering:
 
     # ------------------------------------------------------------------- trees
 
-    def status(self, statement: ReturnStatus, scope: Scope, origin: Location) -> Param:
+    def status(self, statement: ReturnStatus, scope: LoweringScope, origin: Location) -> Param:
         assert statement.status is not None
         word = statement.status.value
         value = integer(STATUSES[word]) if word in STATUSES else name(word, statement.status.span)
@@ -266,7 +266,7 @@ class StatementLowering:
         assert instance is not None
         return instance.children
 
-    def set_output(self, statement: SetOutput, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def set_output(self, statement: SetOutput, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         assert statement.key is not None
         assert statement.value is not None
         held = self.context.port(PortRead(statement.key, statement.element.span))

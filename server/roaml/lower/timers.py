@@ -18,7 +18,7 @@ from roaml.expr.types import BASE_TYPES
 from roaml.lower.build import binary, equal, integer, name
 from roaml.lower.interfaces import topic_event
 from roaml.lower.machine import copies
-from roaml.lower.program import NOWHERE, Program
+from roaml.lower.program import NOWHERE, TranslatableSystem
 from roaml.lower.tree import tick_timer
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.globals import FIELD_PREFIX
@@ -63,7 +63,7 @@ class Timer:
     origin: Location
 
 
-def timers_of(program: Program, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
+def timers_of(program: TranslatableSystem, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
     """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
     found: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
@@ -86,7 +86,7 @@ def _event(user: str, handle: str, alone: bool) -> ScxmlEvent:
 
 
 def _declared(
-    automaton: Automaton, machine: Machine, program: Program
+    automaton: Automaton, machine: Machine, program: TranslatableSystem
 ) -> Iterator[tuple[str, str, Fraction, bool, Location]]:
     """(user, handle, rate in Hz, whether anything waits for it, place) for each timer of a machine."""
     for declaration in machine.declarations:
@@ -123,7 +123,7 @@ def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
 STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
-def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
+def clock(timers: list[Timer], program: TranslatableSystem) -> PlainAutomaton:
     """The automaton that counts the time and makes timers tick."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]

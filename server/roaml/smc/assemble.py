@@ -32,7 +32,7 @@ from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.types import ArrayType
 from roaml.smc import shapes
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage, unsupported
+from roaml.smc.names import Meaning, Storage, StorageNames, unsupported
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.operations import ARITHMETIC, COMPARISONS, MOST, OperatorAssembler
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
@@ -46,7 +46,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ pieces of code
 
-    def condition(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def condition(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that tells whether `expression` holds."""
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
@@ -56,7 +56,7 @@ class Assembler(OperatorAssembler):
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
         return start
 
-    def real_register(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that gives the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)
         value = self.as_real(self.value(expression, names))
@@ -65,7 +65,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ scalars
 
-    def value(self, node: Expression, names: Names, into: int = -1) -> Operand:
+    def value(self, node: Expression, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar; with `into`, in that register."""
         match node:
             case Integer():
@@ -104,7 +104,7 @@ class Assembler(OperatorAssembler):
             case _:
                 raise FaultError(unsupported(node), node.origin)
 
-    def stored(self, node: Expression, kind: str, names: Names, into: int = -1) -> Operand:
+    def stored(self, node: Expression, kind: str, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar as a value of `kind`."""
         if kind != REAL:
             return self.value(node, names, into)
@@ -112,12 +112,12 @@ class Assembler(OperatorAssembler):
             return self.value(node, names, into)
         return self.as_real(self.value(node, names), into)
 
-    def unary(self, node: Unary, names: Names, into: int) -> Operand:
+    def unary(self, node: Unary, names: StorageNames, into: int) -> Operand:
         if node.operator is UnaryOperator.NOT:
             return self.boolean(node, names, into)
         return self.applied(node, self.value(node.operand, names), into)
 
-    def binary(self, node: Binary, names: Names, into: int) -> Operand:
+    def binary(self, node: Binary, names: StorageNames, into: int) -> Operand:
         op = node.operator
         if op in _LOGICAL or op in COMPARISONS:
             return self.boolean(node, names, into)
@@ -127,7 +127,7 @@ class Assembler(OperatorAssembler):
         first = self.value(left, names)
         return self.computed(node, first, self.value(right, names), into)
 
-    def chain(self, node: Binary, names: Names, into: int) -> Operand:
+    def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
         """`a + b + c ...`: as deep as it likes."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
@@ -138,7 +138,7 @@ class Assembler(OperatorAssembler):
         return result
 
     def conditional(
-        self, test: Expression, then: Expression, otherwise: Expression, names: Names, into: int
+        self, test: Expression, then: Expression, otherwise: Expression, names: StorageNames, into: int
     ) -> Operand:
         kind = REAL if REAL in (shapes.kind(then, names), shapes.kind(otherwise, names)) else shapes.kind(then, names)
         # Not directly into the target: the branches may read it while it is written.
@@ -152,7 +152,7 @@ class Assembler(OperatorAssembler):
         self.tape.mark(end)
         return self.moved(Operand(kind, register), into)
 
-    def boolean(self, node: Expression, names: Names, into: int) -> Operand:
+    def boolean(self, node: Expression, names: StorageNames, into: int) -> Operand:
         register = self.tape.temporary(BOOL)
         no, end = Label(), Label()
         self.jump(node, names, no, False)
@@ -165,7 +165,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ conditions
 
-    def jump(self, node: Expression, names: Names, label: Label, when: bool) -> None:
+    def jump(self, node: Expression, names: StorageNames, label: Label, when: bool) -> None:
         """Jump to `label` if the value of `node` is `when`, else go on."""
         while isinstance(node, Unary) and node.operator is UnaryOperator.NOT:
             node, when = node.operand, not when
@@ -190,7 +190,7 @@ class Assembler(OperatorAssembler):
                 else:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
-    def logical(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         """Chains of one operator are as long as they like."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
@@ -213,14 +213,14 @@ class Assembler(OperatorAssembler):
         self.jump(parts[-1], names, label, when)
         self.tape.mark(end)
 
-    def comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         op, left, right = node.operator, node.left, node.right
         if op.signature is Signature.EQUALITY and (shapes.shape(left, names) or shapes.shape(right, names)):
             self.array_comparison(node, names, label, when)
             return
         self.compared(op, self.value(left, names), self.value(right, names), label, when)
 
-    def array_comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def array_comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         equal = node.operator is BinaryOperator.EQUAL
         shape, other = shapes.shape(node.left, names), shapes.shape(node.right, names)
         if shape != other:
@@ -240,7 +240,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ arrays
 
-    def element(self, node: ArrayAccess, names: Names) -> Region:
+    def element(self, node: ArrayAccess, names: StorageNames) -> Region:
         """The part of an array that is accessed; its shape is () for a single element."""
         indexes: list[ArrayAccess] = []
         inner: Expression = node
@@ -253,7 +253,7 @@ class Assembler(OperatorAssembler):
             raise FaultError("this is not an array", node.origin)
         return self.indexed(whole, indexes, names)
 
-    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: Names) -> Region:
+    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: StorageNames) -> Region:
         offset = whole.offset
         base, shape = whole.base, whole.shape
         fixed = 0
@@ -280,7 +280,7 @@ class Assembler(OperatorAssembler):
             offset = step
         return Region(whole.kind, shape, base + fixed, offset)
 
-    def region(self, node: Expression, names: Names) -> Region:
+    def region(self, node: Expression, names: StorageNames) -> Region:
         """The registers of an array; what is not in registers is put there."""
         match node:
             case Name():
@@ -295,13 +295,13 @@ class Assembler(OperatorAssembler):
             case _:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
-    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: Names) -> Region:
+    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
         """A copy of an array in registers of its own."""
         region = Region(kind, shape, self.tape.room(kind, product(shape)))
         self.fill(node, region, names)
         return region
 
-    def fill(self, node: Expression, into: Region, names: Names, watch: int = -1) -> None:
+    def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
         """Store an array into a region without offset; where it is smaller, zeros are added."""
         match node:
             case ArrayValue(elements):
@@ -342,7 +342,7 @@ class Assembler(OperatorAssembler):
             case _:
                 self.copy(self.region(node, names), into, watch, node)
 
-    def put(self, node: Expression, cell: Region, names: Names, watch: int) -> None:
+    def put(self, node: Expression, cell: Region, names: StorageNames, watch: int) -> None:
         """Store a scalar into a single cell."""
         if watch < 0 and cell.offset < 0:
             self.stored(node, cell.kind, names, cell.base)
@@ -351,7 +351,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ functions
 
-    def called(self, node: Call, names: Names) -> tuple[Expression, Names]:
+    def called(self, node: Call, names: StorageNames) -> tuple[Expression, StorageNames]:
         """The body of a function, and what names mean in it."""
         function = names.called(node)
         bound: dict[str, Meaning] = {}

@@ -13,7 +13,7 @@ from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Co
 from roaml.jani.node import Origin
 from roaml.smc.assemble import Assembler
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Names, Storage, unsupported
+from roaml.smc.names import Storage, StorageNames, unsupported
 from roaml.smc.opcodes import Op
 from roaml.smc.operations import MOST
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
@@ -30,7 +30,7 @@ class Later(NamedTuple):
 class AssignmentAssembler(Assembler):
     """Writes assignments, too."""
 
-    def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
+    def assign(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> None:
         """`target := value`, at once."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
@@ -45,7 +45,7 @@ class AssignmentAssembler(Assembler):
         else:
             self.put(value, place, names, storage.watch)
 
-    def assigned(self, target: Expression, names: Names) -> tuple[Storage, list[ArrayAccess]]:
+    def assigned(self, target: Expression, names: StorageNames) -> tuple[Storage, list[ArrayAccess]]:
         accesses: list[ArrayAccess] = []
         inner = target
         while isinstance(inner, ArrayAccess):
@@ -61,7 +61,7 @@ class AssignmentAssembler(Assembler):
         accesses.reverse()
         return storage, accesses
 
-    def assign_array(self, value: Expression, place: Region, names: Names, watch: int) -> None:
+    def assign_array(self, value: Expression, place: Region, names: StorageNames, watch: int) -> None:
         if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
             self.fill(value, place, names, watch)
             return
@@ -81,7 +81,7 @@ class AssignmentAssembler(Assembler):
             if watch >= 0:
                 self.tape.emit(Op.NOTE, watch)
 
-    def early(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> Later:
+    def early(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> Later:
         """Compute what will be assigned, and where; `finish` assigns it."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A JANI model -> a `Program`, once for all traces and properties: the code of guards and ways, and the tables."""
+"""A JANI model -> a `Program`, once for all traces and properties: the code of guards and ways, and tables."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from roaml.jani.properties import Formula, identifiers
 from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.layout import Layout, lay_out
-from roaml.smc.names import Names, Storage
-from roaml.smc.network import Network, Slot, Step, root
+from roaml.smc.layout import MemoryLayout, lay_out
+from roaml.smc.names import Storage, StorageNames
+from roaml.smc.network import CompiledNetwork, EdgeStep, Slot, root
 from roaml.smc.program import Ints, Program
 
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
@@ -32,7 +32,7 @@ class Legend:
         vectors: the slots of each vector, and its action.
     """
 
-    layout: Layout
+    layout: MemoryLayout
     locations: list[tuple[int, str]]
     ways: list[tuple[Edge, Destination]]
     vectors: list[tuple[list[int], str | None]]
@@ -54,7 +54,7 @@ class Compilation:
         self.tape = self.assembler.tape
         self.layout = lay_out(model, self.tape)
         self.int_count, self.real_count = len(self.tape.ints), len(self.tape.reals)
-        self.network = Network(model, self.layout)
+        self.network = CompiledNetwork(model, self.layout)
         self.watched: list[Storage] = []
         self._watch(formulas)
         self._write()
@@ -62,7 +62,7 @@ class Compilation:
     def _watch(self, formulas: Iterable[Formula]) -> None:
         """Number the variables whose changes must be known: those that guards and properties read."""
 
-        def watch(name: str, names: Names) -> None:
+        def watch(name: str, names: StorageNames) -> None:
             meaning = names.values.get(name)
             if isinstance(meaning, Storage) and meaning.watch < 0 and not meaning.is_constant:
                 meaning.watch = len(self.watched)
@@ -93,7 +93,7 @@ class Compilation:
         self.ways: list[tuple[Edge, Destination]] = []
         self.way_source: list[int] = []
         self.group_of: dict[tuple[int, int], int] = {}
-        self.group_steps: list[list[Step]] = []
+        self.group_steps: list[list[EdgeStep]] = []
         self.entangled = [self._is_entangled(slots) for slots, _ in self.network.vectors]
         phased = {s for (slots, _), yes in zip(self.network.vectors, self.entangled, strict=True) if yes for s in slots}
         here: dict[int, list[int]] = {}
@@ -129,7 +129,7 @@ class Compilation:
                     return True
         return False
 
-    def _write_step(self, step: Step, location: int, is_phased: bool) -> None:
+    def _write_step(self, step: EdgeStep, location: int, is_phased: bool) -> None:
         number, _ = self.network.locations[location]
         instance = self.layout.instances[number]
         names = instance.names
@@ -163,7 +163,9 @@ class Compilation:
             self.way_sum[-1] = 1.0
         self.way_start.append(len(self.way_target))
 
-    def _write_assignments(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> int:
+    def _write_assignments(
+        self, assignments: tuple[Assignment, ...], names: StorageNames, origin: Origin | None
+    ) -> int:
         if not assignments:
             return -1
         assembler = self.assembler
@@ -178,7 +180,7 @@ class Compilation:
         assembler.end()
         return start
 
-    def _has_hazard(self, group: list[Assignment], names: Names) -> bool:
+    def _has_hazard(self, group: list[Assignment], names: StorageNames) -> bool:
         """Whether one of the simultaneous assignments reads what an earlier one writes."""
         written: set[str] = set()
         for assignment in group:
@@ -187,7 +189,7 @@ class Compilation:
             written.add(root(assignment))
         return False
 
-    def _write_phases(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> None:
+    def _write_phases(self, assignments: tuple[Assignment, ...], names: StorageNames, origin: Origin | None) -> None:
         assembler = self.assembler
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
@@ -319,7 +321,7 @@ class Compilation:
         """Code that resets transient variables, and for each location the values that they have in it."""
         model, assembler = self.model, self.assembler
         code = [-1] * len(self.network.locations)
-        scopes: list[tuple[Names, Iterable[Storage], Mapping[str, bool]]] = [
+        scopes: list[tuple[StorageNames, Iterable[Storage], Mapping[str, bool]]] = [
             (self.layout.names, self.layout.shared, {v.name: v.transient for v in model.variables})
         ]
         for instance in self.layout.instances:

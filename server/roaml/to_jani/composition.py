@@ -18,17 +18,17 @@ from roaml.scxml.names import (
     on_receive,
     on_send,
 )
-from roaml.to_jani.events import Event
+from roaml.to_jani.events import EventUsage
 
 CLOCK_ENABLE = "__as2fm__global_timer_enable"
 BLACKBOARD_ENABLE = "__as2fm__blackboard_requests_enable"
 
 
-def has_automaton(event: Event) -> bool:
+def has_automaton(event: EventUsage) -> bool:
     return bool(event.senders) and not event.role.is_internal
 
 
-def event_automaton(event: Event, has_clock: bool) -> Automaton:
+def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
     """The buffer of an event; one that nobody receives takes everything."""
     origin = event.origin
 
@@ -49,7 +49,7 @@ def event_automaton(event: Event, has_clock: bool) -> Automaton:
     return Automaton(event.name, locations, (WAITING,), tuple(edges), origin=origin)
 
 
-def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, Event]) -> System:
+def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> System:
     """
     Args:
         automata: all of them, those of events included.
@@ -79,7 +79,7 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
     return System(tuple(Element(automaton.name) for automaton in automata), tuple(syncs))
 
 
-def _communication(event: Event, buffers: Mapping[str, int], table: Mapping[str, Event]) -> Iterable[Sync]:
+def _communication(event: EventUsage, buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> Iterable[Sync]:
     send, receive, buffer = on_send(event.event), on_receive(event.event), buffers[event.name]
     settled: list[tuple[int, str]] = []
     if event.role is EventRole.BLACKBOARD_READ:

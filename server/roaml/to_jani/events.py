@@ -11,11 +11,11 @@ from roaml.expr.infer import infer
 from roaml.expr.types import UNKNOWN, Struct, Type, join
 from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
 from roaml.text import Location
-from roaml.to_jani.moves import Behavior
+from roaml.to_jani.moves import AutomatonMoves
 
 
 @dataclass(slots=True)
-class Event:
+class EventUsage:
     """
     Attributes:
         params: name -> type, in the order of their first sending.
@@ -43,7 +43,7 @@ class Event:
         return Struct("", (("data", Struct("", tuple(self.params.items()))),))
 
 
-def event_table(behaviors: Sequence[Behavior]) -> dict[str, Event]:
+def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
     """All events by name, in the order of their first occurrence."""
     table = _occurrences(behaviors)
     for _ in range(_ROUNDS):
@@ -56,13 +56,13 @@ _ROUNDS = 4
 """How often types are passed on from the data of one event to the parameters of another."""
 
 
-def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
-    table: dict[str, Event] = {}
+def _occurrences(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
+    table: dict[str, EventUsage] = {}
     for index, behavior in enumerate(behaviors):
         for _, moves in behavior.moves:
             for move in moves:
                 if (awaited := move.transition.event) is not None:
-                    event = Event(awaited, move.transition.origin)
+                    event = EventUsage(awaited, move.transition.origin)
                     table.setdefault(awaited.name, event).receivers[index] = None
                 for outcome in move.outcomes:
                     _sent(outcome.body, index, table)
@@ -70,11 +70,11 @@ def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
     return table
 
 
-def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
+def _sent(body: Body, index: int, table: dict[str, EventUsage]) -> None:
     for statement in statements(body):
         if isinstance(statement, Send):
             sent = statement.event
-            event = table.setdefault(sent.name, Event(sent, statement.origin))
+            event = table.setdefault(sent.name, EventUsage(sent, statement.origin))
             if not event.senders:
                 event.origin = statement.origin
             event.senders[index] = None
@@ -82,7 +82,7 @@ def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
                 event.places.setdefault(param.name, param.origin)
 
 
-def _infer_params(behaviors: Sequence[Behavior], table: Mapping[str, Event]) -> bool:
+def _infer_params(behaviors: Sequence[AutomatonMoves], table: Mapping[str, EventUsage]) -> bool:
     """One round over everything that is sent; whether some type is still unknown that more rounds may tell."""
     waiting = False
     for behavior in behaviors:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.model.machine import Chart, Handler, Machine, Target
 from roaml.roles import ProtocolPart
-from roaml.views.graph import Graph, Kind, Link, Node
+from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
 
 def machine_graph(machine: Machine) -> tuple[Graph, ...]:
@@ -17,7 +17,7 @@ def machine_graph(machine: Machine) -> tuple[Graph, ...]:
 
 
 def _chart(chart: Chart, title: str) -> Graph:
-    nodes = tuple(Node(state.id.value, (state.id.value,)) for state in chart.states if state.id)
+    nodes = tuple(GraphNode(state.id.value, (state.id.value,)) for state in chart.states if state.id)
     links = tuple(
         link
         for state in chart.states
@@ -29,11 +29,11 @@ def _chart(chart: Chart, title: str) -> Graph:
     return Graph(Kind.STATES, title, nodes, links, chart.initial.value if chart.initial else "")
 
 
-def _links(source: str, handler: Handler) -> Iterator[Link]:
+def _links(source: str, handler: Handler) -> Iterator[GraphLink]:
     label = trigger_label(handler)
     for target in handler.targets:
         if target.state is not None:
-            yield Link(source, target.state.value, (*label, *chance_label(handler, target)))
+            yield GraphLink(source, target.state.value, (*label, *chance_label(handler, target)))
 
 
 def trigger_label(handler: Handler) -> tuple[str, ...]:
