@@ -63,10 +63,10 @@ def register(context: Context) -> None:
         automata = linked.automata_of(path) if linked else ()
         if not automata:
             return _problem("The behavior tree does not use this plugin.")
-        found = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
+        documents = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
         # The automata of action threads come with the machine's own.
         first = automata[0].name
-        shown = [lines for name, lines in found if automata[0].instance is None or name.startswith(first)]
+        shown = [lines for name, lines in documents if automata[0].instance is None or name.startswith(first)]
         return convert(analysis, [line for lines in shown for line in lines])
 
 
