@@ -6,19 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
-from roaml.model.kinds import FileKind
+from roaml.language import ElementType, Grammar
+from roaml.model.kinds import GRAMMARS
 from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
 from roaml.text import Decoded
 from roaml.xml_syntax import Document, Element
-
-GRAMMARS = {
-    FileKind.MACHINE: HL_SCXML,
-    FileKind.SYSTEM: SYSTEM,
-    FileKind.TREE: BEHAVIOR_TREE,
-    FileKind.STRUCTS: STRUCTS,
-}
 
 _EXPRESSIONS = ("expression", "location", "constant")
 

@@ -9,7 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe.language import builtin_node, members, value_range
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
-from roaml.ide.names.lookup import systems_of, thing
+from roaml.ide.names.lookup import thing
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.names.translated import global_variables
@@ -163,7 +163,7 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
     full = dict.fromkeys(_full_name(each) for each in variables)
     bound: list[BoundPort] = []
     types: dict[str, None] = {}
-    for each in systems_of(analysis, symbol.path):
+    for each in analysis.systems_of(symbol.path):
         system = analysis.system(each) if each else None
         for variable in full if system else ():
             assert system is not None
@@ -254,7 +254,7 @@ _MOST = 3
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
     """The nodes of executed trees that a node of a file becomes, in all systems of the file."""
-    for each in systems_of(analysis, path):
+    for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         for automaton in system.automata if system else ():
             source = automaton.instance.source if automaton.instance else None

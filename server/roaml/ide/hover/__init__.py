@@ -19,7 +19,7 @@ from roaml.ide.hover.expression import in_expression
 from roaml.ide.hover.property_file import global_variable, in_json
 from roaml.ide.hover.system_file import listed_file, parameter
 from roaml.ide.hover.tree import node_at
-from roaml.ide.names.lookup import occurrences_at, systems_of
+from roaml.ide.names.lookup import occurrences_at
 from roaml.ide.syntax import XmlFile, path_at, xml_file
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
@@ -110,6 +110,6 @@ def _value(analysis: Analysis, path: str, element: Element, attribute: Attribute
 
 def _type(analysis: Analysis, path: str, written: str) -> str:
     name = parse_type(written)
-    structs = analysis.structs(systems_of(analysis, path)[0])
+    structs = analysis.structs(analysis.systems_of(path)[0])
     type_ = resolve_type(name, structs.types.get) if name else None
     return "" if type_ is None or isinstance(type_, Struct) else describe_language.type_(type_)

@@ -8,7 +8,6 @@ from roaml.expr.tree import Binary, Conditional, Expr, Member, Unary, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import Struct, Type
 from roaml.ide.describe import language as describe_language
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.syntax import XmlFile, expression_at
 from roaml.model.machine import Handler, Machine
 from roaml.model.value_types import STATUSES, bindings
@@ -75,7 +74,7 @@ def _known(analysis: Analysis, path: str, offset: int) -> dict[str, Type]:
     if machine is None or handler is None:
         return {}
     part = "cond" if handler.cond is not None and handler.cond.span.contains(offset) else "body"
-    return bindings(handler, part, machine, analysis.environment(systems_of(analysis, path)[0]))
+    return bindings(handler, part, machine, analysis.environment(analysis.systems_of(path)[0]))
 
 
 def handler_at(machine: Machine, offset: int) -> Handler | None:

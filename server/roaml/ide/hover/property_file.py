@@ -10,7 +10,6 @@ from roaml.ide.describe import property_file as describe_properties
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.markdown import code, paragraphs
 from roaml.ide.json_tree import members
-from roaml.ide.names.lookup import systems_of
 from roaml.json_syntax import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
 from roaml.model.system import Automaton, System
@@ -27,7 +26,7 @@ def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, s
     if not isinstance(found, JsonString) or not found.content_span.contains(offset):
         return None
     texts: dict[str, None] = {}
-    for each in systems_of(analysis, path):
+    for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         variable = analysis.globals(each).get(found.value) if each else None
         if system is not None and variable is not None:
