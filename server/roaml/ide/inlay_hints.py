@@ -16,7 +16,7 @@ from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe import describe
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.machine import inferred_type
-from roaml.ide.hover.property_file import node_of
+from roaml.ide.describe.system import node_of
 from roaml.ide.names.in_machine import interface_symbol, is_implicit
 from roaml.ide.navigation import definition_of
 from roaml.ide.system_names import grouped

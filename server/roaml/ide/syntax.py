@@ -73,9 +73,12 @@ def expressions(document: Document, each: Typed) -> Iterator[Expression]:
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
     """The expression around an offset; a caret at its end is inside it."""
     around = path_at(file, offset)
-    if not around:
-        return None
-    sources = expression_sources(file.document, around[-1])
+    return expression_in(file.document, around[-1], offset) if around else None
+
+
+def expression_in(document: Document, each: Typed, offset: int) -> Expression | None:
+    """The expression around an offset, which is in the element `each` and none of its children."""
+    sources = expression_sources(document, each)
     source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
     return None if source is None else expression_from(source)
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Symbol
@@ -22,6 +23,14 @@ from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+
+_NODE = re.compile(r"bt_(\d{1,9})_")
+
+
+def node_of(system: System, variable: str) -> Automaton | None:
+    """The node of the tree that a global variable is about."""
+    number = _NODE.match(variable)
+    return system.by_instance.get(int(number[1])) if number else None
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:
