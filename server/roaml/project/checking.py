@@ -63,7 +63,7 @@ _OF_CONFIGURATION = (TOML_SYNTAX.code, INVALID_SETTING.code)
 _XML_KINDS = (*GRAMMARS, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
 
-class Checker:
+class RuleRunner:
     """Says what is wrong with the files of one moment."""
 
     def __init__(self, analysis: Analysis, settings: Settings) -> None:

@@ -15,6 +15,7 @@ from roaml.ide.describe import describe
 from roaml.ide.describe.markdown import paragraphs
 from roaml.ide.hover.expression import in_expression
 from roaml.ide.hover.listed_file import listed_file
+from roaml.ide.hover.lone_tree import of_library
 from roaml.ide.hover.markup import in_markup
 from roaml.ide.hover.place import Place, place_at
 from roaml.ide.hover.property_file import global_variable, in_json
@@ -42,6 +43,8 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
     place = place_at(analysis, path, offset)
     if place is None:
         return None
+    if (node := of_library(place)) is not None:
+        return Hover(*node)
     span, text = None, ""
     for described, more in _descriptions(place):
         if more and more not in text:
