@@ -50,7 +50,7 @@ def test_automatic_remapping_leads_to_the_outermost_tree_that_uses_the_name() ->
     trees = outline(
         through.format(1), sequence.format(through.format(2)), sequence.format(through.format(3)), '<X a="{other}" />'
     )
-    bound = [dict(instance.ports)["a"] for instance in expand(trees) if instance.plugin == "X"]
+    bound = [dict(instance.ports)["a"] for instance in expand(trees).instances if instance.plugin == "X"]
     assert [value.variable for value in bound if hasattr(value, "variable")] == [
         "T1__goal",
         "T1__goal",

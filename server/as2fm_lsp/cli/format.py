@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 from collections.abc import Iterator, Sequence
 
@@ -24,6 +25,15 @@ from roaml.project.discover import candidates
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 from roaml.text import SourceFile, apply_edits
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp format models                  lay out all files of a folder
+  as2fm-lsp format models --check          list those that are not laid out
+  as2fm-lsp format main.xml --diff         show what would change
+
+exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not well-formed, 2 usage error
+"""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -69,8 +79,8 @@ def parser() -> ArgumentParser:
         description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
         "space is changed, so never what a file means. Plain SCXML, JANI models and files of other tools are laid out "
         "only if they are named.",
-        epilog="exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not "
-        "well-formed, 2 usage error",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
     mode = result.add_mutually_exclusive_group()
@@ -81,9 +91,9 @@ def parser() -> ArgumentParser:
 
 def _problem(analysis: Analysis, path: str) -> str:
     """Why a file that was named cannot be formatted."""
-    found = analysis.files.read(path)
-    if isinstance(found, Problem):
-        return found.value
+    source = analysis.files.read(path)
+    if isinstance(source, Problem):
+        return source.value
     return "" if is_ours(analysis, path) else "it is neither a model nor a property file"
 
 
@@ -93,9 +103,9 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
         if not os.path.isdir(path):
             yield path
             continue
-        for each in candidates((path,), settings.exclude):
-            if is_ours(analysis, each) and _is_hand_written(analysis, each):
-                yield each
+        for candidate in candidates((path,), settings.exclude):
+            if is_ours(analysis, candidate) and _is_hand_written(analysis, candidate):
+                yield candidate
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:

@@ -20,6 +20,7 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
@@ -34,7 +35,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
@@ -173,7 +174,7 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: Asked, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
         name = asked.question.name
         if self.options.exact:
@@ -203,7 +204,7 @@ class _Verification:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: Asked, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The least and the greatest probability that sampled schedulers achieve; as much as is known if that is
         interrupted."""
         search, interrupted = Search(), False
@@ -219,7 +220,7 @@ class _Verification:
         own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exact(self, asked: Asked) -> Result:
+    def _exact(self, asked: CompiledProperty) -> Result:
         try:
             return self.verifier.exact(asked, self.options.max_states)
         except ExactError as error:
@@ -232,14 +233,14 @@ class _Verification:
 
     def _text(self) -> str:
         if self.options.format == "json":
-            entries = [_row(each) for each in self._fault_entries()]
+            entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
             return as_json(self.results, entries, stuck=row)
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
         # A story of a stuck trace ends with who waits for whom.
-        is_told = STANDARD_OUTPUT in self.options.explain and any(each.answer for each in self.results)
-        is_told = is_told and not any(each.is_interrupted for each in self.results)
+        is_told = STANDARD_OUTPUT in self.options.explain and any(result.answer for result in self.results)
+        is_told = is_told and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
         if self.look is not None:
             text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
@@ -249,10 +250,10 @@ class _Verification:
         """Where it was shown who waits for whom, as in the example that is known of getting stuck; "" if nowhere."""
         if self.look is None or self.look.stuck is None:
             return ""
-        same = [each for each in self.results if each.stuck and each.stuck.chain == self.look.stuck.chain]
+        same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
         if same and is_told:
             return "in the trace below"
-        named = next((each.name for each in same if not each.asks_stuck), None)
+        named = next((result.name for result in same if not result.asks_stuck), None)
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:
@@ -275,13 +276,17 @@ class _Verification:
     def _fault_entries(self) -> list[Entry]:
         """What could not be answered, with its place in the model."""
         diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
-        return [entry(each, _source_of(self.target), shown_path) for each in diagnostics if each is not None]
+        return [
+            entry(diagnostic, _source_of(self.target), shown_path)
+            for diagnostic in diagnostics
+            if diagnostic is not None
+        ]
 
     def _tell_faults(self) -> None:
         """The same for people, on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
-            report = Report(entries, len({each.file for each in entries}), color=takes_color(sys.stderr))
+            report = Report(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
                 print_text(FORMATS["text"](report), stream=sys.stderr)
 
@@ -381,13 +386,13 @@ def parser() -> ArgumentParser:
     add("--method", choices=METHODS, default=ADAPTIVE, help="how many traces: until the interval is narrow enough "
         "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
         "expectation is met (sprt), or --max-traces (fixed)")  # fmt: skip
-    add("--max-traces", type=_positive, metavar="N", help="make at most N traces")
-    add("--max-steps", type=_positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
+    add("--max-traces", type=positive, metavar="N", help="make at most N traces")
+    add("--max-steps", type=positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
         "undecided (1000000)")  # fmt: skip
-    add("--seed", type=_natural, default=0, metavar="N", help="seed of the random numbers (0)")
+    add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
     add(
         "--jobs",
-        type=_positive,
+        type=positive,
         default=_processors(),
         metavar="N",
         help="number of processes (all processors); does not change the results",
@@ -398,7 +403,7 @@ def parser() -> ArgumentParser:
     add("--exact", action="store_true", help="compute the minimum and the maximum exactly with Storm (needs stormpy)")
     add(
         "--max-states",
-        type=_positive,
+        type=positive,
         default=200_000,
         metavar="N",
         help="with --exact: refuse models with more states (200000)",
@@ -411,7 +416,7 @@ def parser() -> ArgumentParser:
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--resume", metavar="FILE", help="save what is known in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
-    add("--traces-limit", type=_natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
+    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
@@ -441,27 +446,6 @@ def _width(text: str) -> float:
     value = _share(text)
     if value < LEAST_EPSILON:
         raise argparse.ArgumentTypeError(f"a number from {LEAST_EPSILON:g} on is expected: no run makes more traces")
-    return value
-
-
-def _whole(text: str) -> int:
-    try:
-        return int(text) if len(text) < 30 else -1
-    except ValueError:
-        return -1
-
-
-def _positive(text: str) -> int:
-    value = _whole(text)
-    if not 1 <= value < 1 << 62:
-        raise argparse.ArgumentTypeError("a whole number from 1 on is expected")
-    return value
-
-
-def _natural(text: str) -> int:
-    value = _whole(text)
-    if not 0 <= value < 1 << 63:
-        raise argparse.ArgumentTypeError("a whole number from 0 to 2^63 - 1 is expected")
     return value
 
 
@@ -533,7 +517,7 @@ def _errors(
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
     report = Report(entries, len(files), color=takes_color(sys.stderr))
     if options.format == "json":
-        print_text(as_json((), [_row(each) for each in entries]), "utf-8")
+        print_text(as_json((), [_row(finding) for finding in entries]), "utf-8")
     elif options.format == "junit":
         print_text(FORMATS["junit"](report), "utf-8")
     else:
@@ -541,9 +525,15 @@ def _errors(
     return FOUND
 
 
-def _row(each: Entry) -> dict[str, Any]:
-    place = each.place
-    return {"file": each.file, "line": place.line, "column": place.column, "code": each.code, "message": each.message}
+def _row(finding: Entry) -> dict[str, Any]:
+    place = finding.place
+    return {
+        "file": finding.file,
+        "line": place.line,
+        "column": place.column,
+        "code": finding.code,
+        "message": finding.message,
+    }
 
 
 def _fail(message: str) -> int:

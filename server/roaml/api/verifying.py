@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
 from roaml.api.systems import LoadedSystem, load, to_jani
-from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 
 if TYPE_CHECKING:
-    from roaml.smc.model import Checker
+    from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
     from roaml.verification.results import Result
@@ -56,6 +55,8 @@ def target(
         return as_target(load(path, ros_paths, settings, texts, overrides))
     if overrides != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; they are for systems")
+    from roaml.jani.constants import with_constants  # noqa: PLC0415
+
     model, source = read_jani(path)
     try:
         model = with_constants(model, constants)
@@ -73,7 +74,7 @@ def as_target(subject: Target | LoadedSystem | Model) -> Target:
     return target_of(subject) if isinstance(subject, Model) else subject
 
 
-def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
+def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties, to make traces of it step by step.
 
     Args:

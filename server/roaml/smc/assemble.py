@@ -31,8 +31,9 @@ from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.types import ArrayType
 from roaml.smc import shapes
+from roaml.smc.cells import CellAssembler
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage, unsupported
+from roaml.smc.names import Meaning, Storage, StorageNames, unsupported
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.operations import ARITHMETIC, COMPARISONS, MOST, OperatorAssembler
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
@@ -41,12 +42,17 @@ from roaml.smc.shapes import kind_of
 _LOGICAL = (BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES)
 
 
-class Assembler(OperatorAssembler):
-    """Writes expressions, too."""
+class ExpressionAssembler:
+    """Writes expressions."""
+
+    def __init__(self, cells: CellAssembler) -> None:
+        self.tape = cells.tape
+        self.cells = cells
+        self.operators = OperatorAssembler(cells)
 
     # ------------------------------------------------------------ pieces of code
 
-    def condition(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def condition(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that tells whether `expression` holds."""
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
@@ -56,35 +62,35 @@ class Assembler(OperatorAssembler):
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
         return start
 
-    def real_register(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that gives the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)
-        value = self.as_real(self.value(expression, names))
+        value = self.cells.as_real(self.value(expression, names))
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
         return start
 
     # ------------------------------------------------------------ scalars
 
-    def value(self, node: Expression, names: Names, into: int = -1) -> Operand:
+    def value(self, node: Expression, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar; with `into`, in that register."""
         match node:
             case Integer():
                 if abs(node.value) > MOST:
                     raise FaultError("this number does not fit into 64 bits", node.origin)
-                return self.moved(self.tape.constant(INT, node.value), into)
+                return self.cells.moved(self.tape.constant(INT, node.value), into)
             case Boolean():
-                return self.moved(self.tape.constant(BOOL, node.value), into)
+                return self.cells.moved(self.tape.constant(BOOL, node.value), into)
             case Real():
-                return self.moved(self.tape.constant(REAL, node.value), into)
+                return self.cells.moved(self.tape.constant(REAL, node.value), into)
             case NamedNumber():
-                return self.moved(self.tape.constant(REAL, node.constant.number), into)
+                return self.cells.moved(self.tape.constant(REAL, node.constant.number), into)
             case Name(identifier):
                 meaning = names.meaning(node)
                 if isinstance(meaning, Region) or (isinstance(meaning, Storage) and meaning.shape):
                     raise FaultError(f"`{identifier}` is an array, a single value is needed here", node.origin)
                 if isinstance(meaning, Storage):
                     meaning = Operand(meaning.kind, meaning.base)
-                return self.moved(meaning, into)
+                return self.cells.moved(meaning, into)
             case Unary():
                 return self.unary(node, names, into)
             case Binary():
@@ -95,7 +101,7 @@ class Assembler(OperatorAssembler):
                 region = self.element(node, names)
                 if region.shape:
                     raise FaultError("this is an array, a single value is needed here", node.origin)
-                return self.load(region, into)
+                return self.cells.load(region, into)
             case Call():
                 body, inner = self.called(node, names)
                 return self.value(body, inner, into)
@@ -104,20 +110,20 @@ class Assembler(OperatorAssembler):
             case _:
                 raise FaultError(unsupported(node), node.origin)
 
-    def stored(self, node: Expression, kind: str, names: Names, into: int = -1) -> Operand:
+    def stored(self, node: Expression, kind: str, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar as a value of `kind`."""
         if kind != REAL:
             return self.value(node, names, into)
         if shapes.kind(node, names) == REAL:
             return self.value(node, names, into)
-        return self.as_real(self.value(node, names), into)
+        return self.cells.as_real(self.value(node, names), into)
 
-    def unary(self, node: Unary, names: Names, into: int) -> Operand:
+    def unary(self, node: Unary, names: StorageNames, into: int) -> Operand:
         if node.operator is UnaryOperator.NOT:
             return self.boolean(node, names, into)
-        return self.applied(node, self.value(node.operand, names), into)
+        return self.operators.applied(node, self.value(node.operand, names), into)
 
-    def binary(self, node: Binary, names: Names, into: int) -> Operand:
+    def binary(self, node: Binary, names: StorageNames, into: int) -> Operand:
         op = node.operator
         if op in _LOGICAL or op in COMPARISONS:
             return self.boolean(node, names, into)
@@ -125,20 +131,20 @@ class Assembler(OperatorAssembler):
         if isinstance(left, Binary) and left.operator is op and op in ARITHMETIC:
             return self.chain(node, names, into)
         first = self.value(left, names)
-        return self.computed(node, first, self.value(right, names), into)
+        return self.operators.computed(node, first, self.value(right, names), into)
 
-    def chain(self, node: Binary, names: Names, into: int) -> Operand:
+    def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
         """`a + b + c ...`: as deep as it likes."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
             parts.append(parts[-1].left)
         result = self.value(parts[-1].left, names)
         for part in reversed(parts):
-            result = self.computed(part, result, self.value(part.right, names), into if part is node else -1)
+            result = self.operators.computed(part, result, self.value(part.right, names), into if part is node else -1)
         return result
 
     def conditional(
-        self, test: Expression, then: Expression, otherwise: Expression, names: Names, into: int
+        self, test: Expression, then: Expression, otherwise: Expression, names: StorageNames, into: int
     ) -> Operand:
         kind = REAL if REAL in (shapes.kind(then, names), shapes.kind(otherwise, names)) else shapes.kind(then, names)
         # Not directly into the target: the branches may read it while it is written.
@@ -150,9 +156,9 @@ class Assembler(OperatorAssembler):
         self.tape.mark(no)
         self.stored(otherwise, kind, names, register)
         self.tape.mark(end)
-        return self.moved(Operand(kind, register), into)
+        return self.cells.moved(Operand(kind, register), into)
 
-    def boolean(self, node: Expression, names: Names, into: int) -> Operand:
+    def boolean(self, node: Expression, names: StorageNames, into: int) -> Operand:
         register = self.tape.temporary(BOOL)
         no, end = Label(), Label()
         self.jump(node, names, no, False)
@@ -161,11 +167,11 @@ class Assembler(OperatorAssembler):
         self.tape.mark(no)
         self.tape.emit(Op.MOVE, register, self.tape.constant(INT, 0).register)
         self.tape.mark(end)
-        return self.moved(Operand(BOOL, register), into)
+        return self.cells.moved(Operand(BOOL, register), into)
 
     # ------------------------------------------------------------ conditions
 
-    def jump(self, node: Expression, names: Names, label: Label, when: bool) -> None:
+    def jump(self, node: Expression, names: StorageNames, label: Label, when: bool) -> None:
         """Jump to `label` if the value of `node` is `when`, else go on."""
         while isinstance(node, Unary) and node.operator is UnaryOperator.NOT:
             node, when = node.operand, not when
@@ -190,7 +196,7 @@ class Assembler(OperatorAssembler):
                 else:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
-    def logical(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         """Chains of one operator are as long as they like."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
@@ -213,14 +219,14 @@ class Assembler(OperatorAssembler):
         self.jump(parts[-1], names, label, when)
         self.tape.mark(end)
 
-    def comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         op, left, right = node.operator, node.left, node.right
         if op.signature is Signature.EQUALITY and (shapes.shape(left, names) or shapes.shape(right, names)):
             self.array_comparison(node, names, label, when)
             return
-        self.compared(op, self.value(left, names), self.value(right, names), label, when)
+        self.operators.compared(op, self.value(left, names), self.value(right, names), label, when)
 
-    def array_comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def array_comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         equal = node.operator is BinaryOperator.EQUAL
         shape, other = shapes.shape(node.left, names), shapes.shape(node.right, names)
         if shape != other:
@@ -240,7 +246,7 @@ class Assembler(OperatorAssembler):
 
     # ------------------------------------------------------------ arrays
 
-    def element(self, node: ArrayAccess, names: Names) -> Region:
+    def element(self, node: ArrayAccess, names: StorageNames) -> Region:
         """The part of an array that is accessed; its shape is () for a single element."""
         indexes: list[ArrayAccess] = []
         inner: Expression = node
@@ -253,7 +259,7 @@ class Assembler(OperatorAssembler):
             raise FaultError("this is not an array", node.origin)
         return self.indexed(whole, indexes, names)
 
-    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: Names) -> Region:
+    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: StorageNames) -> Region:
         offset = whole.offset
         base, shape = whole.base, whole.shape
         fixed = 0
@@ -264,7 +270,7 @@ class Assembler(OperatorAssembler):
             if index.value is not None:
                 if not 0 <= index.value < length:
                     value = int(index.value)
-                    self.failing(access, FaultCode.INDEX, INT, max(min(value, 2**31 - 1), -(2**31)), length)
+                    self.cells.failing(access, FaultCode.INDEX, INT, max(min(value, 2**31 - 1), -(2**31)), length)
                 else:
                     fixed += int(index.value) * size
                 continue
@@ -280,7 +286,7 @@ class Assembler(OperatorAssembler):
             offset = step
         return Region(whole.kind, shape, base + fixed, offset)
 
-    def region(self, node: Expression, names: Names) -> Region:
+    def region(self, node: Expression, names: StorageNames) -> Region:
         """The registers of an array; what is not in registers is put there."""
         match node:
             case Name():
@@ -295,23 +301,23 @@ class Assembler(OperatorAssembler):
             case _:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
-    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: Names) -> Region:
+    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
         """A copy of an array in registers of its own."""
         region = Region(kind, shape, self.tape.room(kind, product(shape)))
         self.fill(node, region, names)
         return region
 
-    def fill(self, node: Expression, into: Region, names: Names, watch: int = -1) -> None:
+    def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
         """Store an array into a region without offset; where it is smaller, zeros are added."""
         match node:
             case ArrayValue(elements):
                 if len(elements) > into.shape[0]:
-                    self.failing(node, FaultCode.INDEX, INT, into.shape[0], into.shape[0])
+                    self.cells.failing(node, FaultCode.INDEX, INT, into.shape[0], into.shape[0])
                     return
                 for position in range(into.shape[0]):
-                    part = self.part(into, position)
+                    part = self.cells.part(into, position)
                     if position >= len(elements):
-                        self.clear(part, watch)
+                        self.cells.clear(part, watch)
                     elif part.shape:
                         self.fill(elements[position], part, names, watch)
                     else:
@@ -319,9 +325,9 @@ class Assembler(OperatorAssembler):
             case ArrayConstructor(variable, _, body):
                 size = shapes.length(node, names)
                 for position in range(into.shape[0]):
-                    part = self.part(into, position)
+                    part = self.cells.part(into, position)
                     if position >= size:
-                        self.clear(part, watch)
+                        self.cells.clear(part, watch)
                         continue
                     inner = names.bound({variable: self.tape.constant(INT, position)})
                     if part.shape:
@@ -340,18 +346,18 @@ class Assembler(OperatorAssembler):
                 body, inner = self.called(node, names)
                 self.fill(body, into, inner, watch)
             case _:
-                self.copy(self.region(node, names), into, watch, node)
+                self.cells.copy(self.region(node, names), into, watch, node)
 
-    def put(self, node: Expression, cell: Region, names: Names, watch: int) -> None:
+    def put(self, node: Expression, cell: Region, names: StorageNames, watch: int) -> None:
         """Store a scalar into a single cell."""
         if watch < 0 and cell.offset < 0:
             self.stored(node, cell.kind, names, cell.base)
             return
-        self.write(self.stored(node, cell.kind, names), cell, watch)
+        self.cells.write(self.stored(node, cell.kind, names), cell, watch)
 
     # ------------------------------------------------------------ functions
 
-    def called(self, node: Call, names: Names) -> tuple[Expression, Names]:
+    def called(self, node: Call, names: StorageNames) -> tuple[Expression, StorageNames]:
         """The body of a function, and what names mean in it."""
         function = names.called(node)
         bound: dict[str, Meaning] = {}

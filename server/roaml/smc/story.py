@@ -7,12 +7,12 @@ back to the start: the last change of each variable that they read, and what wok
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.jani.model import Automaton
 from roaml.smc.end import End
-from roaml.smc.record import Part, Plain, Recorder, Recording, TraceStep, Variable
+from roaml.smc.record import AutomatonStep, Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
 
 
@@ -27,6 +27,7 @@ class Story:
         automata: of each instance that the steps name.
         start: the variables of the model before the first step.
         standstill: where it has ended, if it is stuck there.
+        is_whole: whether all of it is to be shown, not only what matters.
     """
 
     property: str
@@ -38,6 +39,7 @@ class Story:
     automata: tuple[Automaton, ...]
     start: Mapping[str, Plain]
     standstill: Standstill | None = None
+    is_whole: bool = False
 
 
 def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -49,18 +51,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     recording = Recording(trace)
     shared = recorder.shared
     start = dict(zip((storage.name for storage in shared), recorder.initial(shared), strict=True))
-    steps: list[TraceStep] = []
-    times: list[float | None] = []
-    seconds = nanoseconds = 0.0
-    for step in recorder.walk(recording):
-        for change in step.changes:
-            if clock is not None and change.variable.instance < 0 and isinstance(change.after, (int, float)):
-                if change.variable.name == clock[0]:
-                    seconds = change.after
-                elif change.variable.name == clock[1]:
-                    nanoseconds = change.after
-        steps.append(step)
-        times.append(None if clock is None else seconds + nanoseconds / 1e9)
+    steps = list(recorder.walk(recording))
     variables = recorder.asked.question.variables
     relevant = _relevant(recorder, steps, variables)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
@@ -68,7 +59,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         recorder.asked.question.name,
         recording,
         tuple(steps),
-        tuple(times),
+        tuple(clock_times(steps, clock)),
         tuple(relevant),
         variables,
         automata,
@@ -77,8 +68,25 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     )
 
 
+def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> Iterator[float | None]:
+    """The time after each step, in seconds; None if the model has no clock.
+
+    Args:
+        clock: the variables that hold the seconds and nanoseconds.
+    """
+    seconds = nanoseconds = 0.0
+    for step in steps:
+        for change in step.changes:
+            if clock is not None and change.variable.instance < 0 and isinstance(change.after, (int, float)):
+                if change.variable.name == clock[0]:
+                    seconds = change.after
+                elif change.variable.name == clock[1]:
+                    nanoseconds = change.after
+        yield None if clock is None else seconds + nanoseconds / 1e9
+
+
 def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...]) -> list[int]:
-    last_change: dict[Variable, list[int]] = {}
+    last_change: dict[RecordedVariable, list[int]] = {}
     last_step: dict[int, list[int]] = {}
     for i, step in enumerate(steps):
         for change in step.changes:
@@ -86,7 +94,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
         for part in step.parts:
             last_step.setdefault(part.instance, []).append(i)
     kept: set[int] = set()
-    waiting = [i for name in variables for i in last_change.get(Variable(-1, name), ())]
+    waiting = [i for name in variables for i in last_change.get(RecordedVariable(-1, name), ())]
     if steps:
         waiting.append(len(steps) - 1)
     while waiting:
@@ -102,7 +110,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
     return sorted(kept)
 
 
-def _cause(steps: list[TraceStep], own: list[int], part: Part, i: int) -> int | None:
+def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) -> int | None:
     """The latest earlier step in which the automaton did something together with another one."""
     before = [k for k in own if k < i]
     for k in reversed(before):

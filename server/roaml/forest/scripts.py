@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The scripts in trees: where they stand (docs/spec/trees.md#scripts) and whether their values are conditions."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.forest.cpp_types import SCRIPT
+from roaml.forest.forest import CPP, Forest
+from roaml.model.tree import TreeNode
+from roaml.script.parse import Problem, parse
+from roaml.script.tree import Assignment, Name, Script, walk
+from roaml.text import Decoded
+from roaml.xml_syntax import Attribute
+
+CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
+"""Asked before a node is ticked."""
+AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
+"""Executed after a node has ended."""
+
+_CONDITION_PORTS = ("Precondition", "ScriptCondition")
+_SCRIPT_PORTS = {
+    name: ports
+    for name, node in CPP.nodes.items()
+    if (ports := tuple(port.name for port in node.ports if port.type == SCRIPT))
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptUse:
+    """A script at a node. `is_condition` tells that its value must be true or false."""
+
+    node: TreeNode
+    attribute: Attribute
+    is_condition: bool
+
+
+def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
+    for attribute in node.scripts:
+        if attribute.has_value:
+            yield ScriptUse(node, attribute, attribute.name in CONDITIONS)
+    name = node.plugin.value if node.plugin else ""
+    if name in _SCRIPT_PORTS and forest.known_node(node) is CPP.nodes[name]:
+        for port in _SCRIPT_PORTS[name]:
+            attribute_of_port = node.element.get(port)
+            if attribute_of_port is not None and attribute_of_port.has_value:
+                yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
+
+
+def script_attributes(node: TreeNode) -> Iterator[Attribute]:
+    """The attributes of a node that are scripts, whatever models say of the node."""
+    yield from (attribute for attribute in node.scripts if attribute.has_value)
+    for port in _SCRIPT_PORTS.get(node.plugin.value if node.plugin else "", ()):
+        attribute = node.element.get(port)
+        if attribute is not None and attribute.has_value:
+            yield attribute
+
+
+@functools.lru_cache(maxsize=2048)
+def parsed(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
+    """The script in a text, remembered: many rules ask."""
+    return parse(source)
+
+
+@functools.lru_cache(maxsize=2048)
+def names_in(text: str) -> tuple[tuple[str, str], ...]:
+    """The names in a script: each with `read`, or with the operator that assigns to it."""
+    script, _ = parse(Decoded(text, 0))
+    found: list[tuple[str, str]] = []
+    targets: set[int] = set()
+    for expr in walk(script):
+        if isinstance(expr, Assignment):
+            targets.add(id(expr.target))
+            found.append((expr.target.name, expr.operator))
+        elif isinstance(expr, Name) and id(expr) not in targets:
+            found.append((expr.name, "read"))
+    return tuple(found)
