@@ -35,7 +35,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
@@ -174,7 +174,7 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: Asked, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
         name = asked.question.name
         if self.options.exact:
@@ -204,7 +204,7 @@ class _Verification:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: Asked, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The least and the greatest probability that sampled schedulers achieve; as much as is known if that is
         interrupted."""
         search, interrupted = Search(), False
@@ -220,7 +220,7 @@ class _Verification:
         own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exact(self, asked: Asked) -> Result:
+    def _exact(self, asked: CompiledProperty) -> Result:
         try:
             return self.verifier.exact(asked, self.options.max_states)
         except ExactError as error:

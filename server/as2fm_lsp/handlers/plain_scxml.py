@@ -13,7 +13,7 @@ from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
 from roaml.scxml.model import Role
-from roaml.scxml.writer import Line, write_lines
+from roaml.scxml.writer import WrittenLine, write_lines
 
 METHOD = "as2fm/plainScxml"
 
@@ -37,7 +37,7 @@ class PlainScxml(TypedDict):
 def register(context: Context) -> None:
     session = context.session
 
-    def convert(analysis: Analysis, lines: list[Line]) -> PlainScxml:
+    def convert(analysis: Analysis, lines: list[WrittenLine]) -> PlainScxml:
         places: list[PlainLine] = []
         for number, line in enumerate(lines):
             source = analysis.source(line.origin.path)

@@ -38,7 +38,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
 from roaml.project.paths import is_on_disk
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import STUCK_PROPERTY, Asked
+from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty
 from roaml.smc.pool import WorkersLostError
 from roaml.smc.run import Tally, summary
 from roaml.text import Location
@@ -48,7 +48,7 @@ from roaml.verification.expectations import RangeError, check_range
 from roaml.verification.results import Result, Traces
 from roaml.verification.target import Target
 from roaml.verification.verifier import Verifier, checker_of
-from roaml.views.story import Line
+from roaml.views.story import StoryLine
 
 COMMAND = "as2fm.verify"
 PROPERTIES = "as2fm/properties"
@@ -266,7 +266,7 @@ class _VerifyCommand:
         shown = "in a message of its own"
         return one_as_text(result, partial(_place_in_words, target), self.settings.stuck, shown)
 
-    def asked(self, target: Target, name: str) -> tuple[Verifier, Asked]:
+    def asked(self, target: Target, name: str) -> tuple[Verifier, CompiledProperty]:
         """A property, ready to be answered.
 
         Raises:
@@ -314,7 +314,7 @@ class _VerifyCommand:
         row = stuck_report.as_row(known, lambda origin: _place(self.context, analysis, origin))
         return {**row, "text": text.strip()}
 
-    async def traces(self, verifier: Verifier, asked: Asked) -> Result:
+    async def traces(self, verifier: Verifier, asked: CompiledProperty) -> Result:
         def show_estimate(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
             self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
@@ -343,7 +343,7 @@ def _property(context: Context, analysis: Analysis, system: str, property_: Veri
     return values
 
 
-def _step(context: Context, known: KnownResult, system: str, line: Line) -> Json:
+def _step(context: Context, known: KnownResult, system: str, line: StoryLine) -> Json:
     origin = line.origin
     nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
     convert = context.session.convert
