@@ -13,7 +13,7 @@ from roaml.ide.json_tree import members
 from roaml.ide.names.lookup import systems_of
 from roaml.json_syntax import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 
@@ -37,7 +37,7 @@ def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, s
     return (found.content_span, paragraphs(*texts)) if texts else None
 
 
-def node_of(system: System, variable: str) -> Automaton | None:
+def node_of(system: System, variable: str) -> SystemAutomaton | None:
     """The node of the tree that a global variable is about."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
