@@ -16,9 +16,8 @@ from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe import describe
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.machine import inferred_type
-from roaml.ide.hover.property_file import node_of
+from roaml.ide.describe.system import node_of
 from roaml.ide.names.in_machine import interface_symbol, is_implicit
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.navigation import definition_of
 from roaml.ide.system_names import grouped
 from roaml.jani.properties import identifiers
@@ -95,7 +94,7 @@ def inlay_hints(
     """The hints in a part of a file, in the order of the text."""
     by_system = {
         system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
-        for system in systems_of(analysis, path)
+        for system in analysis.systems_of(path)
     }
     found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
     chosen = (each for each in found if within.start <= each.offset <= within.end)
