@@ -133,6 +133,7 @@ class Analysis:
         listed: Iterable[str] = (),
     ) -> None:
         self._listed_files = tuple(listed)
+        self._folder_names: dict[str, frozenset[str]] = {}
         self.overrides = overrides
         self.tree_settings = trees
         self.files = files
@@ -371,6 +372,14 @@ class Analysis:
                 return tuple(found)
             found += [p for p in self._with_included([new]) if p not in (*own, *found)]
 
+    def _names_in_folder(self, path: str) -> frozenset[str]:
+        """The names of the trees in the folder of a file."""
+        folder = os.path.dirname(path)
+        if folder not in self._folder_names:
+            files = (p for p in (path, *self.files.beside(path, ".xml")) if self.kind(p) is FileKind.TREE)
+            self._folder_names[folder] = frozenset(name for p in files for name in self._tree_names(p))
+        return self._folder_names[folder]
+
     def _tree_names(self, path: str) -> set[str]:
         tree = self.tree(path)
         return {each.id.value for each in tree.trees if each.id} if tree else set()
@@ -453,8 +462,7 @@ class Analysis:
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
         paths = tuple(dict.fromkeys((*self.trees_from(path), *models)))
         files = tuple((p, tree) for p in paths if (tree := self.tree(p)) is not None)
-        others = [p for p in self.files.beside(path, ".xml") if p not in paths and self.kind(p) is FileKind.TREE]
-        beside = frozenset(name for p in others for name in self._tree_names(p))
+        beside = self._names_in_folder(path)
         targets = (self.include_path(p, i) for p, tree in files for i in tree.includes if i.path)
         complete = all(target is not None and self.tree(target) is not None for target in targets)
         key = (files, beside, complete, self.tree_settings)
