@@ -133,6 +133,7 @@ class Analysis:
         listed: Iterable[str] = (),
     ) -> None:
         self._listed_files = tuple(listed)
+        self._folder_names: dict[str, frozenset[str]] = {}
         self.overrides = overrides
         self.tree_settings = trees
         self.files = files
@@ -373,6 +374,14 @@ class Analysis:
                 return tuple(more)
             more += [p for p in self._with_included([new]) if p not in (*own, *more)]
 
+    def _names_in_folder(self, path: str) -> frozenset[str]:
+        """The names of the trees in the folder of a file."""
+        folder = os.path.dirname(path)
+        if folder not in self._folder_names:
+            files = (p for p in (path, *self.files.beside(path, ".xml")) if self.kind(p) is FileKind.TREE)
+            self._folder_names[folder] = frozenset(name for p in files for name in self._tree_names(p))
+        return self._folder_names[folder]
+
     def _tree_names(self, path: str) -> set[str]:
         tree = self.tree(path)
         return {behavior_tree.id.value for behavior_tree in tree.trees if behavior_tree.id} if tree else set()
@@ -455,8 +464,7 @@ class Analysis:
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
         paths = tuple(dict.fromkeys((*self.trees_from(path), *models)))
         files = tuple((p, tree) for p in paths if (tree := self.tree(p)) is not None)
-        others = [p for p in self.files.beside(path, ".xml") if p not in paths and self.kind(p) is FileKind.TREE]
-        beside = frozenset(name for p in others for name in self._tree_names(p))
+        beside = self._names_in_folder(path)
         targets = (self.include_path(p, i) for p, tree in files for i in tree.includes if i.path)
         complete = all(target is not None and self.tree(target) is not None for target in targets)
         key = (files, beside, complete, self.tree_settings)
