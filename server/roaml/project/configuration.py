@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from roaml.diagnostics import Finding, Fix
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
-from roaml.project.settings import Folder, Mistake, Settings, folders_above, folders_in, settings_from
+from roaml.project.settings import Folder, SettingMistake, Settings, folders_above, folders_in, settings_from
 from roaml.rules.parser_rules import INVALID_SETTING, MISSING_FOLDER, TOML_SYNTAX
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
@@ -62,9 +62,9 @@ def read_configuration(source: SourceFile) -> Configuration:
         message = "`tool.as2fm` must be a table of settings"
         return Configuration(None, (INVALID_SETTING.at(_span(source, known, prefix), message),))
     _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
-    found = tuple(_finding(source, known, prefix, each) for each in mistakes)
+    findings = tuple(_finding(source, known, prefix, mistake) for mistake in mistakes)
     folders = folders_in(table, os.path.dirname(source.path))
-    return Configuration(table, found, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
+    return Configuration(table, findings, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
 
 
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
@@ -78,7 +78,7 @@ def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
     )
 
 
-def _finding(source: SourceFile, known: Places, prefix: Path, mistake: Mistake) -> Finding:
+def _finding(source: SourceFile, known: Places, prefix: Path, mistake: SettingMistake) -> Finding:
     path = (*prefix, *mistake.path)
     span = known.keys.get(path) if mistake.is_key else None
     span = span or _span(source, known, path)
@@ -113,18 +113,20 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
         for name in CONFIG_FILES:
             file = os.path.join(folder, name)
             source = disk.read(file)
-            if isinstance(source, Problem):
-                if name == CONFIG_FILE and source is not Problem.MISSING:
+            if isinstance(source, UnreadableReason):
+                if name == CONFIG_FILE and source is not UnreadableReason.MISSING:
                     return Settings(), (f"{file}: {source.value}",)
                 continue
             if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:
                 words = f"the file is too large to be read (up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
                 return Settings(origin=file), (f"{file}: {words}",)
-            found = read_configuration(source)
-            if name == PROJECT_FILE and found.table is None and not found.findings:
+            configuration = read_configuration(source)
+            if name == PROJECT_FILE and configuration.table is None and not configuration.findings:
                 continue
-            settings, _ = settings_from(found.table or {}, folder, Settings())
-            return replace(settings, origin=file), tuple(_sentence(source, finding) for finding in found.findings)
+            settings, _ = settings_from(configuration.table or {}, folder, Settings())
+            return replace(settings, origin=file), tuple(
+                _sentence(source, finding) for finding in configuration.findings
+            )
     return Settings(), ()
 
 

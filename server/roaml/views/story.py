@@ -17,7 +17,7 @@ from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
-LONGEST = 60
+MAX_CHARACTERS = 60
 FIRST, LAST = 30, 50
 """Turns of a story that are told; what stands between them is folded."""
 
@@ -51,20 +51,20 @@ def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     told = turns(story)
     folded = _folded(story, told)
-    found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
+    story_lines = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
-        found.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
-    return found
+        story_lines.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
+    return story_lines
 
 
 def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    found = []
+    story_lines = []
     for wait in waits_of(story):
         place = "" if wait.origin is None else place_of(wait.origin)
-        found.append(
+        story_lines.append(
             StoryLine(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
         )
-    return found
+    return story_lines
 
 
 def waits_of(story: Story) -> tuple[Wait, ...]:
@@ -264,7 +264,7 @@ def _shown(before: Plain, after: Plain) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 1]}…"
 
 
 def _escaped(text: str) -> str:

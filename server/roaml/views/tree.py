@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from roaml.model.expand import Constant, Instance
+from roaml.model.expand import Instance, PortConstant
 from roaml.model.system import System
 from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
@@ -12,7 +12,9 @@ _OWN = ("ID", "name")
 
 def tree_graph(system: System) -> Graph:
     nodes = tuple(_node(instance) for instance in system.instances)
-    links = tuple(GraphLink(str(each.number), str(child)) for each in system.instances for child in each.children)
+    links = tuple(
+        GraphLink(str(instance.number), str(child)) for instance in system.instances for child in instance.children
+    )
     title = system.tree_paths[0].replace("\\", "/").rpartition("/")[2] if system.tree_paths else "tree"
     return Graph(Kind.TREE, title, nodes, links)
 
@@ -29,7 +31,7 @@ def title_of(instance: Instance) -> str:
 def ports_of(instance: Instance) -> tuple[str, ...]:
     """What each port holds, in one line for each."""
     return tuple(
-        f"{key} = {value.text if isinstance(value, Constant) else f'{{{value.variable}}}'}"
+        f"{key} = {value.text if isinstance(value, PortConstant) else f'{{{value.variable}}}'}"
         for key, value in instance.ports
         if key not in _OWN
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration
-from roaml.model.system import Automaton, Channel, Endpoint, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, name_span
@@ -44,7 +44,7 @@ def _same_events(declaration: Declaration, channel: Channel, other: Channel, wha
 
 
 def _finding(
-    declaration: Declaration, automaton: Automaton, channel: Channel, others: list[Endpoint], what: str
+    declaration: Declaration, automaton: SystemAutomaton, channel: Channel, others: list[ChannelEndpoint], what: str
 ) -> Finding:
     span, count = name_span(declaration), len(channel.sources)
     elsewhere = [e for e in others if e.automaton.path != automaton.path or e.automaton is automaton]

@@ -14,7 +14,7 @@ from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, System
+from roaml.model.system import CLOCK_TOPIC, Channel, System, SystemAutomaton
 from roaml.model.tree import TreeNode
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
@@ -63,7 +63,7 @@ def other_kind(kind: SymbolKind) -> SymbolKind:
     return OTHER_SIDE[kind]
 
 
-def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, Automaton, Channel]]:
+def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, SystemAutomaton, Channel]]:
     """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
     of_kind = [d for d in context.machine.declarations if d.kind is kind and d.handle is not None]
     for automaton in context.automata:
@@ -73,7 +73,7 @@ def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declar
                 yield declaration, automaton, channel
 
 
-def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[tuple[Automaton, Channel]]:
+def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[tuple[SystemAutomaton, Channel]]:
     """What one declaration means, in each automaton that the machine is."""
     for automaton in context.automata:
         channel = _channel(context, automaton, declaration)
@@ -81,12 +81,12 @@ def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[t
             yield automaton, channel
 
 
-def _channel(context: MachineContext, automaton: Automaton, declaration: Declaration) -> Channel | None:
+def _channel(context: MachineContext, automaton: SystemAutomaton, declaration: Declaration) -> Channel | None:
     use = find_use(automaton, declaration)
     return context.system.channel(automaton, use) if context.system and use else None
 
 
-def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton, InterfaceUse]]:
+def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton, InterfaceUse]]:
     """The nodes of a file whose ports name topics, services or actions, with what they are in the executed tree."""
     for node, automaton in instances(context):
         for use in automaton.outline.interfaces:
@@ -102,7 +102,7 @@ def port_span(node: TreeNode, key: str) -> Span:
     return node.plugin.span if node.plugin else node.element.name_span
 
 
-def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
+def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceUse | None:
     """The outline of a declaration."""
     return automaton.outline.use(declaration.kind, declaration.handle.value if declaration.handle else "")
 
