@@ -33,6 +33,7 @@ from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
+from roaml.model.property_links import LinkedProperty
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
@@ -43,7 +44,7 @@ from roaml.project.migrate import migrate as _migrate
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.source_map import SourceMap
 from roaml.project.source_map import source_map as _source_map
-from roaml.project.translation import program_of, properties_of
+from roaml.project.translation import observed_properties_of, program_of, properties_of
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.scxml.model import Network
 from roaml.text import SourceFile, decode
@@ -159,13 +160,15 @@ class LoadedSystem:
 
     Attributes:
         path: of the system file.
-        properties: those in its property files, in their order.
+        properties: those in its property files in JANI, in their order.
+        observed: those in its property files in XML, in their order.
         analysis: the models behind it.
     """
 
     path: str
     properties: tuple[Property, ...]
     analysis: Analysis
+    observed: tuple[LinkedProperty, ...] = ()
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -214,7 +217,8 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     errors = snapshot.checker.errors(path)
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
-    return LoadedSystem(path, properties_of(analysis, path), analysis)
+    observed = tuple(each for each in observed_properties_of(analysis, path) if not each.is_assumption)
+    return LoadedSystem(path, properties_of(analysis, path), analysis, observed)
 
 
 def to_scxml(system: LoadedSystem) -> Network:
@@ -231,15 +235,19 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
     Raises:
         PropertyError: the system has no property of a name.
     """
-    found = system.properties
+    found: tuple[Property, ...] = system.properties
+    observed: tuple[LinkedProperty, ...] = system.observed
     if properties is not None:
-        by_name = {each.name: each for each in found}
+        by_name: dict[str, Property | LinkedProperty] = {each.name: each for each in found}
+        by_name |= {each.name: each for each in observed}
         for name in (properties := tuple(properties)):
             if name not in by_name:
                 known = ", ".join(by_name) or "none"
                 raise PropertyError(f"there is no property {name}; the system has: {known}")
-        found = tuple(by_name[name] for name in properties)
-    return translate(to_scxml(system), found)
+        chosen = [by_name[name] for name in dict.fromkeys(properties)]
+        found = tuple(each for each in chosen if isinstance(each, Property))
+        observed = tuple(each for each in chosen if isinstance(each, LinkedProperty))
+    return translate(to_scxml(system), found, observed)
 
 
 class JaniError(ValueError):
@@ -291,7 +299,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
     """
     from roaml.smc.goal import STUCK_PROPERTY  # noqa: PLC0415 - checking and translating start faster without it
     from roaml.smc.model import Checker  # noqa: PLC0415
-    from roaml.views.ends import marks  # noqa: PLC0415
+    from roaml.views.ends import marks, open_conditions  # noqa: PLC0415
 
     found, ends = model.properties, marks(model)
     asks_stuck = False
@@ -306,7 +314,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
                 known = ", ".join([*by_name, *([STUCK_PROPERTY] if ends else [])]) or "none"
                 raise PropertyError(f"there is no property {name}; the model has: {known}")
         found = tuple(by_name[name] for name in names)
-    return Checker(model, found, ends, asks_stuck=asks_stuck)
+    return Checker(model, found, ends, asks_stuck=asks_stuck, open_=open_conditions(model))
 
 
 def verify(

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, ElementType, Grammar
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
@@ -18,6 +18,7 @@ GRAMMARS = {
     FileKind.SYSTEM: SYSTEM,
     FileKind.TREE: BEHAVIOR_TREE,
     FileKind.STRUCTS: STRUCTS,
+    FileKind.XML_PROPERTIES: XML_PROPERTIES,
 }
 
 _EXPRESSIONS = ("expression", "location", "constant")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import enum
 import re
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 
 
 class FileKind(enum.Enum):
@@ -16,6 +16,7 @@ class FileKind(enum.Enum):
     STRUCTS = "struct declarations"
     JSON_STRUCTS = "struct declarations in JSON"
     PROPERTIES = "property file"
+    XML_PROPERTIES = "property file in XML"
     JANI_MODEL = "JANI model"
     INTERFACE = "ROS interface definition"
     CONFIGURATION = "configuration of as2fm"
@@ -40,6 +41,7 @@ _ROOTS = {
     **dict.fromkeys(HL_SCXML.roots, FileKind.MACHINE),
     **dict.fromkeys(SYSTEM.roots, FileKind.SYSTEM),
     **dict.fromkeys(STRUCTS.roots, FileKind.STRUCTS),
+    **dict.fromkeys(XML_PROPERTIES.roots, FileKind.XML_PROPERTIES),
     "specification": FileKind.SPECIFICATION,
 }
 

@@ -19,7 +19,7 @@ from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severi
 from roaml.disk import Problem
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
@@ -64,6 +64,7 @@ _GRAMMARS: dict[FileKind, Grammar] = {
     FileKind.SYSTEM: SYSTEM,
     FileKind.TREE: BEHAVIOR_TREE,
     FileKind.STRUCTS: STRUCTS,
+    FileKind.XML_PROPERTIES: XML_PROPERTIES,
 }
 _XML_KINDS = (*_GRAMMARS, FileKind.MACHINE, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
@@ -245,6 +246,8 @@ class _Run:
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
+            case FileKind.XML_PROPERTIES if self.system_path:
+                return (*parts, self.analysis.linked_properties(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
@@ -288,6 +291,11 @@ class _Run:
                 case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                     structs = self._structs_context()
                     return [(r, functools.partial(r.structs, structs)) for r in RULES if r.structs]
+                case FileKind.XML_PROPERTIES:
+                    linked = self.analysis.linked_properties(self.path, self.system_path) if self.system_path else None
+                    return [
+                        (r, functools.partial(r.xml_properties, linked)) for r in RULES if r.xml_properties and linked
+                    ]
                 case FileKind.PROPERTIES:
                     properties = self._properties_context()
                     return [

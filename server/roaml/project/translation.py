@@ -9,6 +9,7 @@ from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
+from roaml.model.property_links import LinkedProperty
 from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
@@ -20,6 +21,13 @@ def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     """The properties in the files that a system lists, in their order."""
     files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.PROPERTIES and f.usable)
     return tuple(each for file in files for each in analysis.properties(file)[0])
+
+
+def observed_properties_of(analysis: Analysis, path: str) -> tuple[LinkedProperty, ...]:
+    """The properties in XML in the files that a system lists, in their order."""
+    files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.XML_PROPERTIES and f.usable)
+    linked = (analysis.linked_properties(file, path) for file in files)
+    return tuple(property_ for file in linked if file is not None for property_ in file.properties)
 
 
 def program_of(analysis: Analysis, path: str) -> Program:

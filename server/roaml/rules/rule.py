@@ -23,6 +23,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
+from roaml.model.property_links import LinkedFile
 from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
@@ -136,7 +137,7 @@ class Rule:
     """Attributes:
     code: kebab-case, reads well after "ignore".
     summary: one sentence on what is wrong.
-    file, machine, tree, system, structs, properties: the checks for files of these kinds.
+    file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
     plain: the machine check also holds for plain SCXML.
     """
 
@@ -149,6 +150,7 @@ class Rule:
     system: Callable[[SystemContext], Iterable[Finding]] | None = None
     structs: Callable[[StructsContext], Iterable[Finding]] | None = None
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
+    xml_properties: Callable[[LinkedFile], Iterable[Finding]] | None = None
     plain: bool = False
 
     def at(

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 
+from roaml.jani.expressions import Expression
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.smc.batch import Payload, Problem, pack
@@ -31,6 +32,7 @@ class Checker:
 
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        open_: property -> condition under which it is undecided at the end of time; see `goal.ask`.
         asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
@@ -49,6 +51,7 @@ class Checker:
         marks: Marks = MappingProxyType({}),
         *,
         asks_stuck: bool = False,
+        open_: Mapping[str, Expression] = MappingProxyType({}),
     ) -> None:
         self.model = model
         chosen = model.properties if properties is None else tuple(properties)
@@ -57,12 +60,12 @@ class Checker:
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
             check_size(model, chosen)
-            self._compilation = Compilation(model, [property_.expression for property_ in chosen])
+            self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *open_.values()])
             self.asked: tuple[Asked, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    self.asked += (ask(self._compilation, property_),)
+                    self.asked += (ask(self._compilation, property_, open_.get(property_.name)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
             self.stuck: Asked = ask_stuck(self._compilation)

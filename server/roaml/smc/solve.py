@@ -67,7 +67,9 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
     """
     goal = compiled.goal
     is_reward = goal.step_reward >= 0 or goal.exit_reward >= 0
-    is_solvable = not goal.is_bounded and len(goal.left) == 1 and not is_reward and goal.right[0] != STUCK
+    is_solvable = (
+        not goal.is_bounded and len(goal.left) == 1 and not is_reward and goal.right[0] != STUCK and goal.lower[0] >= 0
+    )
     try:
         graph = _explored(compiled, limit, work, is_solvable)
     except (StateFaultError, TooManyChoicesError):

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
+from roaml.model.property_links import LinkedProperty
 from roaml.model.translated import BLACKBOARD_REQUEST
 from roaml.scxml.model import Data, Network, Role
 from roaml.text import Location
@@ -15,6 +16,7 @@ from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
 from roaml.to_jani.events import Event, event_table
 from roaml.to_jani.moves import Behavior, behavior_of
+from roaml.to_jani.observers import observed
 from roaml.to_jani.properties import expanded
 from roaml.to_jani.shapes import Shape, constructed_zero, jani_type, shape_of
 from roaml.to_jani.values import Scope, elements_as, lengths_as
@@ -23,8 +25,14 @@ FEATURES = ("arrays", "trigonometric-functions")
 DESCRIPTION = "Translated from HL-SCXML by roaml"
 
 
-def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
-    """The JANI model of a network: its automata, one for each event, and the given properties."""
+def translate(
+    network: Network, properties: Iterable[Property] = (), observed_properties: Sequence[LinkedProperty] = ()
+) -> Model:
+    """The JANI model of a network: its automata, one for each event, and the given properties.
+
+    Args:
+        observed_properties: those for which observers are added.
+    """
     behaviors = [behavior_of(automaton) for automaton in network.automata]
     table = event_table(behaviors)
     has_clock = any(automaton.role is Role.CLOCK for automaton in network.automata)
@@ -37,7 +45,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}
     shapes = {name: shape for name, (shape, _) in globals_.items()}
     actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})
-    return Model(
+    model = Model(
         ModelType.MDP,
         tuple(automata),
         compose(automata, buffers, table),
@@ -50,6 +58,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
         actions=tuple(Action(action) for action in actions),
         properties=tuple(expanded(each, shapes) for each in properties),
     )
+    return observed(model, observed_properties, shapes, network.max_array_size)
 
 
 def _automaton(behavior: Behavior, table: Mapping[str, Event], network: Network) -> Automaton:
