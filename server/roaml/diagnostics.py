@@ -12,6 +12,8 @@ import enum
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.facts import Facts
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span, TextEdit
 
 
@@ -42,7 +44,7 @@ class Symbol(NamedTuple):
     """
 
     path: str
-    kind: str
+    kind: SymbolKind
     name: str
     scope: str = ""
 
@@ -73,7 +75,10 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something to say about a span. Without `severity` the rule's own severity holds."""
+    """Something to say about a span. Without `severity` the rule's own severity holds.
+
+    `facts` are what fixes read that reach into other files. The message is for people only.
+    """
 
     code: str
     span: Span
@@ -82,6 +87,7 @@ class Finding:
     fixes: tuple[Fix, ...] = ()
     related: tuple[Related, ...] = ()
     tags: tuple[Tag, ...] = ()
+    facts: Facts | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +110,4 @@ class Diagnostic:
     fixes: tuple[Fix, ...] = ()
     related: tuple[RelatedPlace, ...] = ()
     tags: tuple[Tag, ...] = ()
+    facts: Facts | None = None

@@ -28,6 +28,7 @@ class Problem(enum.Enum):
     SPECIAL = "it is no regular file"
     UNREADABLE = "it cannot be read"
     TOO_LARGE = "it is larger than 32 MB"
+    TOO_LONG = "it is too large to be checked"
     OUTSIDE = (
         "it is a link to a file outside of the workspace; open that file's folder as well, or name it in `roots` or "
         "`ros-path`"

@@ -17,6 +17,7 @@ from lxml import etree
 
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
+from roaml.roles import SymbolKind
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
@@ -70,7 +71,7 @@ class AttributeType:
     """An attribute of an element.
 
     Attributes:
-        defines: kind of symbol that the value names first, or "".
+        defines: kind of symbol that the value names first, if any.
         refers: kinds of symbols that the value may name.
         value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
             child-index, script), or "".
@@ -84,8 +85,8 @@ class AttributeType:
     documentation: str
     required: bool = False
     simple: SimpleType = SimpleType()
-    defines: str = ""
-    refers: tuple[str, ...] = ()
+    defines: SymbolKind | None = None
+    refers: tuple[SymbolKind, ...] = ()
     value: str = ""
     value_type: str = ""
     ignored: bool | None = None
@@ -136,7 +137,7 @@ class ElementType:
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
-    refers: tuple[str, ...] = ()
+    refers: tuple[SymbolKind, ...] = ()
     value: str = ""
     value_type: str = ""
     sends: str = ""
@@ -285,7 +286,7 @@ class _Reader:
             shape.any_is_opaque,
             shape.any_attribute,
             shape.text,
-            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            refers=_symbols(roles.get("refers")),
             value=value.get("is", ""),
             value_type=value.get("type", ""),
             sends=roles.get("sends", {}).get("part", ""),
@@ -347,8 +348,8 @@ class _Reader:
             _documentation(node),
             node.get("use") == "required",
             self.simple(node),
-            defines=roles.get("defines", {}).get("symbol", ""),
-            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            defines=next(iter(_symbols(roles.get("defines"))), None),
+            refers=_symbols(roles.get("refers")),
             value=value.get("is", ""),
             value_type=value.get("type", value.get("kind", "")),
             ignored=None if ignored is None else ignored.get("quietly") == "true",
@@ -397,6 +398,10 @@ def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:
     for role in node.findall(f"{_XS}annotation/{_XS}appinfo/*"):
         if role.tag.startswith(_R):
             yield _local(role), dict(role.attrib)
+
+
+def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:
+    return tuple(map(SymbolKind, role["symbol"].split())) if role else ()
 
 
 def _times(node: Any, outer: Occurrence) -> Occurrence:

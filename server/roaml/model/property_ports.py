@@ -30,7 +30,7 @@ from roaml.model.property_file import (
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, safe_name, sanitise
 from roaml.suggest import close_names
 from roaml.text import Span
 
@@ -161,6 +161,8 @@ class PortLinker:
         channel = self._channels(port.kind).get(key)
         if channel is not None:
             return channel
+        if port.kind == TOPIC and key == CLOCK_TOPIC and self.system.has_timer:
+            return Channel(CLOCK_TOPIC)
         for kind in (TOPIC, SERVICE, ACTION):
             other = sanitise(name.value) if kind == TOPIC else name.value
             if kind != port.kind and other in self._channels(kind):
@@ -209,7 +211,7 @@ class PortLinker:
             senders = self._chosen(port.origin, senders, "publishes on", channel)
             name = f"topic_{channel.name}_msg"
             if port.origin is None:
-                if senders or (channel.name == "clock" and self.system.has_timer):
+                if senders or (channel.name == CLOCK_TOPIC and self.system.has_timer):
                     yield PortEvent(name)
             else:
                 for sender in senders:
@@ -434,8 +436,8 @@ def _written_names(channel: Channel, kind: str) -> Iterator[str]:
         name = endpoint.automaton.interface_name(endpoint.use)
         if name is not None:
             yield name
-    if kind == TOPIC and channel.name == "clock":
-        yield "clock"
+    if kind == TOPIC and channel.name == CLOCK_TOPIC:
+        yield CLOCK_TOPIC
 
 
 def _article(word: str) -> str:

@@ -12,7 +12,7 @@ from roaml.text import Span
 class ProblemKind(enum.Enum):
     """The value is the code of the rule that reports it."""
 
-    UNKNOWN_PORT = "unknown-port"
+    UNKNOWN_PORT = "unknown-property-port"
     PORT_TYPE = "port-type"
     PORT_VARIABLE = "port-variable"
     UNSENT = "unsent-port"

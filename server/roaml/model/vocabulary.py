@@ -5,15 +5,16 @@ from __future__ import annotations
 
 from roaml.interfaces import types as interfaces
 from roaml.language import HL_SCXML
+from roaml.roles import SymbolKind
 
 DECLARING_ELEMENTS = {
-    "publisher": "ros_topic_publisher",
-    "subscriber": "ros_topic_subscriber",
-    "service-client": "ros_service_client",
-    "service-server": "ros_service_server",
-    "action-client": "ros_action_client",
-    "action-server": "ros_action_server",
-    "timer": "ros_time_rate",
+    SymbolKind.PUBLISHER: "ros_topic_publisher",
+    SymbolKind.SUBSCRIBER: "ros_topic_subscriber",
+    SymbolKind.SERVICE_CLIENT: "ros_service_client",
+    SymbolKind.SERVICE_SERVER: "ros_service_server",
+    SymbolKind.ACTION_CLIENT: "ros_action_client",
+    SymbolKind.ACTION_SERVER: "ros_action_server",
+    SymbolKind.TIMER: "ros_time_rate",
 }
 """The element that declares a handle, by the kind of the handle."""
 

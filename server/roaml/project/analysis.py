@@ -55,6 +55,7 @@ from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, 
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
+from roaml.roles import SymbolKind
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
@@ -193,12 +194,12 @@ class Analysis:
         file, linked = self.property_file(path), self.system(system)
         if file is None or linked is None:
             return None
-        taken = tuple(self._names_before(path, system))
+        taken = tuple(self.names_before(path, system))
         variables = self.globals(system)
         compute = functools.partial(link, file, linked, self.interface, variables, dict(taken), path)
         return self.memo.get("linked properties", (path, system), (file, linked, taken), compute)
 
-    def _names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
+    def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
         """The names of the properties in the files that a system lists before a file, each with the file's name."""
         for listed in self.listed(system):
             if listed.path == path:
@@ -313,19 +314,19 @@ class Analysis:
     def _listed_file(self, base: str, entry: Input) -> ListedFile:
         wanted = wanted_kind(entry)
         if entry.src is None:
-            return ListedFile(entry, "", "", wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, "", None, wanted, FileKind.UNKNOWN)
         path = resolve(base, entry.src.value)
         source = self.files.read(path)
         if isinstance(source, Problem):
-            return ListedFile(entry, path, source.value, wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, path, source, wanted, FileKind.UNKNOWN)
         if len(source.text) > MAX_CHARACTERS:
-            return ListedFile(entry, path, "it is too large to be checked", wanted, self.kind(path))
+            return ListedFile(entry, path, Problem.TOO_LONG, wanted, self.kind(path))
         found = self.kind(path)
         if found is FileKind.MACHINE and self.machine(path) is None:
             found = FileKind.UNKNOWN
         if wanted is FileKind.JSON_STRUCTS and found is FileKind.UNKNOWN and path.endswith(".json"):
             found = FileKind.JSON_STRUCTS
-        return ListedFile(entry, path, "", wanted, found)
+        return ListedFile(entry, path, None, wanted, found)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
         """The tree files of a system: the listed one, then what it includes, each once."""
@@ -531,7 +532,7 @@ class Analysis:
             return
         found = self.outline(meant, system, self.structs(system), {})
         yield from found.gaps
-        yield from (Gap(use.kind, use.name or None) for use in found.interfaces)
+        yield from (Gap(use.kind.value, use.name or None) for use in found.interfaces)
         yield from (Gap(SENDS, sent.event) for sent in found.sent)
         yield from (Gap(RECEIVES, received.event) for received in found.received)
 
@@ -644,7 +645,7 @@ class Analysis:
                 machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
                 for declaration in machine.declarations if machine else ():
                     topic, type_ = declaration.interface, declaration.type
-                    if declaration.kind == "publisher" and isinstance(topic, Name) and type_ is not None:
+                    if declaration.kind is SymbolKind.PUBLISHER and isinstance(topic, Name) and type_ is not None:
                         found.setdefault(sanitise(topic.value), {})[type_.value] = None
             self._published_types[system] = {topic: tuple(types) for topic, types in found.items()}
         return self._published_types[system]
@@ -655,7 +656,11 @@ class Analysis:
             return {}
         found: dict[str, tuple[InterfaceType, ...]] = {}
         for declaration in machine.declarations:
-            if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and declaration.type:
+            if (
+                declaration.kind is SymbolKind.SUBSCRIBER
+                and isinstance(declaration.interface, Name)
+                and declaration.type
+            ):
                 topic = sanitise(declaration.interface.value)
                 types = self._published(system).get(topic, ())
                 if others := self._messages(t for t in types if t != declaration.type.value):

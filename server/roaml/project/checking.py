@@ -166,7 +166,9 @@ class Checker:
         related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
         source = self.analysis.source(path) if finding.fixes else None
         fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
-        return Diagnostic(path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags)
+        return Diagnostic(
+            path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags, finding.facts
+        )
 
     def _related(self, path: str, related: Related) -> RelatedPlace | None:
         if isinstance(related.place, Symbol):
@@ -246,6 +248,8 @@ class _Run:
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
+            case FileKind.PROPERTIES if self.system_path:
+                return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
                 return (*parts, self.analysis.linked_properties(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
@@ -463,7 +467,8 @@ class _Run:
             return None
         properties, _ = self.analysis.properties(self.path)
         variables = self.analysis.globals(self.system_path) if self.system_path else None
-        return PropertiesContext(self.source, found[0], properties, self.system, variables)
+        taken = dict(self.analysis.names_before(self.path, self.system_path)) if self.system_path else {}
+        return PropertiesContext(self.source, found[0], properties, self.system, variables, taken)
 
 
 def internal_error(where: str, error: Exception) -> Finding:

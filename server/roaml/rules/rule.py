@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
+from roaml.facts import Facts
 from roaml.interfaces.registry import NotFound
 from roaml.jani.properties import Property
 from roaml.json_syntax import JsonValue
@@ -123,13 +124,15 @@ class StructsContext:
 
 @dataclass(frozen=True, slots=True)
 class PropertiesContext:
-    """A property file. `variables` is None if it belongs to no system."""
+    """A property file in JANI. `variables` is None if it belongs to no system; `taken` are the names of properties in
+    the files that the system lists before it, with these files."""
 
     source: SourceFile
     value: JsonValue
     properties: tuple[Property, ...]
     system: System | None
     variables: Mapping[str, GlobalVariable] | None
+    taken: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -139,6 +142,7 @@ class Rule:
     summary: one sentence on what is wrong.
     file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
     plain: the machine check also holds for plain SCXML.
+    facts: the type of the facts of its findings, for rules whose fixes read facts.
     """
 
     code: str
@@ -152,6 +156,7 @@ class Rule:
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
     xml_properties: Callable[[LinkedFile], Iterable[Finding]] | None = None
     plain: bool = False
+    facts: type[Facts] | None = None
 
     def at(
         self,
@@ -161,8 +166,10 @@ class Rule:
         severity: Severity | None = None,
         related: Iterable[Related] = (),
         tags: tuple[Tag, ...] = (),
+        facts: Facts | None = None,
     ) -> Finding:
-        return Finding(self.code, span, message, severity, fixes, tuple(related), tags)
+        assert facts is None or type(facts) is self.facts
+        return Finding(self.code, span, message, severity, fixes, tuple(related), tags, facts)
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:

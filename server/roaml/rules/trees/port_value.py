@@ -23,6 +23,7 @@ from roaml.model.tree import (
     looks_like_reference,
     nodes,
 )
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
@@ -90,7 +91,7 @@ def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Fi
 
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
-    related = [Related(Symbol(path, "port", port.key), "declared here")] if path else []
+    related = [Related(Symbol(path, SymbolKind.PORT, port.key), "declared here")] if path else []
     if port.direction == "out":
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []

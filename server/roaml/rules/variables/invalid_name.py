@@ -11,11 +11,12 @@ from roaml.model.gaps import is_interface_name
 from roaml.model.machine import Declaration, Send
 from roaml.model.name_forms import EVENT, VARIABLE, variable_problem
 from roaml.model.syntax import Name
+from roaml.model.value_types import CHANNEL_KINDS
 from roaml.model.vocabulary import EVENT_VARIABLES
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.interfaces import named_by_ports, port_span
-
-KINDS = {"publisher": "topic", "subscriber": "topic", "service-client": "service", "service-server": "service"}
+from roaml.rules.support.names import WrongName
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -26,8 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement in chart.statements:
             if isinstance(statement, Send):
                 if statement.event and not EVENT.match(statement.event.value):
-                    yield RULE.at(
-                        statement.event.span,
+                    yield _wrong(
+                        statement.event,
                         f"`{statement.event.value}` cannot name an event: it begins with a letter or `_` and holds "
                         "letters, digits, `.`, `-` and `_`",
                     )
@@ -40,24 +41,24 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _variable(name: Name) -> Iterator[Finding]:
     if reason := variable_problem(name.value):
-        yield RULE.at(name.span, reason)
+        yield _wrong(name, reason)
     elif name.value in EVENT_VARIABLES:
         message = f"`{name.value}` is also what received data are called: where these are known, the variable is not"
-        yield RULE.at(name.span, message, severity=Severity.WARNING)
+        yield _wrong(name, message, Severity.WARNING)
 
 
 def _parameter(name: Name) -> Iterator[Finding]:
     if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
         message = f"`{name.value}` cannot name a parameter: letters, digits and `_`, the last no `_`"
-        yield RULE.at(name.span, message)
+        yield _wrong(name, message)
 
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
     """Names that become parts of event names."""
-    what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
-    name = declaration.handle if declaration.kind == "timer" else declaration.interface
+    what = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
+    name = declaration.handle if declaration.kind is SymbolKind.TIMER else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
-        yield RULE.at(name.span, _with_spaces(name.value, what))
+        yield _wrong(name, _with_spaces(name.value, what))
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
@@ -67,12 +68,19 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
         value = automaton.port(use.port)
         text = value.text.strip() if isinstance(value, Constant) else None
         if text is not None and not is_interface_name(text):
-            what = KINDS.get(use.kind, "action")
+            what = CHANNEL_KINDS[use.kind].value
             empty = f"`{use.port}` names {_a(what)} and cannot be empty"
             message = _with_spaces(text, what) if text else empty
             related = (Related(automaton.symbol(use), "it is used here"),)
-            found[RULE.at(port_span(node, use.port), message, related=related)] = None
+            # A default is reported at the name of the node, which is no wrong name.
+            is_here = any(setting.key.value == use.port for setting in node.ports)
+            facts = WrongName(text) if is_here else None
+            found[RULE.at(port_span(node, use.port), message, related=related, facts=facts)] = None
     yield from found
+
+
+def _wrong(name: Name, message: str, severity: Severity | None = None) -> Finding:
+    return RULE.at(name.span, message, severity=severity, facts=WrongName(name.value))
 
 
 def _with_spaces(name: str, what: str) -> str:
@@ -83,4 +91,11 @@ def _a(what: str) -> str:
     return f"{'an' if what == 'action' else 'a'} {what}"
 
 
-RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check, tree=check_tree)
+RULE = Rule(
+    "invalid-name",
+    Severity.ERROR,
+    "A name cannot be used for what it names.",
+    machine=check,
+    tree=check_tree,
+    facts=WrongName,
+)
