@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Model
+from roaml.jani.passive import without_passive
 from roaml.jani.properties import Property
 from roaml.smc.batch import Payload, Problem, pack
 from roaml.smc.choices import Choices, look_at_choices
@@ -54,6 +56,8 @@ class Checker:
         open_: Mapping[str, Expression] = MappingProxyType({}),
     ) -> None:
         self.model = model
+        self.open_ = open_
+        self._marks = marks
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
@@ -84,6 +88,20 @@ class Checker:
 
     def compiled(self, asked: Asked) -> Compiled:
         return Compiled(self.program, asked.goal)
+
+    def reduced(self, asked: Asked) -> Checker:
+        """The same for one question, without the automata that only matter to others: it has fewer states and the same
+        probabilities. Its traces have other numbers."""
+        model = without_passive(self.model, asked.property.expression, *self._open(asked).values())
+        if model is self.model:
+            return self
+        properties = () if asked.question.is_stuck else (asked.property,)
+        model = replace(model, properties=properties)
+        return Checker(model, properties, self._marks, asks_stuck=asked.question.is_stuck, open_=self._open(asked))
+
+    def _open(self, asked: Asked) -> Mapping[str, Expression]:
+        name = asked.property.name
+        return {name: self.open_[name]} if name in self.open_ else {}
 
     def payload(self, asked: Asked) -> Payload:
         """What workers need to answer a question."""
@@ -136,9 +154,10 @@ class Checker:
         Raises:
             FaultError: a trace under some scheduler went wrong.
         """
-        compiled, payload = self.compiled(asked), self.payload(asked)
+        reduced = self.reduced(asked)
+        compiled = reduced.compiled(asked if reduced is self else reduced.asked[0])
         try:
-            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse)
+            return look_at_choices(self.model, compiled, self.payload(asked), answer, self.automata, pool, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
