@@ -19,7 +19,7 @@ from pathlib import Path
 import node_schema
 
 from as2fm_lsp.cli import format as layout
-from as2fm_lsp.cli import init, migrate, translate, verify
+from as2fm_lsp.cli import init, migrate, simulate, translate, verify
 from as2fm_lsp.cli.main import EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
@@ -235,7 +235,7 @@ def command_line() -> str:
     for group in parser()._action_groups:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)
-    for command in (init, layout, migrate, translate, verify):
+    for command in (init, layout, migrate, simulate, translate, verify):
         each = command.parser()
         lines += options(f"`{each.prog}`", each._actions, f"{each.description}\n")
     return "\n".join(lines)

@@ -31,6 +31,7 @@ examples:
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
+  as2fm-lsp simulate main.xml             one run as a story; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
   as2fm-lsp                               language server on standard input and output
@@ -76,7 +77,7 @@ def _failed(error: Exception) -> int:
     return FAILURE
 
 
-COMMANDS = ("format", "init", "migrate", "translate", "verify")
+COMMANDS = ("format", "init", "migrate", "simulate", "translate", "verify")
 """Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
 
 

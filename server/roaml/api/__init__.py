@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 from roaml.api.checking import CheckResult, PathError, check, fix
 from roaml.api.jani_files import JaniError, read_jani
 from roaml.api.migrating import SharedFileError, migrate
+from roaml.api.simulating import session
 from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
 from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
 from roaml.diagnostics import Diagnostic, Severity
@@ -43,6 +44,10 @@ from roaml.scxml.writer import write as write_scxml
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
+    from roaml.simulation.choices import Choice, Outcome
+    from roaml.simulation.run import Decision, RunError
+    from roaml.simulation.session import SavedSession, Session
+    from roaml.simulation.state import EventState, MachineState, NodeState, NodeStatus, SystemState
     from roaml.smc.choices import Choices, Extreme
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
@@ -66,6 +71,10 @@ if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
+        "roaml.simulation.choices": ("Choice", "Outcome"),
+        "roaml.simulation.run": ("Decision", "RunError"),
+        "roaml.simulation.session": ("SavedSession", "Session"),
+        "roaml.simulation.state": ("EventState", "MachineState", "NodeState", "NodeStatus", "SystemState"),
         "roaml.smc.choices": ("Choices", "Extreme"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
@@ -104,11 +113,14 @@ __all__ = [
     "Bounds",
     "CheckResult",
     "Checker",
+    "Choice",
     "Choices",
     "ConstantError",
     "Counterexample",
+    "Decision",
     "Diagnostic",
     "End",
+    "EventState",
     "Exact",
     "ExactError",
     "Expectation",
@@ -120,13 +132,17 @@ __all__ = [
     "LoadedSystem",
     "Location",
     "Look",
+    "MachineState",
     "Migration",
     "Model",
     "ModelError",
     "Network",
     "NoThresholdError",
+    "NodeState",
+    "NodeStatus",
     "Options",
     "Origin",
+    "Outcome",
     "Overrides",
     "PathError",
     "Pool",
@@ -139,8 +155,11 @@ __all__ = [
     "Recording",
     "Refusal",
     "Result",
+    "RunError",
     "SampledResult",
+    "SavedSession",
     "Search",
+    "Session",
     "Settings",
     "Severity",
     "SharedFileError",
@@ -150,6 +169,7 @@ __all__ = [
     "Span",
     "Story",
     "Stuck",
+    "SystemState",
     "Tally",
     "Target",
     "Threshold",
@@ -169,6 +189,7 @@ __all__ = [
     "loaded",
     "migrate",
     "read_jani",
+    "session",
     "source_map",
     "target",
     "to_jani",

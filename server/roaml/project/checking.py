@@ -247,7 +247,8 @@ class _Run:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
-                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
+                forest = None if self.system_path else self.analysis.forest(self.path)
+                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()), forest)
             case FileKind.PROPERTIES if self.system_path:
                 return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
@@ -415,7 +416,10 @@ class _Run:
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
         missing, interface = self._missing_includes(), self.analysis.interface
-        return TreeContext(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older)
+        forest = None if self.system_path else self.analysis.forest(self.path)
+        return TreeContext(
+            self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest
+        )
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees that this file is seen with: those of its system, or what it includes."""
@@ -428,9 +432,15 @@ class _Run:
         file = self.analysis.tree(self.path)
         found: dict[str, str] = {}
         for include in file.includes if file else ():
+            target = self.analysis.include_path(self.path, include)
             if include.path is None:
                 continue
-            target = self.analysis.include_path(self.path, include.path.value)
+            if target is None:
+                if self.system is not None and include.package is not None:
+                    found[include.path.value] = (
+                        f"no folder around this file has the ROS package `{include.package.value}`"
+                    )
+                continue
             source = self.analysis.files.read(target)
             if isinstance(source, Problem):
                 found[include.path.value] = source.value
