@@ -33,6 +33,7 @@ from roaml.jani.node import Origin
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError
 from roaml.jani.writer import write as write_jani
+from roaml.model.property_links import LinkedProperty
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.migrate import Migration
@@ -129,6 +130,7 @@ __all__ = [
     "JaniError",
     "Line",
     "LineColumn",
+    "LinkedProperty",
     "LoadedSystem",
     "Location",
     "Look",
