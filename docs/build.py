@@ -20,7 +20,7 @@ import node_schema
 
 from as2fm_lsp.cli import format as layout
 from as2fm_lsp.cli import init, migrate, simulate, translate, verify
-from as2fm_lsp.cli.main import EXAMPLES, parser
+from as2fm_lsp.cli.main import COMMANDS, EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar
@@ -231,7 +231,9 @@ def demoted(text: str) -> str:
 
 def command_line() -> str:
     """Not argparse's own layout, which differs between versions of Python."""
-    lines = ["# Command line\n", EXAMPLES_TEXT]
+    rows = [f"| `{name}` | {summary} |" for name, summary in COMMANDS.items()]
+    lines = ["# Command line\n", "| command | what it does |", "| --- | --- |", *rows, "", EXAMPLES_TEXT]
+    lines.append("`check`, `explain` and `serve` take the options below without `--check` and `--explain`.\n")
     for group in parser()._action_groups:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)

@@ -13,7 +13,7 @@
         print(result.name, result.answer.value, result.answer.bounds, result.is_met)
 
 Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Names
-that only verification needs are imported when they are used, so that a check starts fast.
+that a check does not need are imported when they are used, so that it starts fast.
 """
 
 from __future__ import annotations
@@ -32,7 +32,6 @@ from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError
-from roaml.jani.writer import write as write_jani
 from roaml.model.property_links import LinkedProperty
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
@@ -41,10 +40,11 @@ from roaml.project.settings import Settings
 from roaml.project.source_map import SourceMap
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
-from roaml.scxml.writer import write as write_scxml
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
+    from roaml.jani.writer import write as write_jani
+    from roaml.scxml.writer import write as write_scxml
     from roaml.simulation.choices import Choice, Outcome
     from roaml.simulation.run import Decision, RunError
     from roaml.simulation.session import SavedSession, Session
@@ -98,12 +98,15 @@ else:
         "roaml.views.story": ("Line",),
         "roaml.views.waiting": ("Wait",),
     }
-    _MODULE_OF = {name: module for module, names in _IMPORTED_ON_USE.items() for name in names}
+    _ORIGINS = {name: (module, name) for module, names in _IMPORTED_ON_USE.items() for name in names}
+    _ORIGINS["write_jani"] = ("roaml.jani.writer", "write")
+    _ORIGINS["write_scxml"] = ("roaml.scxml.writer", "write")
 
     def __getattr__(name: str) -> object:
-        if name not in _MODULE_OF:
+        if name not in _ORIGINS:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return getattr(importlib.import_module(_MODULE_OF[name]), name)
+        module, attribute = _ORIGINS[name]
+        return getattr(importlib.import_module(module), attribute)
 
 
 __all__ = [

@@ -44,8 +44,6 @@ from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
-"""The kind of a symbol that stands for a node of an executed tree: `path` is the system, `name` the number."""
-
 _MOST = 3
 
 

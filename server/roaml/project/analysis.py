@@ -522,7 +522,7 @@ class Analysis:
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
-        instances = expand(trees)
+        instances = expand(trees).instances
         return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:

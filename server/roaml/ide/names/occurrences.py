@@ -100,9 +100,10 @@ def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, .
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     """The trees of a system, or those of a tree file alone with what it includes."""
     paths = analysis.tree_paths(system) if system else analysis.trees_from(path)
-    digests = tuple(getattr(analysis.source(each), "digest", b"") for each in paths)
+    digests = tuple(getattr(analysis.source(tree), "digest", b"") for tree in paths)
+    outlines = analysis.tree_outlines(system) if system else analysis.outlines_from(path)
     owner = system or path
-    return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
+    return analysis.memo.get("trees", owner, (outlines, digests), lambda: Trees(analysis, outlines, owner))
 
 
 def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
