@@ -18,7 +18,6 @@ from test_observer_random import windows
 
 from examples import examples
 from roaml import api
-from roaml.model.translated import TIME_IS_OVER
 from roaml.observers.notation import read as read_formula
 from roaml.observers.properties import (
     CLOSE,
@@ -34,6 +33,7 @@ from roaml.observers.properties import (
 )
 from roaml.observers.verdict import End, Verdict
 from roaml.project.settings import Settings
+from roaml.scxml.names import TIME_IS_OVER
 from roaml.smc.end import End as TraceEnd
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import Recording

@@ -40,7 +40,7 @@ from roaml.model.system import Automaton, System
 from roaml.model.tree import TreeNode, nodes
 from roaml.model.value_types import TypedValue, Use, find_handle, port_type
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
@@ -271,7 +271,7 @@ class _Machine:
 
     def handler(self, handler: Handler) -> Iterator[InlayHint]:
         yield from self.handle(handler)
-        if handler.trigger != "event" or handler.event is None or self.linked is None:
+        if handler.trigger is not ProtocolPart.EVENT or handler.event is None or self.linked is None:
             return
         event = self.linked.events.get(handler.event.value)
         members = event.data.members if event else ()

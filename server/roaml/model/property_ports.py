@@ -31,6 +31,7 @@ from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.roles import ProtocolPart
 from roaml.suggest import close_names
 from roaml.text import Span
 
@@ -207,7 +208,7 @@ class PortLinker:
 
     def _channel_events(self, port: Port, channel: Channel, event: str) -> Iterator[PortEvent]:
         if port.kind == TOPIC:
-            senders = [e for e in channel.sources if "message" in e.use.sends]
+            senders = [e for e in channel.sources if ProtocolPart.MESSAGE in e.use.sends]
             senders = self._chosen(port.origin, senders, "publishes on", channel)
             name = f"topic_{channel.name}_msg"
             if port.origin is None:
@@ -226,11 +227,11 @@ class PortLinker:
             who, number = safe_name(client.automaton.name), channel.users.index(client)
             goal = (GOAL_ID, number)
             match event:
-                case "request" if "request" in client.use.sends:
+                case "request" if ProtocolPart.REQUEST in client.use.sends:
                     yield PortEvent(f"{stem}_req_client_{who}")
                 case "response" if channel.sources:
                     yield PortEvent(f"{stem}_response_client_{who}")
-                case "goal_request" if "goal" in client.use.sends:
+                case "goal_request" if ProtocolPart.GOAL in client.use.sends:
                     yield PortEvent(f"{stem}_goal_req_client_{who}", constants=(goal,))
                 case "goal_response" if channel.sources:
                     yield PortEvent(f"{stem}_goal_accept_client_{who}", constants=(goal, (ACCEPTED, True)))

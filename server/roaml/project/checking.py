@@ -69,7 +69,7 @@ _GRAMMARS: dict[FileKind, Grammar] = {
 _XML_KINDS = (*_GRAMMARS, FileKind.MACHINE, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
 
-class Checker:
+class RuleRunner:
     """Says what is wrong with the files of one moment."""
 
     def __init__(self, analysis: Analysis, settings: Settings) -> None:

@@ -12,12 +12,12 @@ from roaml.jani.expressions import Expression
 from roaml.jani.model import Model
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Property
-from roaml.smc.batch import Payload, Problem, pack
+from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, look_at_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, ask, ask_stuck
+from roaml.smc.goal import CompiledProperty, ask, ask_stuck
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
@@ -29,7 +29,7 @@ DEPTH = 15_000
 """Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
 
 
-class Checker:
+class ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
@@ -65,14 +65,14 @@ class Checker:
         try:
             check_size(model, chosen)
             self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *open_.values()])
-            self.asked: tuple[Asked, ...] = ()
+            self.asked: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
                     self.asked += (ask(self._compilation, property_, open_.get(property_.name)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
-            self.stuck: Asked = ask_stuck(self._compilation)
+            self.stuck: CompiledProperty = ask_stuck(self._compilation)
             if asks_stuck:
                 self.asked += (self.stuck,)
                 self._names += (self.stuck.question.name,)
@@ -86,10 +86,10 @@ class Checker:
     def legend(self) -> Legend:
         return self._compilation.legend
 
-    def compiled(self, asked: Asked) -> Compiled:
+    def compiled(self, asked: CompiledProperty) -> Compiled:
         return Compiled(self.program, asked.goal)
 
-    def reduced(self, asked: Asked) -> Checker:
+    def reduced(self, asked: CompiledProperty) -> ModelChecker:
         """The same for one question, without the automata that only matter to others: it has fewer states and the same
         probabilities. Its traces have other numbers."""
         model = without_passive(self.model, asked.property.expression, *self._open(asked).values())
@@ -97,19 +97,19 @@ class Checker:
             return self
         properties = () if asked.question.is_stuck else (asked.property,)
         model = replace(model, properties=properties)
-        return Checker(model, properties, self._marks, asks_stuck=asked.question.is_stuck, open_=self._open(asked))
+        return ModelChecker(model, properties, self._marks, asks_stuck=asked.question.is_stuck, open_=self._open(asked))
 
-    def _open(self, asked: Asked) -> Mapping[str, Expression]:
+    def _open(self, asked: CompiledProperty) -> Mapping[str, Expression]:
         name = asked.property.name
         return {name: self.open_[name]} if name in self.open_ else {}
 
-    def payload(self, asked: Asked) -> Payload:
+    def payload(self, asked: CompiledProperty) -> Payload:
         """What workers need to answer a question."""
         return pack(self.compiled(asked))
 
     def answer(
         self,
-        asked: Asked,
+        asked: CompiledProperty,
         options: Options,
         pool: Runner,
         tally: Tally | None = None,
@@ -128,7 +128,7 @@ class Checker:
 
     def search(
         self,
-        asked: Asked,
+        asked: CompiledProperty,
         options: Options,
         pool: Pool,
         state: Search,
@@ -148,7 +148,7 @@ class Checker:
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
-    def choices(self, asked: Asked, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
+    def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
         """What is known of other schedulers than the uniform one, of which an answer tells.
 
         Raises:
@@ -171,7 +171,7 @@ class Checker:
         """The names of the elements of the system."""
         return tuple(element.automaton for element in self.model.system.elements)
 
-    def fault(self, problem: Problem) -> FaultError:
+    def fault(self, problem: TraceProblem) -> FaultError:
         """What went wrong in a trace, in words."""
         code = FaultCode(problem.code)
         value: float = problem.value

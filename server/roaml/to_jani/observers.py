@@ -53,16 +53,16 @@ from roaml.model.property_file import EVENT
 from roaml.model.property_links import LinkedProperty
 from roaml.model.property_ports import LinkedPort, LinkedVariable, PortEvent
 from roaml.model.system import safe_name
-from roaml.model.translated import CLOCK, CLOCK_ACTION, TIME_IS_OVER, on_send, open_variable
 from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import ScopeKind
+from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER, named, on_send, open_variable
 from roaml.text import Location as Origin
 from roaml.text import Span
 from roaml.to_jani.assignments import stored_in
-from roaml.to_jani.shapes import Shape, jani_type, shape_of, zero
-from roaml.to_jani.values import Scope, elements_as, lengths_as
+from roaml.to_jani.shapes import ArrayShape, jani_type, shape_of, zero
+from roaml.to_jani.values import JaniScope, elements_as, lengths_as
 
 TIME_OVER_ACTION = "__as2fm__time_is_over"
 """What the clock does at the end of time. It has an action of its own, because no time passes then."""
@@ -70,7 +70,7 @@ _OBSERVING = "observing"
 _NOWHERE = Span(0, 0)
 
 
-def observed(model: Model, properties: Sequence[LinkedProperty], shapes: Mapping[str, Shape], size: int) -> Model:
+def observed(model: Model, properties: Sequence[LinkedProperty], shapes: Mapping[str, ArrayShape], size: int) -> Model:
     """The model with an observer and a property for each of the properties.
 
     Args:
@@ -124,7 +124,7 @@ def _with_end_of_time(model: Model) -> Model:
     return replace(model, automata=automata, system=replace(model.system, syncs=tuple(syncs)), actions=actions)
 
 
-_SCALAR = Shape(BOOL)
+_SCALAR = ArrayShape(BOOL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,12 +133,18 @@ class _Source:
 
     value: Expr
     copy: str = ""
-    shape: Shape = _SCALAR
+    shape: ArrayShape = _SCALAR
 
 
 class _Writer:
     def __init__(
-        self, model: Model, property_: LinkedProperty, prefix: str, shapes: Mapping[str, Shape], size: int, base: int
+        self,
+        model: Model,
+        property_: LinkedProperty,
+        prefix: str,
+        shapes: Mapping[str, ArrayShape],
+        size: int,
+        base: int,
     ) -> None:
         self.model = model
         self.property = property_
@@ -147,7 +153,7 @@ class _Writer:
         self.base = base
         self.origin = Origin(property_.path, property_.written.element.name_span)
         self.observer: Observer = observer_of(property_.property)
-        self.shapes: dict[str, Shape] = dict(shapes)
+        self.shapes: dict[str, ArrayShape] = dict(shapes)
         self.sources: dict[str, _Source] = {}
         self.variables: list[Variable] = []
         self.edges: list[Edge] = []
@@ -251,9 +257,9 @@ class _Writer:
         self._declare_copy(copy, shape, initial.tree)
         return _Source(NameExpr(_NOWHERE, copy), copy, shape)
 
-    def _declare_copy(self, name: str, shape: Shape, initial: Expr) -> None:
+    def _declare_copy(self, name: str, shape: ArrayShape, initial: Expr) -> None:
         self.shapes[name] = shape
-        scope = Scope({}, "", {})
+        scope = JaniScope({}, "", {})
         array = scope.array(initial)
         value = scope.scalar(initial) if array is None else elements_as(array, shape)
         self.variables.append(Variable(name, jani_type(shape), value, origin=self.origin))
@@ -261,8 +267,8 @@ class _Writer:
             lengths = Integer(0) if array is None else lengths_as(array, shape, k + 1)
             self.variables.append(Variable(length, jani_type(companion), lengths, origin=self.origin))
 
-    def _is_zero(self, initial: Expr, shape: Shape) -> bool:
-        scope = Scope({}, "", {})
+    def _is_zero(self, initial: Expr, shape: ArrayShape) -> bool:
+        scope = JaniScope({}, "", {})
         array = scope.array(initial)
         if array is not None:
             return not getattr(array, "elements", (None,))
@@ -270,7 +276,7 @@ class _Writer:
 
     def _conditions(self, true_events: frozenset[str]) -> dict[program.Expression, Expression]:
         """The inputs of the observer in the letter in which these event variables are true."""
-        scope = Scope(self.shapes, "", {})
+        scope = JaniScope(self.shapes, "", {})
 
         def change(expr: Expr) -> Expr:
             if isinstance(expr, NameExpr):
@@ -286,7 +292,7 @@ class _Writer:
 
     def _at_start(self) -> dict[str, bool]:
         initial = {v.id: v.written.initial for port in self.property.ports for v in port.variables}
-        scope = Scope({}, "", {})
+        scope = JaniScope({}, "", {})
 
         def change(expr: Expr) -> Expr:
             if isinstance(expr, NameExpr):
@@ -308,7 +314,7 @@ class _Writer:
         events: dict[str, list[tuple[int, int, PortEvent]]] = {}
         for p, port in enumerate(self.property.ports):
             for e, event in enumerate(port.events):
-                events.setdefault(on_send(event.name), []).append((p, e, event))
+                events.setdefault(on_send(named(event.name)), []).append((p, e, event))
         for sync in self.model.system.syncs:
             joined = ""
             for participant, action in sync.participants:
@@ -389,7 +395,7 @@ class _Writer:
             value = NameExpr(_NOWHERE, name)
         else:  # nobody sets the field
             value = Boolean(_NOWHERE, False) if is_kind(variable.type, "bool") else Number(_NOWHERE, 0, False)
-        for target, written in stored_in(source.copy, source.shape, value, Scope(self.shapes, "", {})):
+        for target, written in stored_in(source.copy, source.shape, value, JaniScope(self.shapes, "", {})):
             yield Assignment(target, written, self.base, origin=self.origin)
 
     def _end_of_time(self) -> None:

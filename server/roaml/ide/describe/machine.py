@@ -24,26 +24,26 @@ from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import Automaton, System, sanitise
 from roaml.model.value_types import TypedMachine, Use
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
 _OCCASIONS = {
-    "": "by itself",
-    "message": "a message on",
-    "request": "a request to",
-    "response": "the response of",
-    "goal": "a goal for",
-    "goal-response": "the answer to a goal of",
-    "feedback": "feedback of",
-    "result": "the result of",
-    "tick": "the timer",
-    "thread-start": "the start of a thread of",
-    "thread-free": "the end of a thread of",
-    "bt-tick": "a tick",
-    "bt-halt": "a halt",
-    "child-status": "the answer of child",
-    "child-halted": "the halt of child",
+    None: "by itself",
+    ProtocolPart.MESSAGE: "a message on",
+    ProtocolPart.REQUEST: "a request to",
+    ProtocolPart.RESPONSE: "the response of",
+    ProtocolPart.GOAL: "a goal for",
+    ProtocolPart.GOAL_RESPONSE: "the answer to a goal of",
+    ProtocolPart.FEEDBACK: "feedback of",
+    ProtocolPart.RESULT: "the result of",
+    ProtocolPart.TICK: "the timer",
+    ProtocolPart.THREAD_START: "the start of a thread of",
+    ProtocolPart.THREAD_FREE: "the end of a thread of",
+    ProtocolPart.BT_TICK: "a tick",
+    ProtocolPart.BT_HALT: "a halt",
+    ProtocolPart.CHILD_STATUS: "the answer of child",
+    ProtocolPart.CHILD_HALTED: "the halt of child",
 }
 
 _KINDS = {
@@ -257,20 +257,26 @@ def occasion(handler: Handler) -> str:
     """What a transition waits for, in words."""
     if handler.event is not None:
         return name(handler.event.value)
-    words = _OCCASIONS.get(handler.trigger, handler.trigger)
+    words = _OCCASIONS[handler.trigger]
     about = handler.handle or handler.child
     return (
         f"{words} {name(about.value)}" if about else words.removesuffix(" on").removesuffix(" of").removesuffix(" to")
     )
 
 
-_PROTOCOL = {"bt-tick": "tick", "bt-halt": "halt", "bt-status": "response", "bt-halted": "halt_response"}
+_PROTOCOL = {
+    ProtocolPart.BT_TICK: "tick",
+    ProtocolPart.BT_HALT: "halt",
+    ProtocolPart.BT_STATUS: "response",
+    ProtocolPart.BT_HALTED: "halt_response",
+}
 """What a plugin receives from its parent, and answers -> the end of the event's name."""
 
 
 def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
     """The events of plain SCXML that an element of the tree protocol becomes; "" for other elements."""
-    end = _PROTOCOL.get(type_.receives or type_.sends)
+    part = type_.receives or type_.sends
+    end = _PROTOCOL.get(part) if part else None
     nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
     events = names((f"{node_id(each)}_{end}" for each in nodes), 4)
     return f"In plain SCXML {events}" if events else ""

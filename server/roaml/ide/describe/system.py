@@ -18,10 +18,10 @@ from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
 from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
+from roaml.forest.scripts import names_in as names_in_script
+from roaml.forest.scripts import script_attributes
 from roaml.ide.names.occurrence import Form, tree_node
 from roaml.model import expand
 from roaml.model.expand import TreeFileOutline, tree_called
@@ -55,6 +57,7 @@ class Frame:
     settings: Mapping[str, Setting]
     outer: Frame | None
     names: frozenset[str]
+    is_alone: bool = False
 
     @property
     def path(self) -> str:
@@ -80,6 +83,8 @@ class Frame:
             return self.settings[name].value.value.strip() == "{=}"
         if self.outer is None or name.startswith("@"):
             return False
+        if self.is_alone:  # scripts name variables, too, which the expansion does not know
+            return self.takes_all and not name.startswith("_") and self.outer.knows(name)
         return self.expanded.resolve(name) == self.outer.expanded.resolve(name)
 
 
@@ -88,10 +93,14 @@ class Trees:
 
     Args:
         outlines: of the files.
-        owner: the system file, or the tree file if it is looked at alone.
+        owner: the system file, or the first tree file if there is no system.
+        is_alone: there is no system, so scripts name variables, too.
     """
 
-    def __init__(self, analysis: Analysis, outlines: tuple[TreeFileOutline, ...], owner: str) -> None:
+    def __init__(
+        self, analysis: Analysis, outlines: tuple[TreeFileOutline, ...], owner: str, *, is_alone: bool = False
+    ) -> None:
+        self.is_alone = is_alone
         files = ((outline.path, analysis.tree(outline.path)) for outline in outlines)
         self.files: dict[str, TreeFile] = {path: file for path, file in files if file is not None}
         self.owner = owner
@@ -100,6 +109,24 @@ class Trees:
             for tree in file.trees:
                 self.trees.setdefault(tree.id.value if tree.id else "", (path, tree))
         self._outlines = outlines
+
+    def tree_symbol(self, path: str, name: str) -> Symbol:
+        """The tree that a name means in a file. Without a system, files that are not included by each other may have
+        trees of one name."""
+        home = self.owner
+        if self.is_alone:
+            defining = [p for p, file in self.files.items() if any(t.id and t.id.value == name for t in file.trees)]
+            if len(defining) > 1:
+                home = path if path in defining else defining[0]
+        return Symbol(home, SymbolKind.TREE, name)
+
+    def names_in(self, tree: Tree) -> Iterator[str]:
+        """The variables that a tree refers to."""
+        yield from names_in(tree)
+        if self.is_alone:
+            for node in nodes(tree):
+                for attribute in script_attributes(node):
+                    yield from (name for name, _ in names_in_script(attribute.value))
 
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
@@ -156,7 +183,7 @@ class Trees:
             key = expanded.tree.path, expanded.tree.id
             if key not in names:
                 names[key] = self._names(tree)
-            frames[expanded] = Frame(expanded, tree, prefix, settings, outer, names[key])
+            frames[expanded] = Frame(expanded, tree, prefix, settings, outer, names[key], self.is_alone)
         return frames
 
     def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:
@@ -168,7 +195,7 @@ class Trees:
         if node.name is not None:
             source, written = tree_node(*outer.key, expanded.use.position, node.name.value), node.name.value
         else:
-            source, written = Symbol(self.owner, SymbolKind.TREE, node.plugin.value), node.plugin.value
+            source, written = self.tree_symbol(outer.path, node.plugin.value), node.plugin.value
         lead = expanded.word[: len(expanded.word) - len(written)]
         prefix: tuple[Piece, ...] = (
             *outer.prefix,
@@ -182,7 +209,7 @@ class Trees:
 
     def _names(self, tree: Tree) -> frozenset[str]:
         """The variables that a tree refers to, also through defaults."""
-        names = set(names_in(tree))
+        names = set(self.names_in(tree))
         for node in nodes(tree):
             plugin = node.plugin.value if node.plugin else ""
             for key, setting in self.defaults.get(plugin, {}).items():
@@ -231,7 +258,7 @@ class Trees:
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
-                if self.variable(*key, symbol.name) == symbol and new in names_in(tree):
+                if self.variable(*key, symbol.name) == symbol and new in self.names_in(tree):
                     return True
         for frame in self.frames:
             own = self.variable(*frame.key, symbol.name) == symbol and symbol.name in frame.names
