@@ -32,7 +32,6 @@ from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError
-from roaml.model.property_links import LinkedProperty
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.migrate import Migration
@@ -40,6 +39,7 @@ from roaml.project.settings import Settings
 from roaml.project.source_map import SourceMap
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
+from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
@@ -131,7 +131,6 @@ __all__ = [
     "FaultError",
     "JaniError",
     "LineColumn",
-    "LinkedProperty",
     "LoadedSystem",
     "Location",
     "Look",
@@ -144,6 +143,7 @@ __all__ = [
     "NoThresholdError",
     "NodeState",
     "NodeStatus",
+    "ObservedProperty",
     "Options",
     "Origin",
     "Outcome",

@@ -13,7 +13,6 @@ from roaml.jani.properties import Property
 from roaml.jani.selection import select
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
-from roaml.model.property_links import LinkedProperty
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
@@ -23,6 +22,7 @@ from roaml.project.source_map import source_map as _source_map
 from roaml.project.translation import observed_properties_of, program_of, properties_of
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
+from roaml.scxml.observed import ObservedProperty
 from roaml.to_jani import translate
 
 
@@ -50,7 +50,7 @@ class LoadedSystem:
     path: str
     properties: tuple[Property, ...]
     analysis: Analysis
-    observed: tuple[LinkedProperty, ...] = ()
+    observed: tuple[ObservedProperty, ...] = ()
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -118,9 +118,11 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
     """
     if properties is None:
         return translate(to_scxml(system), system.properties, system.observed)
-    chosen: tuple[Property | LinkedProperty, ...] = select((*system.properties, *system.observed), properties, "system")
+    chosen: tuple[Property | ObservedProperty, ...] = select(
+        (*system.properties, *system.observed), properties, "system"
+    )
     in_jani = tuple(property_ for property_ in chosen if isinstance(property_, Property))
-    in_xml = tuple(property_ for property_ in chosen if isinstance(property_, LinkedProperty))
+    in_xml = tuple(property_ for property_ in chosen if isinstance(property_, ObservedProperty))
     return translate(to_scxml(system), in_jani, in_xml)
 
 

@@ -32,6 +32,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, safe_name, sanitise
 from roaml.roles import ProtocolPart
+from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
 from roaml.text import Span
 
@@ -56,21 +57,6 @@ _PARTS = {
 }
 _GIVEN_BY = {GOAL_ID: _EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
 """The events of an action that carry what these variables hold."""
-
-
-@dataclass(frozen=True, slots=True)
-class PortEvent:
-    """An event of the translation.
-
-    Attributes:
-        name: of the event.
-        sender: only what this automaton sends counts; "" if all that is sent counts.
-        constants: what the event says without parameters: kinds of variables -> value.
-    """
-
-    name: str
-    sender: str = ""
-    constants: tuple[tuple[str, int | bool], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
-from roaml.model.property_links import LinkedProperty
 from roaml.scxml.model import Data, EventRole, Network, Role
+from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
@@ -25,7 +25,7 @@ DESCRIPTION = "Translated from HL-SCXML by roaml"
 
 
 def translate(
-    network: Network, properties: Iterable[Property] = (), observed_properties: Sequence[LinkedProperty] = ()
+    network: Network, properties: Iterable[Property] = (), observed_properties: Sequence[ObservedProperty] = ()
 ) -> Model:
     """The JANI model of a network: its automata, one for each event, and the given properties.
 

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -49,16 +50,12 @@ from roaml.jani.properties import (
 )
 from roaml.jani.semantics import evaluate
 from roaml.jani.types import BOOL, INT, BoundedType
-from roaml.model.property_file import EVENT
-from roaml.model.property_links import LinkedProperty
-from roaml.model.property_ports import LinkedPort, LinkedVariable, PortEvent
-from roaml.model.system import safe_name
 from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import ScopeKind
 from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER, named, on_send, open_variable
-from roaml.text import Location as Origin
+from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
 from roaml.text import Span
 from roaml.to_jani.assignments import stored_in
 from roaml.to_jani.shapes import ArrayShape, jani_type, shape_of, zero
@@ -70,7 +67,9 @@ _OBSERVING = "observing"
 _NOWHERE = Span(0, 0)
 
 
-def observed(model: Model, properties: Sequence[LinkedProperty], shapes: Mapping[str, ArrayShape], size: int) -> Model:
+def observed(
+    model: Model, properties: Sequence[ObservedProperty], shapes: Mapping[str, ArrayShape], size: int
+) -> Model:
     """The model with an observer and a property for each of the properties.
 
     Args:
@@ -95,7 +94,7 @@ def _assignments(model: Model) -> Iterator[Assignment]:
 
 
 def _prefix(name: str, taken: set[str]) -> str:
-    prefix = safe_name(name)
+    prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", name)
     while any(each.startswith((f"{prefix}__", f"{prefix}.")) or each == prefix for each in taken):
         prefix += "_"
     return prefix
@@ -140,7 +139,7 @@ class _Writer:
     def __init__(
         self,
         model: Model,
-        property_: LinkedProperty,
+        property_: ObservedProperty,
         prefix: str,
         shapes: Mapping[str, ArrayShape],
         size: int,
@@ -151,7 +150,7 @@ class _Writer:
         self.prefix = prefix
         self.size = size
         self.base = base
-        self.origin = Origin(property_.path, property_.written.element.name_span)
+        self.origin = property_.origin
         self.observer: Observer = observer_of(property_.property)
         self.shapes: dict[str, ArrayShape] = dict(shapes)
         self.sources: dict[str, _Source] = {}
@@ -238,11 +237,11 @@ class _Writer:
     def _find_sources(self) -> None:
         for port in self.property.ports:
             for variable in port.variables:
-                if variable.kind != EVENT:
+                if variable.initial is not None:
                     self.sources[variable.id] = self._source(port, variable)
 
-    def _source(self, port: LinkedPort, variable: LinkedVariable) -> _Source:
-        initial = variable.written.initial
+    def _source(self, port: ObservedPort, variable: ObservedVariable) -> _Source:
+        initial = variable.initial
         assert initial is not None
         shape = shape_of(variable.type, self.size, sent=True)
         if len(port.events) == 1 and not port.events[0].sender and not port.events[0].constants and variable.parameter:
@@ -250,11 +249,11 @@ class _Writer:
             name = f"{event}__{variable.parameter}"
             if name in self.shapes:
                 value: Expr = NameExpr(_NOWHERE, name)
-                if not self._is_zero(initial.tree, shape):
-                    value = Conditional(_NOWHERE, NameExpr(_NOWHERE, f"{event}.valid"), value, initial.tree)
+                if not self._is_zero(initial, shape):
+                    value = Conditional(_NOWHERE, NameExpr(_NOWHERE, f"{event}.valid"), value, initial)
                 return _Source(value)
         copy = self._named(variable.id)
-        self._declare_copy(copy, shape, initial.tree)
+        self._declare_copy(copy, shape, initial)
         return _Source(NameExpr(_NOWHERE, copy), copy, shape)
 
     def _declare_copy(self, name: str, shape: ArrayShape, initial: Expr) -> None:
@@ -286,22 +285,21 @@ class _Writer:
             return map_children(expr, change)
 
         return {
-            program.Input(name): scope.scalar(change(condition.tree))
-            for name, condition in self.property.conditions.items()
+            program.Input(name): scope.scalar(change(condition)) for name, condition in self.property.conditions.items()
         }
 
     def _at_start(self) -> dict[str, bool]:
-        initial = {v.id: v.written.initial for port in self.property.ports for v in port.variables}
+        initial = {v.id: v.initial for port in self.property.ports for v in port.variables}
         scope = JaniScope({}, "", {})
 
         def change(expr: Expr) -> Expr:
             if isinstance(expr, NameExpr):
                 value = initial.get(expr.name)
-                return Boolean(expr.span, False) if value is None else value.tree
+                return Boolean(expr.span, False) if value is None else value
             return map_children(expr, change)
 
         return {
-            name: bool(evaluate(scope.scalar(change(condition.tree)), {}))
+            name: bool(evaluate(scope.scalar(change(condition)), {}))
             for name, condition in self.property.conditions.items()
         }
 
@@ -358,12 +356,12 @@ class _Writer:
                 return True
         return False
 
-    def _letter(self, action: str, sent: Iterable[tuple[LinkedPort, PortEvent]], tick: bool = False) -> None:
+    def _letter(self, action: str, sent: Iterable[tuple[ObservedPort, PortEvent]], tick: bool = False) -> None:
         assignments: list[Assignment] = []
         true_events: set[str] = set()
         for port, event in sent:
             for variable in port.variables:
-                if variable.kind == EVENT:
+                if variable.initial is None:
                     true_events.add(variable.id)
                 else:
                     assignments += self._copied(variable, event)
@@ -381,7 +379,7 @@ class _Writer:
         assignments += self._ends(index)
         self._edge(action, assignments)
 
-    def _copied(self, variable: LinkedVariable, event: PortEvent) -> Iterator[Assignment]:
+    def _copied(self, variable: ObservedVariable, event: PortEvent) -> Iterator[Assignment]:
         source = self.sources[variable.id]
         if not source.copy:
             return
