@@ -186,3 +186,11 @@ def test_the_definition_of_a_subtree_is_in_its_file() -> None:
     thing = thing_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
     assert thing is not None
     assert [place.path for place in thing.definitions] == [path_of("inner.xml")]
+
+
+def test_a_subtree_without_a_name_is_no_tree_without_a_name() -> None:
+    text = """<root main_tree_to_execute="A"><BehaviorTree ID="A"><Sequence><SubTree/><Grasp force="{x}"/></Sequence>
+        </BehaviorTree><BehaviorTree><AlwaysSuccess/></BehaviorTree></root>"""
+    thing = thing_at(snapshot_of(tree=text).analysis, path_of("tree.xml"), text.index("{x}") + 1)
+    assert thing is not None
+    assert len(thing.uses) == 1

@@ -16,9 +16,8 @@ from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe import describe
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.machine import inferred_type
-from roaml.ide.hover.property_file import node_of
+from roaml.ide.describe.system import node_of
 from roaml.ide.names.in_machine import interface_symbol, is_implicit
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.navigation import definition_of
 from roaml.ide.system_names import grouped
 from roaml.jani.properties import identifiers
@@ -44,7 +43,7 @@ from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
-_MOST = 3
+_MAX_NAMES = 3
 
 
 class HintKind(enum.Enum):
@@ -95,7 +94,7 @@ def inlay_hints(
     """The hints in a part of a file, in the order of the text."""
     by_system = {
         system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
-        for system in systems_of(analysis, path)
+        for system in analysis.systems_of(path)
     }
     found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
     chosen = (each for each in found if within.start <= each.offset <= within.end)
@@ -127,11 +126,11 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
         # A system that says nothing there differs, too.
         groups = grouped({system: said[system].text if system in said else "" for system in by_system})
         shown = [(text, names) for text, names in groups if text]
-        for text, names in shown[:_MOST]:
+        for text, names in shown[:_MAX_NAMES]:
             own = next(hint.parts for hint in said.values() if hint.text == text)
             again = bool(parts) and own[0].text.strip() in _LEADS
             parts += [*([Part("; ")] if parts else []), *own[again:], *([Part(f" in {names}")] if names else [])]
-        if len(shown) > _MOST:
+        if len(shown) > _MAX_NAMES:
             parts.append(Part(", …"))
         merged.add(InlayHint(offset, kind, tuple(parts)))
     return merged
@@ -214,9 +213,9 @@ class _Machine:
         if not found:
             return
         parts: list[Part] = []
-        for symbol, written in list(found.items())[:_MOST]:
+        for symbol, written in list(found.items())[:_MAX_NAMES]:
             parts += [Part(", " if parts else lead), Part(written, symbol)]
-        if len(found) > _MOST:
+        if len(found) > _MAX_NAMES:
             parts.append(Part(", …"))
         yield InlayHint(_behind(at), HintKind.TOPICS, tuple(parts))
 
@@ -319,12 +318,12 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
     at = plugin.span.end + (0 if node.compact else 1)
     parts: list[Part] = []
     numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
-    for (system, number), _ in list(numbers.items())[:_MOST]:
+    for (system, number), _ in list(numbers.items())[:_MAX_NAMES]:
         parts += [
             Part(", " if parts else " "),
             Part(f"bt_{number}", Symbol(system, SymbolKind.TREE_INSTANCE, str(number))),
         ]
-    if len(numbers) > _MOST:
+    if len(numbers) > _MAX_NAMES:
         parts.append(Part(", …"))
     if parts:
         yield InlayHint(at, HintKind.NODES, tuple(parts))

@@ -34,18 +34,7 @@ def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedPrope
 
 
 def _observed(property_: LinkedProperty) -> ObservedProperty:
-    ports = tuple(
-        ObservedPort(
-            port.events,
-            tuple(
-                ObservedVariable(
-                    v.id, v.kind, v.type, v.parameter, v.written.initial.tree if v.written.initial else None
-                )
-                for v in port.variables
-            ),
-        )
-        for port in property_.ports
-    )
+    ports = tuple(ObservedPort(p.events, tuple(map(_observed_variable, p.variables))) for p in property_.ports)
     conditions = {name: condition.tree for name, condition in property_.conditions.items()}
     origin = Location(property_.path, property_.written.element.name_span)
     return ObservedProperty(property_.name, property_.property, conditions, ports, origin)

@@ -13,7 +13,6 @@ from roaml.ide.describe.language import array_size, value_range
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, prose
 from roaml.ide.describe.system import channel
 from roaml.ide.names.in_machine import interface_symbol
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import uses
 from roaml.language import ElementType
@@ -77,7 +76,7 @@ def _action(automaton: Automaton, handle: str) -> str:
 
 
 def linked_systems(analysis: Analysis, path: str) -> Iterator[System]:
-    for each in systems_of(analysis, path):
+    for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         if system is not None:
             yield system
@@ -101,7 +100,7 @@ def variable(analysis: Analysis, symbol: Symbol) -> str:
     found = {(c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id}
     data = found.get((symbol.scope, symbol.name))
     parts: dict[str, None] = {}
-    for system in systems_of(analysis, symbol.path):
+    for system in analysis.systems_of(symbol.path):
         typed = analysis.typed_in(symbol.path, system) if machine else None
         if typed is not None:
             parts[_variable(analysis, symbol, data, typed)] = None
@@ -184,7 +183,7 @@ def _source(value: Value) -> str:
 def _counted(analysis: Analysis, symbol: Symbol) -> str:
     reads: set[Span] = set()
     writes: set[Span] = set()
-    for system in systems_of(analysis, symbol.path):
+    for system in analysis.systems_of(symbol.path):
         for each in uses(analysis, symbol.path, system).by_symbol.get(symbol, ()):
             if not each.defines:
                 (writes if each.access is Access.WRITE else reads).add(each.span)
@@ -360,9 +359,10 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
             shown = "" if value is None else value.text if isinstance(value, Constant) else f"{{{value.variable}}}"
             bound.setdefault(shown, []).append(node_id(automaton))
     found = [
-        f"{name(value) if value else 'not set'} in {names(nodes, 3)}" for value, nodes in list(bound.items())[:_MOST]
+        f"{name(value) if value else 'not set'} in {names(nodes, 3)}"
+        for value, nodes in list(bound.items())[:_MAX_VALUES]
     ]
-    rest = f" and {len(bound) - _MOST} other values" if len(bound) > _MOST else ""
+    rest = f" and {len(bound) - _MAX_VALUES} other values" if len(bound) > _MAX_VALUES else ""
     return paragraphs(
         code(f"{declared.direction} {symbol.name}{type_}"),
         _remark(analysis, symbol.path, declared.element),
@@ -373,7 +373,7 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
     )
 
 
-_MOST = 5
+_MAX_VALUES = 5
 
 
 def node_id(automaton: Automaton) -> str:
