@@ -30,7 +30,7 @@ from roaml.model.property_file import (
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
 from roaml.roles import ProtocolPart
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
@@ -227,7 +227,9 @@ class PortLinker:
                 case "result" if channel.sources:
                     yield PortEvent(f"{stem}_result_handle_client_{who}", constants=(goal,))
 
-    def _chosen(self, name: Name | None, endpoints: list[Endpoint], does: str, channel: Channel) -> list[Endpoint]:
+    def _chosen(
+        self, name: Name | None, endpoints: list[ChannelEndpoint], does: str, channel: Channel
+    ) -> list[ChannelEndpoint]:
         if name is None:
             return endpoints
         chosen = [endpoint for endpoint in endpoints if name.value in _names_of(endpoint.automaton)]
@@ -274,7 +276,7 @@ class PortLinker:
         variables = tuple(self._variables(port, status, "", event))
         return LinkedPort(port, (PortEvent(f"bt_{instance.number}_{event}"),), variables)
 
-    def _is_called(self, automaton: Automaton, text: str) -> bool:
+    def _is_called(self, automaton: SystemAutomaton, text: str) -> bool:
         instance = automaton.instance
         assert instance is not None
         *path, last = text.split("/")
@@ -292,7 +294,7 @@ class PortLinker:
     def _has_name(self, text: str) -> bool:
         return any(each.instance is not None and each.instance.name == text for each in self.system.automata)
 
-    def _above(self, automaton: Automaton) -> list[str]:
+    def _above(self, automaton: SystemAutomaton) -> list[str]:
         """The names of the nodes around a node and of the trees that they are in, outermost first."""
         names: list[str] = []
         instance = automaton.instance
@@ -310,7 +312,7 @@ class PortLinker:
                 names.append(tree)
         return names[::-1]
 
-    def _path(self, automaton: Automaton) -> str:
+    def _path(self, automaton: SystemAutomaton) -> str:
         assert automaton.instance is not None
         return "/".join(filter(None, (*self._above(automaton), automaton.instance.name)))
 
@@ -410,7 +412,7 @@ def _leaf_paths(data: Struct) -> Iterator[str]:
             yield name
 
 
-def _names_of(automaton: Automaton) -> tuple[str, ...]:
+def _names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
     """By which names a port may choose an automaton: that of its machine or node, and its own."""
     names = [automaton.name]
     if automaton.instance is not None:
