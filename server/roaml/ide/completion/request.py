@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from roaml.forest.forest import Forest
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import trees_of
@@ -79,6 +80,11 @@ class Request:
     @cached_property
     def trees(self) -> Trees:
         return trees_of(self.analysis, self.path, self.system_path)
+
+    @cached_property
+    def forest(self) -> Forest | None:
+        """What is known of the nodes of a tree that belongs to no system."""
+        return None if self.system_path else self.analysis.forest(self.path)
 
     @cached_property
     def chart(self) -> Chart | None:

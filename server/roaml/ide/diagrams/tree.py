@@ -33,7 +33,7 @@ def tree_picture(analysis: Analysis, path: str) -> Picture | None:
         paths, instances = system.tree_paths, system.instances
     else:
         paths = analysis.trees_from(path)
-        instances = expand(analysis.outlines_from(path))
+        instances = expand(analysis.outlines_from(path)).instances
     if not paths:
         return None
     drawn = _Tree(analysis, paths, instances, system)

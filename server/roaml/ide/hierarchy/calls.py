@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.lookup import Use, occurrences_at, systems_of, thing
 from roaml.ide.names.occurrence import HANDLES, Access
-from roaml.ide.names.occurrences import uses
+from roaml.ide.names.occurrences import trees_of, uses
 from roaml.model.outline import InterfaceUse
 from roaml.model.system import Automaton, System
 from roaml.model.tree import nodes
@@ -206,13 +206,13 @@ def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
 
 def _tree_around(analysis: Analysis, symbol: Symbol, use: Use) -> Symbol | None:
     file = analysis.tree(use.path)
-    owner = next((system for system in systems_of(analysis, use.path) if system), use.path)
+    trees = trees_of(analysis, use.path, systems_of(analysis, use.path)[0])
     for tree in file.trees if file else ():
         for node in nodes(tree):
             if tree.id and node.plugin and node.element.open_span.contains(use.occurrence.span.start):
                 inside = node.plugin.value == use.occurrence.symbol.name and use.occurrence.symbol.kind == symbol.kind
                 if inside and node.element.open_span.start < use.occurrence.span.start:
-                    return Symbol(owner, SymbolKind.TREE, tree.id.value)
+                    return trees.tree_symbol(use.path, tree.id.value)
     return None
 
 

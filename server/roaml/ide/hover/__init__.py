@@ -16,6 +16,7 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.describe.machine import protocol, rate
 from roaml.ide.describe.markdown import paragraphs
 from roaml.ide.hover.expression import in_expression
+from roaml.ide.hover.lone_tree import known_at
 from roaml.ide.hover.property_file import global_variable, in_json
 from roaml.ide.hover.system_file import listed_file, parameter
 from roaml.ide.hover.tree import node_at
@@ -40,6 +41,9 @@ class Hover:
 
 def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
     """What to tell about a place; None if nothing is known of it."""
+    known_alone = known_at(analysis, path, offset) if analysis.kind(path) is FileKind.TREE else None
+    if known_alone is not None:
+        return Hover(*known_alone)
     source = analysis.source(path)
     found = occurrences_at(analysis, path, offset) if source else ()
     known = dict.fromkeys(

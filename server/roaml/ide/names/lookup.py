@@ -14,6 +14,7 @@ from functools import cached_property
 from roaml.diagnostics import Symbol
 from roaml.ide.names.occurrence import HANDLES, Occurrence
 from roaml.ide.names.occurrences import Uses, uses
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
@@ -115,5 +116,10 @@ def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
     else:
         systems = systems_of(analysis, symbol.path)
     for system in systems:
-        for path in analysis.files_of(system) if system else (symbol.path,):
+        for path in analysis.files_of(system) if system else _family(analysis, symbol.path):
             yield path, uses(analysis, path, system)
+
+
+def _family(analysis: Analysis, path: str) -> tuple[str, ...]:
+    """The files that see the names of a file that belongs to no system."""
+    return analysis.family(path) if analysis.kind(path) is FileKind.TREE else (path,)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -98,11 +99,13 @@ def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, .
 
 
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
-    """The trees of a system, or those of a tree file alone with what it includes."""
-    paths = analysis.tree_paths(system) if system else analysis.trees_from(path)
-    digests = tuple(getattr(analysis.source(each), "digest", b"") for each in paths)
-    owner = system or path
-    return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
+    """The trees of a system, or those of a tree file alone with the files that are connected with it by includes."""
+    outlines = analysis.tree_outlines(system) if system else analysis.family_outlines(path)
+    paths = analysis.tree_paths(system) if system else tuple(outline.path for outline in outlines)
+    digests = tuple(getattr(analysis.source(tree), "digest", b"") for tree in paths)
+    owner = system or next(iter(paths), path)
+    make = functools.partial(Trees, analysis, outlines, owner, is_alone=system is None)
+    return analysis.memo.get("trees", owner, (outlines, digests), make)
 
 
 def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
