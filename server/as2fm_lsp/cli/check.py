@@ -122,7 +122,9 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
     """Which findings have fixes that are made only by somebody who looks at them; "" if none has."""
-    counts = Counter(each.code for each in diagnostics if each.fixes and not any(f.safe for f in each.fixes))
+    counts = Counter(
+        diagnostic.code for diagnostic in diagnostics if diagnostic.fixes and not any(f.safe for f in diagnostic.fixes)
+    )
     if not counts:
         return ""
     total = sum(counts.values())

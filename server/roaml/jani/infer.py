@@ -81,7 +81,7 @@ from roaml.text import Span
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class TypeScope:
     """What names mean somewhere. `variables` has constants and parameters, too; `constants` cannot be assigned to."""
 
     variables: Mapping[str, Type]
@@ -106,7 +106,7 @@ Bound: TypeAlias = Mapping[str, Type]
 class Inference:
     """Finds types where `scope` holds, and notes what is wrong."""
 
-    def __init__(self, scope: Scope) -> None:
+    def __init__(self, scope: TypeScope) -> None:
         self.scope = scope
         self.notes = Notes()
 

@@ -20,7 +20,7 @@ HARMLESS = frozenset(("comment", "metadata"))
 """Members that never carry meaning, wherever they stand."""
 
 
-class Shape(NamedTuple):
+class ObjectShape(NamedTuple):
     """What an object is, with its article, and the members that it must and may have. `is_open`: whatever else it has
     is for people, too."""
 
@@ -30,13 +30,13 @@ class Shape(NamedTuple):
     is_open: bool = False
 
 
-def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> Shape:
+def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> ObjectShape:
     """`required` and `optional` are names, separated by spaces."""
     needed = frozenset(required.split())
-    return Shape(what, needed, needed | frozenset(optional.split()), is_open)
+    return ObjectShape(what, needed, needed | frozenset(optional.split()), is_open)
 
 
-class Source:
+class ValueSource:
     """Where values are read from: the path of the file and the notes on it."""
 
     def __init__(self, path: str, notes: Notes) -> None:
@@ -46,7 +46,7 @@ class Source:
     def origin(self, span: Span) -> Origin:
         return Origin(self.path, span)
 
-    def members(self, value: JsonValue | None, form: Shape) -> Members | None:
+    def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
         """The members of `value`; None (and a finding) if it is no object."""
         if isinstance(value, JsonObject):
             return Members(value, form, self)
@@ -61,7 +61,7 @@ class Source:
 class Members:
     """The members of one object; of two with one name, the last."""
 
-    def __init__(self, value: JsonObject, form: Shape, source: Source) -> None:
+    def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.object = value
         self.form = form
         self.notes = source.notes

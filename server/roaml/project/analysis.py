@@ -159,6 +159,14 @@ class Analysis:
             return FileKind.UNKNOWN
         return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
 
+    def kind_in(self, path: str, system: str | None) -> FileKind:
+        """What a file is: by itself, or else as what a system lists it."""
+        kind = self.kind(path)
+        if kind is not FileKind.UNKNOWN or system is None:
+            return kind
+        listed = (file.found for file in self.listed(system) if file.path == path)
+        return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
+
     def document(self, path: str) -> Document | None:
         return self._of("document", path, lambda source: parse_xml(source.text))
 
@@ -460,6 +468,10 @@ class Analysis:
         """
         listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
         return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
+
+    def systems_of(self, path: str) -> tuple[str | None, ...]:
+        """The systems in which a file is looked at; (None) if it is in none."""
+        return self.memberships.get(path, ()) or (None,)
 
     @cached_property
     def memberships(self) -> Mapping[str, tuple[str, ...]]:

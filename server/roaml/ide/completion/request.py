@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from roaml.forest.forest import Forest
 from roaml.ide.names.frames import Trees
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
@@ -48,12 +47,12 @@ class Request:
     @cached_property
     def system_path(self) -> str | None:
         """The system that types are looked up in: of several the first."""
-        return systems_of(self.analysis, self.path)[0]
+        return self.analysis.systems_of(self.path)[0]
 
     @cached_property
     def systems(self) -> tuple[System, ...]:
         """The systems that the file belongs to; a system file to its own."""
-        paths = (self.path, *systems_of(self.analysis, self.path))
+        paths = (self.path, *self.analysis.systems_of(self.path))
         found = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
         return tuple(system for system in found if system is not None)
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 
 from roaml.forest.forest import Forest
 from roaml.ide.describe import forest as describe_forest
+from roaml.ide.hover.place import Place
 from roaml.libraries import Node
+from roaml.model.kinds import FileKind
 from roaml.model.tree import TreeNode
-from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 
-def known_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+def of_library(place: Place) -> tuple[Span, str] | None:
     """The node or port whose name is at a place; None if nothing is known of it, or the file belongs to a system."""
-    forest = None if analysis.memberships.get(path) else analysis.forest(path)
+    is_lone = place.kind is FileKind.TREE and place.systems == (None,)
+    forest, offset = place.analysis.forest(place.path) if is_lone else None, place.offset
     if forest is None:
         return None
     for _, node in forest.own_nodes():

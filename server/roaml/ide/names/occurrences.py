@@ -34,7 +34,7 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     if source is None:
         return _index(())
     key: tuple[object, ...] = (source.digest, analysis.structs(system))
-    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+    if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
         key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
     else:
         key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
@@ -66,7 +66,7 @@ def _index(found: Iterable[Occurrence]) -> Uses:
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
-    kind = kind_in(analysis, path, system)
+    kind = analysis.kind_in(path, system)
     assert source is not None
     if kind is FileKind.MACHINE:
         machine = analysis.machine(path)
@@ -106,12 +106,3 @@ def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     owner = system or next(iter(paths), path)
     make = functools.partial(Trees, analysis, outlines, owner, is_alone=system is None)
     return analysis.memo.get("trees", owner, (outlines, digests), make)
-
-
-def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
-    """What a file is: by itself, or else as what a system lists it."""
-    kind = analysis.kind(path)
-    if kind is not FileKind.UNKNOWN or system is None:
-        return kind
-    listed = (f.found for f in analysis.listed(system) if f.path == path)
-    return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind

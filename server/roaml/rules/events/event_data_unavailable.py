@@ -61,7 +61,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if known:
         message = f"`{name}` is not known here; `<{tag}>` knows {listing(known)}"
         return RULE.at(problem.span, message, *_fixes(context, problem, known))
-    if place.handler is not None and place.handler.trigger == "":
+    if place.handler is not None and place.handler.trigger is None:
         message = f"`{name}` is not known here: this transition has no event; give it the `event` whose data are meant"
         return RULE.at(problem.span, message)
     return RULE.at(problem.span, f"`{name}` is not known here: `<{tag}>` carries no data")

@@ -136,7 +136,7 @@ def _has_room(context: MachineContext, place: Place, array: Expr, bound: int) ->
     return any(_limits(context, condition.tree, array, bound, holds) for condition, holds in conditions)
 
 
-def _trigger(handler: Handler) -> tuple[str, ...]:
+def _trigger(handler: Handler) -> tuple[object, ...]:
     """What handlers that are tried one after the other have in common."""
     names = (handler.event, handler.handle, handler.child)
     return (handler.trigger, *(name.value if name else "" for name in names))
