@@ -76,7 +76,7 @@ _SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
 _ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
 
-_LONGEST_REMEMBERED = 500
+_MAX_REMEMBERED_LENGTH = 500
 """Characters up to which an expression is remembered."""
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -114,18 +114,18 @@ _OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
 
 def tokens(text: str) -> list[Token]:
     """The tokens of an expression; together with white space they cover all of it."""
-    found = []
+    text_tokens = []
     for match in _TOKEN.finditer(text, 0, len(text.rstrip())):
         kind = match.lastgroup or "junk"
         start, end = match.span(kind)
-        found.append(Token(kind, match[kind], start, end))
-    return found
+        text_tokens.append(Token(kind, match[kind], start, end))
+    return text_tokens
 
 
 def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
     """The expression in `source` and all that is wrong with its form."""
     text = source.text
-    if len(text) <= _LONGEST_REMEMBERED and (sound := _sound(text)) is not None:
+    if len(text) <= _MAX_REMEMBERED_LENGTH and (sound := _sound(text)) is not None:
         return placed(sound, source), ()
     return _parse(source)
 
@@ -406,13 +406,13 @@ class _Parser:
 
     def items(self, closer: str, opener: Token) -> tuple[Expr, ...]:
         """Comma-separated expressions up to `closer`, which is stepped over."""
-        found: list[Expr] = []
+        operands: list[Expr] = []
         while (token := self.peek()) is not None and token.text != closer:
-            found.append(self.expression(0))
+            operands.append(self.expression(0))
             if not self.accept(","):
                 break
         self.closing(closer, opener)
-        return tuple(found)
+        return tuple(operands)
 
     def object(self, opener: Token) -> Expr:
         members: list[ObjectMember] = []

@@ -15,7 +15,7 @@ from roaml.ide.hierarchy.calls import interfaces_of
 from roaml.ide.names.lookup import Use, thing
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
-from roaml.ide.system_names import MOST, grouped
+from roaml.ide.system_names import MAX_NAMES, grouped
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import System
@@ -97,9 +97,9 @@ def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
     said = grouped({system: found.title for system, found in by_system.items()})
-    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MOST])
+    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MAX_NAMES])
     places = tuple(sorted({place for found in by_system.values() for place in found.places}))
-    return Counted(f"{title} / …" if len(said) > MOST else title, places)
+    return Counted(f"{title} / …" if len(said) > MAX_NAMES else title, places)
 
 
 def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:

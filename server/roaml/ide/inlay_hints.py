@@ -43,7 +43,7 @@ from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
-_MOST = 3
+_MAX_NAMES = 3
 
 
 class HintKind(enum.Enum):
@@ -126,11 +126,11 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
         # A system that says nothing there differs, too.
         groups = grouped({system: said[system].text if system in said else "" for system in by_system})
         shown = [(text, names) for text, names in groups if text]
-        for text, names in shown[:_MOST]:
+        for text, names in shown[:_MAX_NAMES]:
             own = next(hint.parts for hint in said.values() if hint.text == text)
             again = bool(parts) and own[0].text.strip() in _LEADS
             parts += [*([Part("; ")] if parts else []), *own[again:], *([Part(f" in {names}")] if names else [])]
-        if len(shown) > _MOST:
+        if len(shown) > _MAX_NAMES:
             parts.append(Part(", …"))
         merged.add(InlayHint(offset, kind, tuple(parts)))
     return merged
@@ -213,9 +213,9 @@ class _Machine:
         if not found:
             return
         parts: list[Part] = []
-        for symbol, written in list(found.items())[:_MOST]:
+        for symbol, written in list(found.items())[:_MAX_NAMES]:
             parts += [Part(", " if parts else lead), Part(written, symbol)]
-        if len(found) > _MOST:
+        if len(found) > _MAX_NAMES:
             parts.append(Part(", …"))
         yield InlayHint(_behind(at), HintKind.TOPICS, tuple(parts))
 
@@ -318,12 +318,12 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
     at = plugin.span.end + (0 if node.compact else 1)
     parts: list[Part] = []
     numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
-    for (system, number), _ in list(numbers.items())[:_MOST]:
+    for (system, number), _ in list(numbers.items())[:_MAX_NAMES]:
         parts += [
             Part(", " if parts else " "),
             Part(f"bt_{number}", Symbol(system, SymbolKind.TREE_INSTANCE, str(number))),
         ]
-    if len(numbers) > _MOST:
+    if len(numbers) > _MAX_NAMES:
         parts.append(Part(", …"))
     if parts:
         yield InlayHint(at, HintKind.NODES, tuple(parts))

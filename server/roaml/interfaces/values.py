@@ -24,7 +24,7 @@ _ESCAPE = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u((?![dD][89a-fA-F])[0-9a-fA-F]{4}
 _SIMPLE_ESCAPES = dict(zip("abfnrtv\\\"'", "\a\b\f\n\r\t\v\\\"'", strict=True))
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 _GREATEST_FLOAT = {"float32": 3.4028234663852886e38, "float64": 1.7976931348623157e308}
-_LONGEST_NUMBER = 1000
+_MAX_DIGITS = 1000
 
 
 def skip_blanks(text: str, start: int, end: int) -> int:
@@ -138,7 +138,7 @@ def _integer(written: str, span: Span, type_name: str, report: Report) -> int | 
     # Base 0 knows the prefixes but rejects the leading zeros that ROS allows.
     digits = written.lstrip("+-")
     base = 10 if digits.isdecimal() else 0
-    value = int(written, base) if len(written) <= _LONGEST_NUMBER else None
+    value = int(written, base) if len(written) <= _MAX_DIGITS else None
     if value is None or not low <= value <= high:
         report.add(span, f"{shorten(written)} does not fit into `{type_name}`, which goes from {low} to {high}")
         return None

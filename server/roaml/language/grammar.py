@@ -221,10 +221,10 @@ class Grammar:
     @cached_property
     def _everywhere(self) -> tuple[ElementType, ...]:
         """All elements, the global ones first, then those that are only known inside others."""
-        found = list(self.elements.values())
-        for element in found:
-            found += element.local.values()
-        return tuple(found)
+        elements = list(self.elements.values())
+        for element in elements:
+            elements += element.local.values()
+        return tuple(elements)
 
 
 HL_SCXML = Grammar("ascxml.xsd", ("ascxml", "scxml"), "HL-SCXML")

@@ -125,12 +125,12 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     root = document.root
     if root is None or root.name not in grammar.roots:
         return ()
-    found = list(_walk(document, root, grammar))
-    if not found and not any(finding.code in _UNREAD for finding in document.findings):
+    violations = list(_walk(document, root, grammar))
+    if not violations and not any(finding.code in _UNREAD for finding in document.findings):
         tree, back = to_lxml(document, root)
         if not grammar.validator.validate(tree):
-            found.extend(_explain(tree, back, grammar))
-    return tuple(found)
+            violations.extend(_explain(tree, back, grammar))
+    return tuple(violations)
 
 
 @dataclass(frozen=True, slots=True)

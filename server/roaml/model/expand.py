@@ -416,7 +416,7 @@ class _Expander:
         while pending:
             node, frame, parent = pending.pop()
             if node.is_subtree:
-                inner = self.trees.get(node.plugin)
+                inner = self.trees.get(node.plugin) if node.plugin else None
                 if inner is not None and inner.root is not None and inner.id not in frame.inside:
                     pending.append((inner.root, self.enter(node, inner, frame), parent))
                 continue

@@ -37,7 +37,7 @@ from roaml.rules.systems.input_count import InputCount
 from roaml.rules.trees.blackboard_type_conflict import TypeConflict
 from roaml.text import SourceFile, Span, TextEdit
 
-_MOST = 3
+_MAX_FILES = 3
 """So many files are offered in place of one that is not there."""
 
 _Edits = dict[str, tuple[TextEdit, ...]]
@@ -112,7 +112,7 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
     name = name_of(path)
     close = dict.fromkeys((*([name] if name in by_name else []), *close_names(name, by_name)))
     found = [other for each in close for other in by_name[each]]
-    for number, other in enumerate(found[:_MOST]):
+    for number, other in enumerate(found[:_MAX_FILES]):
         new = new_file.relative(other, diagnostic.path, [written])
         change = Change({diagnostic.path: (TextEdit(diagnostic.span, _attribute(new)),)})
         yield _action(diagnostic, f"Change to `{new}`", known(change), preferred=number == 0)
@@ -201,7 +201,7 @@ def _list_file(
     analysis, system = snapshot.analysis, diagnostic.path
     folder = folder_of(system)
     for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
-        if number < _MOST:
+        if number < _MAX_FILES:
             title = f"List `{new_file.relative(path, system)}`"
             edits = add_input(analysis, system, section, type_, path)
             change = Change({system: edits}) if edits else Change()

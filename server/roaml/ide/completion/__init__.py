@@ -29,7 +29,7 @@ __all__ = ["Completions", "Item", "ItemKind", "Rank", "complete", "document", "p
 TRIGGERS = ("<", " ", '"', "'", "/", "=", ".", "{", "@", "_")
 """Characters after which an editor asks by itself."""
 
-MOST = 400
+MAX_ITEMS = 400
 """More items than this are not sent: the list is to be asked for again when more has been typed."""
 
 
@@ -152,11 +152,11 @@ def _shortened(text: str, offset: int, span: Span, items: Iterable[Item]) -> Com
     span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
     unique = {(item.label, item.insert): item for item in items}.values()
     ordered = sorted(unique, key=lambda item: item.rank)
-    if len(ordered) <= MOST:
+    if len(ordered) <= MAX_ITEMS:
         return Completions(span, tuple(ordered))
     typed = text[span.start : offset].lower()
     fitting = [item for item in ordered if _may_become(typed, (item.filter or item.label).lower())]
-    return Completions(span, tuple(fitting[:MOST]), incomplete=True)
+    return Completions(span, tuple(fitting[:MAX_ITEMS]), incomplete=True)
 
 
 def _may_become(typed: str, label: str) -> bool:

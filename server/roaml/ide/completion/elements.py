@@ -22,7 +22,7 @@ from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_T
 from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
-_MOST_CHOICES = 20
+_MAX_CHOICES = 20
 
 
 def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[Item]:
@@ -92,7 +92,7 @@ def likely(request: Request, subject: Subject, attribute: AttributeType) -> list
     if attribute.value == "ros-type":
         return []
     found = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
-    return found if len(found) <= _MOST_CHOICES else []
+    return found if len(found) <= _MAX_CHOICES else []
 
 
 def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:

@@ -14,6 +14,7 @@ from roaml.ide.completion.names import referred, undefined
 from roaml.ide.completion.paths import paths
 from roaml.ide.completion.ports import port_values
 from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.scripts import in_script
 from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
@@ -30,6 +31,8 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
     known = subject.type.attributes.get(name)
     if known is not None and known.value in _EXPRESSIONS:
         return in_expression(request, subject, name, span.start)
+    if (script := in_script(request, subject, name, span)) is not None:
+        return script
     if request.file.grammar.title == "BehaviorTree.CPP XML" and (ports := port_values(request, subject, name)):
         return span, ports
     if known is None:

@@ -359,9 +359,10 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
             shown = "" if value is None else value.text if isinstance(value, Constant) else f"{{{value.variable}}}"
             bound.setdefault(shown, []).append(node_id(automaton))
     found = [
-        f"{name(value) if value else 'not set'} in {names(nodes, 3)}" for value, nodes in list(bound.items())[:_MOST]
+        f"{name(value) if value else 'not set'} in {names(nodes, 3)}"
+        for value, nodes in list(bound.items())[:_MAX_VALUES]
     ]
-    rest = f" and {len(bound) - _MOST} other values" if len(bound) > _MOST else ""
+    rest = f" and {len(bound) - _MAX_VALUES} other values" if len(bound) > _MAX_VALUES else ""
     return paragraphs(
         code(f"{declared.direction} {symbol.name}{type_}"),
         _remark(analysis, symbol.path, declared.element),
@@ -372,7 +373,7 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
     )
 
 
-_MOST = 5
+_MAX_VALUES = 5
 
 
 def node_id(automaton: Automaton) -> str:

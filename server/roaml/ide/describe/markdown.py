@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_MOST = 6
+_MAX_NAMES = 6
 """More names than this are counted, not listed."""
 
 _TICKS = re.compile(r"`+")
@@ -46,7 +46,7 @@ def name(text: str) -> str:
     return f"{ticks}{space}{text}{space}{ticks}"
 
 
-def names(found: Iterable[str], most: int = _MOST) -> str:
+def names(found: Iterable[str], most: int = _MAX_NAMES) -> str:
     """Names with commas, each once; the last of very many are only counted. "" if there are none."""
     different = list(dict.fromkeys(found))
     shown = different[:most] if len(different) > most + 1 else different

@@ -254,11 +254,11 @@ def tree_node(analysis: Analysis, symbol: Symbol) -> str:
 def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
     """What a node of a file becomes where its tree is executed."""
     told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
-    rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
-    return paragraphs(*told[:_MOST], rest)
+    rest = f"… and {len(told) - _MAX_USES} more times" if len(told) > _MAX_USES else ""
+    return paragraphs(*told[:_MAX_USES], rest)
 
 
-_MOST = 3
+_MAX_USES = 3
 
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
