@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
-from roaml.ide.names.lookup import Use, thing
+from roaml.ide.names.lookup import SymbolUse, thing
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
 from roaml.ide.system_names import MAX_NAMES, grouped
@@ -123,13 +123,13 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     return Counted(_count(places, "use"), _locations(places))
 
 
-def _within(analysis: Analysis, found: Iterable[Use], system: str | None) -> list[Use]:
+def _within(analysis: Analysis, found: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
     """The uses in the files of a system; all if there is none."""
     files = frozenset(analysis.files_of(system)) if system else None
     return [use for use in found if files is None or use.path in files]
 
 
-def _event(analysis: Analysis, found: Iterable[Use]) -> Counted:
+def _event(analysis: Analysis, found: Iterable[SymbolUse]) -> Counted:
     in_machines = [use for use in found if analysis.machine(use.path) is not None]
     sent = [use for use in in_machines if use.occurrence.access is Access.WRITE]
     received = [use for use in in_machines if use.occurrence.access is Access.READ]
@@ -178,5 +178,5 @@ def _times(found: Iterable[object]) -> str:
     return {0: "nowhere", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
-def _locations(found: Iterable[Use]) -> tuple[Location, ...]:
+def _locations(found: Iterable[SymbolUse]) -> tuple[Location, ...]:
     return tuple(sorted(dict.fromkeys(use.location for use in found)))

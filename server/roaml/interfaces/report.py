@@ -13,7 +13,7 @@ MAX_FINDINGS = 100
 """A file with more mistakes than this is hardly an interface definition; it is not read further."""
 
 
-class Report:
+class FileFindings:
     """The findings of one file so far."""
 
     def __init__(self) -> None:

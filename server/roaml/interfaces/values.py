@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from roaml.interfaces.report import Report, shorten
+from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.types import FLOATS, INTEGER_RANGES, STRINGS, ArrayKind, FieldType, Scalar, Value
 from roaml.text import Span
 
@@ -47,7 +47,7 @@ def value_end(text: str, start: int, line_end: int) -> int:
     return start + len(text[start:end].rstrip())
 
 
-def parse_value(text: str, span: Span, type_: FieldType, report: Report) -> Value | None:
+def parse_value(text: str, span: Span, type_: FieldType, report: FileFindings) -> Value | None:
     """The value in `text[span]`, or None with a finding. An array gives a tuple.
 
     Of a nested message nothing can be written down, so its values are mistakes too.
@@ -65,7 +65,7 @@ def parse_value(text: str, span: Span, type_: FieldType, report: Report) -> Valu
     return parse_scalar(text, span, type_, report)
 
 
-def parse_scalar(text: str, span: Span, type_: FieldType, report: Report) -> Scalar | None:
+def parse_scalar(text: str, span: Span, type_: FieldType, report: FileFindings) -> Scalar | None:
     """The single value in `text[span]`, of a primitive type that is no array, or None with a finding."""
     written = text[span.start : span.end]
     if type_.name in STRINGS:
@@ -83,7 +83,7 @@ def parse_scalar(text: str, span: Span, type_: FieldType, report: Report) -> Sca
     return value
 
 
-def _array(text: str, span: Span, type_: FieldType, report: Report) -> tuple[Scalar, ...] | None:
+def _array(text: str, span: Span, type_: FieldType, report: FileFindings) -> tuple[Scalar, ...] | None:
     opening = _LIST.match(text, span.start, span.end)
     if not opening:
         report.add(span, f"the default of an array is a list in brackets: `[{shorten(text[span.start : span.end])}]`")
@@ -126,7 +126,7 @@ def _element_spans(text: str, start: int, end: int) -> Iterator[Span]:
         at = skip_blanks(text, comma + 1, end)
 
 
-def _integer(written: str, span: Span, type_name: str, report: Report) -> int | None:
+def _integer(written: str, span: Span, type_name: str, report: FileFindings) -> int | None:
     low, high = INTEGER_RANGES[type_name]
     if type_name == "char" and len(written) == 3 and written[0] == written[2] == "'" and ord(written[1]) <= high:
         code = str(ord(written[1]))
@@ -145,7 +145,7 @@ def _integer(written: str, span: Span, type_name: str, report: Report) -> int | 
     return value
 
 
-def _float(written: str, span: Span, type_name: str, report: Report) -> float | None:
+def _float(written: str, span: Span, type_name: str, report: FileFindings) -> float | None:
     if not _FLOAT.fullmatch(written):
         report.add(span, f"`{shorten(written)}` is no number; write for example `1.5`, `-2` or `1e-3`")
         return None
@@ -156,7 +156,7 @@ def _float(written: str, span: Span, type_name: str, report: Report) -> float | 
     return value
 
 
-def _string(written: str, span: Span, type_: FieldType, report: Report) -> str | None:
+def _string(written: str, span: Span, type_: FieldType, report: FileFindings) -> str | None:
     value = written
     if written.startswith(('"', "'")):
         quoted = _STRING.match(written)

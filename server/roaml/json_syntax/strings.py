@@ -30,19 +30,19 @@ _SPECIAL = re.compile(
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
-class Mistake(NamedTuple):
+class StringMistake(NamedTuple):
     """Something that may not stand in a string, and what to write instead."""
 
     message: str
     edit: TextEdit
 
 
-def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
+def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
     """What `raw`, the text between the quotes, means, and what is wrong in it. `start` is its offset in the source.
 
     A wrong escape keeps the character behind the backslash; a control character stays as it is.
     """
-    mistakes: list[Mistake] = []
+    mistakes: list[StringMistake] = []
 
     def resolve(match: re.Match[str]) -> str:
         high, low, code, simple, wrong, control = match.groups()
@@ -55,14 +55,16 @@ def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
         span = Span(start + match.start(), start + match.end())
         if control:
             written = quote(control)[1:-1]
-            mistakes.append(Mistake(f"inside a string this character is written `{written}`", TextEdit(span, written)))
+            mistakes.append(
+                StringMistake(f"inside a string this character is written `{written}`", TextEdit(span, written))
+            )
             return control
         message = (
             "`\\u` is followed by four hexadecimal digits"
             if wrong == "\\u"
             else f"JSON has no escape `{wrong}`; a backslash itself is written `\\\\`"
         )
-        mistakes.append(Mistake(message, TextEdit(span, "\\" + wrong)))
+        mistakes.append(StringMistake(message, TextEdit(span, "\\" + wrong)))
         return wrong[1:]
 
     return _SPECIAL.sub(resolve, raw), mistakes

@@ -95,7 +95,7 @@ class AttributeType:
 
 
 @dataclass(frozen=True, slots=True)
-class Occurrence:
+class Multiplicity:
     """How often a child may stand in its parent."""
 
     least: int
@@ -131,9 +131,9 @@ class ElementType:
     name: str
     documentation: str
     attributes: dict[str, AttributeType]
-    children: dict[str, Occurrence]
+    children: dict[str, Multiplicity]
     local: dict[str, ElementType]
-    any_child: Occurrence | None = None
+    any_child: Multiplicity | None = None
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
@@ -239,9 +239,9 @@ class _Shape:
     """What is collected about one complex type."""
 
     attributes: dict[str, AttributeType] = field(default_factory=dict)
-    children: dict[str, Occurrence] = field(default_factory=dict)
+    children: dict[str, Multiplicity] = field(default_factory=dict)
     local: dict[str, ElementType] = field(default_factory=dict)
-    any_child: Occurrence | None = None
+    any_child: Multiplicity | None = None
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
@@ -270,7 +270,7 @@ class _Reader:
         if complex_type is None and ("complexType", node.get("type")) in self.named:
             complex_type = self.named["complexType", node.get("type")]
         if complex_type is not None:
-            self.collect(complex_type, shape, Occurrence(1, 1))
+            self.collect(complex_type, shape, Multiplicity(1, 1))
         roles = dict(_roles(node))
         ignored, deprecated = roles.get("ignored"), roles.get("deprecated")
         tree_node = roles.get("node", {})
@@ -298,7 +298,7 @@ class _Reader:
             translated=tree_node.get("translated") != "false",
         )
 
-    def collect(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+    def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
         """Add what `node`, a part of a complex type that may stand `occurs` times, contributes to `shape`."""
         if node.get("mixed") == "true":
             shape.text = True
@@ -309,7 +309,7 @@ class _Reader:
             if kind in ("sequence", "choice", "all"):
                 inner = _times(part, occurs)
                 if kind == "choice" and len([p for p in part if isinstance(p.tag, str)]) > 1:
-                    inner = Occurrence(0, inner.most)
+                    inner = Multiplicity(0, inner.most)
                 self.collect(part, shape, inner)
             elif kind == "group":
                 self.collect(self.named["group", part.get("ref")], shape, _times(part, occurs))
@@ -330,13 +330,13 @@ class _Reader:
             elif kind == "anyAttribute" and part.get("namespace") is None:
                 shape.any_attribute = True
 
-    def child(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+    def child(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
         name = node.get("ref") or node.get("name")
         if node.get("name"):
             shape.local[name] = self.element(node)
         if name in shape.children:
             before = shape.children[name]
-            occurs = Occurrence(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
+            occurs = Multiplicity(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
         shape.children[name] = occurs
 
     def attribute(self, node: Any) -> AttributeType:
@@ -407,9 +407,9 @@ def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:
     return tuple(map(SymbolKind, role["symbol"].split())) if role else ()
 
 
-def _times(node: Any, outer: Occurrence) -> Occurrence:
+def _times(node: Any, outer: Multiplicity) -> Multiplicity:
     most = node.get("maxOccurs", "1")
-    return Occurrence(
+    return Multiplicity(
         int(node.get("minOccurs", "1")) * outer.least,
         min(UNBOUNDED, outer.most * (UNBOUNDED if most == "unbounded" else int(most))),
     )

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 
 from lxml import etree
 
-from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence, SimpleType
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
 from roaml.text import Span
@@ -169,7 +169,7 @@ def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
 # ---------------------------------------------------------------- by the tables
 
 
-_ANYTHING = ElementType("", "", {}, {}, {}, Occurrence(0, UNBOUNDED), any_attribute=True, text=True)
+_ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attribute=True, text=True)
 """An element that the grammar does not know, where any may stand: those below it may be known."""
 
 

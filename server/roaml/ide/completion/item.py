@@ -44,7 +44,7 @@ class Rank(enum.IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class CompletionItem:
     """One suggestion.
 
     Attributes:
@@ -74,7 +74,7 @@ class Completions:
     """`span` is what the items replace. `incomplete` tells that there are more: ask again after more has been typed."""
 
     span: Span
-    items: tuple[Item, ...]
+    items: tuple[CompletionItem, ...]
     incomplete: bool = False
 
 
