@@ -19,7 +19,7 @@ from roaml.text import Location
 def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     """The properties in the files that a system lists, in their order."""
     files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.PROPERTIES and f.usable)
-    return tuple(each for file in files for each in analysis.properties(file)[0])
+    return tuple(declared for file in files for declared in analysis.properties(file)[0])
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:

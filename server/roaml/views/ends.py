@@ -26,9 +26,9 @@ from roaml.smc.end import End
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
     """(automaton, location) -> what it means that a trace ends there; empty for a model that is no translation."""
-    found = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
+    marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
     is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
-    return found if is_translated else {}
+    return marks if is_translated else {}
 
 
 def is_event(automaton: Automaton) -> bool:
