@@ -37,6 +37,8 @@ from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION,
 from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
+from roaml.model.property_file import PropertyFile, build_property_file
+from roaml.model.property_links import LinkedFile, link
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
@@ -204,6 +206,32 @@ class Analysis:
 
     def tree(self, path: str) -> TreeFile | None:
         return self._of_document("tree", path, build_tree_file)
+
+    def property_file(self, path: str) -> PropertyFile | None:
+        return self._of_document("property file", path, build_property_file)
+
+    def linked_properties(self, path: str, system: str) -> LinkedFile | None:
+        """The properties in an XML file, as a part of a system."""
+        file, linked = self.property_file(path), self.system(system)
+        if file is None or linked is None:
+            return None
+        taken = tuple(self.names_before(path, system))
+        variables = self.globals(system)
+        compute = functools.partial(link, file, linked, self.interface, variables, dict(taken), path)
+        return self.memo.get("linked properties", (path, system), (file, linked, taken), compute)
+
+    def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
+        """The names of the properties in the files that a system lists before a file, each with the file's name."""
+        for listed in self.listed(system):
+            if listed.path == path:
+                return
+            if not listed.usable:
+                continue
+            file = f"`{listed.input.src.value}`" if listed.input.src else "another file"
+            if listed.wanted is FileKind.PROPERTIES:
+                yield from ((property_.name, file) for property_ in self.properties(listed.path)[0])
+            elif listed.wanted is FileKind.XML_PROPERTIES and (before := self.property_file(listed.path)) is not None:
+                yield from ((written.id.value, file) for written in before.properties if written.id is not None)
 
     def system_file(self, path: str) -> SystemFile | None:
         return self._of_document("system file", path, lambda document: build_system_file(document, self.overrides))

@@ -239,6 +239,10 @@ class _Run:
             case FileKind.TREE:
                 forest = None if self.system_path else self.analysis.forest(self.path)
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()), forest)
+            case FileKind.PROPERTIES if self.system_path:
+                return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
+            case FileKind.XML_PROPERTIES if self.system_path:
+                return (*parts, self.analysis.linked_properties(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
@@ -282,6 +286,11 @@ class _Run:
                 case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                     structs = self._structs_context()
                     return [(r, functools.partial(r.structs, structs)) for r in RULES if r.structs]
+                case FileKind.XML_PROPERTIES:
+                    linked = self.analysis.linked_properties(self.path, self.system_path) if self.system_path else None
+                    return [
+                        (r, functools.partial(r.xml_properties, linked)) for r in RULES if r.xml_properties and linked
+                    ]
                 case FileKind.PROPERTIES:
                     properties = self._properties_context()
                     return [
@@ -458,7 +467,8 @@ class _Run:
             return None
         properties, _ = self.analysis.properties(self.path)
         variables = self.analysis.globals(self.system_path) if self.system_path else None
-        return PropertiesContext(self.source, json[0], properties, self.system, variables)
+        taken = dict(self.analysis.names_before(self.path, self.system_path)) if self.system_path else {}
+        return PropertiesContext(self.source, json[0], properties, self.system, variables, taken)
 
 
 def internal_error(where: str, error: Exception) -> Finding:
