@@ -13,7 +13,7 @@ from roaml.smc.batch import TraceProblem
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
 
-MOST_CHOICES = 1 << 20
+MAX_CHOICES = 1 << 20
 """Combinations of edges and destinations in one state: some seconds."""
 
 
@@ -56,7 +56,7 @@ class Explorer:
             k edges on one action there are kⁿ of them.
     """
 
-    def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES) -> None:
+    def __init__(self, compiled: Compiled, limit: int = MAX_CHOICES) -> None:
         self._limit = limit
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._instances = compiled.program.instances

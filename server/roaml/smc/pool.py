@@ -20,11 +20,11 @@ from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, star
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
-PATIENCE = 0.4
+SOLO_TIME_S = 0.4
 """Seconds that are worked alone before workers are started: most questions are answered by then."""
-ATTEMPTS = 5
+MAX_ATTEMPTS = 5
 """How often workers may be lost without any progress in between."""
-_TICK = 0.1
+_TICK_S = 0.1
 
 Pulse: TypeAlias = Callable[[int, int], None]
 
@@ -59,7 +59,7 @@ class Pool:
     To be used in a `with` statement; leaving it ends the workers.
     """
 
-    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = PATIENCE) -> None:
+    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = SOLO_TIME_S) -> None:
         self.jobs = jobs
         self.executor = executor
         self.is_own = executor is None
@@ -108,7 +108,7 @@ class Pool:
                     if self.is_own and not isinstance(error, BrokenExecutor):
                         raise
                     lost += 1
-                    if lost > ATTEMPTS:
+                    if lost > MAX_ATTEMPTS:
                         raise WorkersLostError(f"workers are lost again and again: {error}") from error
                     if self.is_own:
                         self._stop()
@@ -141,7 +141,7 @@ class Pool:
             raise BrokenExecutor("a worker has ended")
         while True:
             try:
-                return future.result(timeout=_TICK)
+                return future.result(timeout=_TICK_S)
             except (FutureTimeoutError, TimeoutError):
                 if future.done():
                     raise

@@ -32,7 +32,7 @@ the error that is allowed. The test computes that the whole then keeps what it p
 LEAST_EPSILON = 1e-9
 """An interval narrower than that needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
-KEPT = 1000
+MAX_KEPT_TRACES = 1000
 """So many trace numbers of each verdict are remembered."""
 
 
@@ -302,7 +302,7 @@ def _add(tally: Tally, outcome: BatchOutcome, question: Question, options: Optio
         elif verdict == UNKNOWN:
             tally.undecided += 1
         examples = tally.examples[verdict]
-        if len(examples) < KEPT:
+        if len(examples) < MAX_KEPT_TRACES:
             examples.append(Seen(trace, steps))
         if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
             tally.shortest[verdict] = Seen(trace, steps)

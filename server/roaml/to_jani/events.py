@@ -46,13 +46,13 @@ class EventUsage:
 def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
     """All events by name, in the order of their first occurrence."""
     table = _occurrences(behaviors)
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ROUNDS):
         if not _infer_params(behaviors, table):
             break
     return table
 
 
-_ROUNDS = 4
+_MAX_ROUNDS = 4
 """How often types are passed on from the data of one event to the parameters of another."""
 
 

@@ -44,8 +44,8 @@ from roaml.model.value_types import STATUSES, find_handle
 from roaml.roles import ProtocolPart
 from roaml.text import Span
 
-MOST_CONFIGURATIONS = 4000
-MOST_KNOWN = 12
+MAX_CONFIGURATIONS = 4000
+MAX_KNOWLEDGE_VARIANTS = 12
 """Of configurations that differ in what is known only."""
 
 NOWHERE = "?"
@@ -474,11 +474,11 @@ class _Explorer:
             return known
         place = (configuration.state, configuration.phases)
         here = self.known_here.setdefault(place, set())
-        if len(here) >= MOST_KNOWN and configuration.knowledge != NOTHING:
+        if len(here) >= MAX_KNOWLEDGE_VARIANTS and configuration.knowledge != NOTHING:
             self.approximate = True
             return self._number(replace(configuration, knowledge=NOTHING))
         here.add(configuration.knowledge)
-        if len(self.numbers) >= MOST_CONFIGURATIONS:
+        if len(self.numbers) >= MAX_CONFIGURATIONS:
             raise _TooLargeError
         self.numbers[configuration] = len(self.numbers)
         return self.numbers[configuration]
@@ -663,7 +663,7 @@ class _Explorer:
         for body in bodies:
             for statement in self._effective(body):
                 paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
-                if len(paths) > MOST_CONFIGURATIONS:
+                if len(paths) > MAX_CONFIGURATIONS:
                     raise _TooLargeError
         return paths
 

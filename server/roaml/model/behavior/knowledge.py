@@ -34,7 +34,7 @@ from roaml.expr.tree import (
 
 Constant: TypeAlias = bool | int | float | str
 
-MOST_WAYS = 16
+MAX_WAYS = 16
 """Into how many conjunctions a condition is taken apart; behind that nothing is learned from it."""
 
 
@@ -188,7 +188,7 @@ class ConditionFacts:
     def assume(self, knowledge: Knowledge, condition: Expr, holds: bool = True) -> tuple[Knowledge, ...]:
         """What is known where `condition` holds, or does not: one of several conjunctions, none if that cannot be."""
         ways = tuple(dict.fromkeys(self._assume(knowledge, condition, holds)))
-        return ways if len(ways) <= MOST_WAYS else (knowledge,)
+        return ways if len(ways) <= MAX_WAYS else (knowledge,)
 
     def _assume(self, knowledge: Knowledge, condition: Expr, holds: bool) -> Iterator[Knowledge]:
         match condition:

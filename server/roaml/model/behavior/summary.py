@@ -21,8 +21,8 @@ AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
 """What comes before the first event of a machine."""
 
-MOST_ALTERNATIVES = 6
-MOST_EVENTS = 4
+MAX_ALTERNATIVES = 6
+MAX_EVENTS = 4
 REPEATED = (
     ProtocolPart.MESSAGE,
     ProtocolPart.EVENT,
@@ -210,8 +210,8 @@ def _least(masks: Iterable[int]) -> tuple[int, ...]:
     """Without those that contain another one; of many, the smallest."""
     found: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
-        if mask.bit_count() > MOST_EVENTS:
+        if mask.bit_count() > MAX_EVENTS:
             break
         if not any(known & mask == known for known in found):
             found.append(mask)
-    return tuple(found[:MOST_ALTERNATIVES])
+    return tuple(found[:MAX_ALTERNATIVES])
