@@ -13,7 +13,7 @@ from typing import Any
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
 from roaml.scxml.names import open_variable
-from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
+from roaml.smc.explore import MAX_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
 from roaml.smc.goal import CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.verification.expectations import Expectation, Verdict
@@ -54,7 +54,7 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
         raise ExactError(message) from None
     except TooManyChoicesError:
         raise ExactError(
-            f"in one state there are more than {MOST_CHOICES:,} combinations of edges; leave --exact out to estimate"
+            f"in one state there are more than {MAX_CHOICES:,} combinations of edges; leave --exact out to estimate"
         ) from None
     except StateFaultError as error:
         raise checker.fault(error.problem) from None
