@@ -91,7 +91,7 @@ def test_halt_in_one_state() -> None:
 
 
 def test_halt_in_all_states() -> None:
-    title = "Add `<bt_halt>` to every state that takes ticks"
+    title = "Add `<bt_halt>` to every state with `<bt_tick>`"
     every = PLUGIN.replace("‸", "").replace("</bt_tick>", "</bt_tick>" + HALT)
     assert done(PLUGIN, title) == {"machine.ascxml": every}
     assert titles(every.replace("<bt_tick", "‸<bt_tick", 1)) == []

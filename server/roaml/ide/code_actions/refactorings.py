@@ -53,7 +53,7 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
     if here:
         yield Action("Add `<bt_halt>` to this state", REWRITE, known(_edited(analysis, path, *here)))
     if here and len(everywhere) > 1:
-        title = "Add `<bt_halt>` to every state that takes ticks"
+        title = "Add `<bt_halt>` to every state with `<bt_tick>`"
         yield Action(title, REWRITE, known(_edited(analysis, path, *everywhere)))
 
 

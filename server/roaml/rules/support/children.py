@@ -9,5 +9,5 @@ from roaml.model.tree import SUBTREES
 
 
 def has_counted_children(type_: ElementType) -> bool:
-    """Whether this rule says what is wrong with the children of an element, so that others keep quiet."""
+    """Whether child-count reports the children of an element, so that other rules do not."""
     return bool(type_.node) and (type_.name in builtin_plugins() or type_.name in SUBTREES)

@@ -26,5 +26,5 @@ def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
     if not isinstance(found, InterfaceType):
         return None
     part = dict(found.parts).get(SECTIONS.get(statement.type.sends, statement.type.sends))
-    # Some elements send no fields at all: goal answers, and results that are no success.
+    # Some elements send no fields at all: decisions on goals, and results other than success.
     return part if "field" in statement.type.children else Struct(found.name, ())
