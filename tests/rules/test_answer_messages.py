@@ -55,7 +55,9 @@ def test_a_halt_names_the_plugin_that_runs(tmp_path: Path) -> None:
 def test_the_variable_with_the_new_goal_is_named(tmp_path: Path) -> None:
     title = "the running goal is rejected instead of the new one"
     [(message, _)] = said(tmp_path, "paths_goal", title, "wrong-goal-id")
-    assert message.endswith("holds the id of an earlier goal, not of the one that has just arrived; use `other` as `goal_id`")
+    assert message.endswith(
+        "holds the id of an earlier goal, not of the one that has just arrived; use `other` as `goal_id`"
+    )
 
 
 def test_one_mistake_with_an_id_gives_one_advice(tmp_path: Path) -> None:
