@@ -19,7 +19,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if type_ is not None and type_.value == repeated.used_by and repeated.package not in told:
                 told.add(repeated.package)
                 message = f"there are two copies of the package `{repeated.package}`, and `{repeated.name}` differs: "
-                message += f"{_folder(repeated, repeated.path)} is used, {_folder(repeated, repeated.other)} is ignored; "
+                message += (
+                    f"{_folder(repeated, repeated.path)} is used, {_folder(repeated, repeated.other)} is ignored; "
+                )
                 message += "remove one of them, or exclude it from the folders that are searched for packages"
                 yield RULE.at(type_.span, message)
 

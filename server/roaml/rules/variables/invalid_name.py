@@ -28,7 +28,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if statement.event and not EVENT.match(statement.event.value):
                     yield RULE.at(
                         statement.event.span,
-                        f"`{statement.event.value}` cannot name an event: it begins with a letter or `_` and holds "
+                        f"`{statement.event.value}` is not a valid event name: it must begin with a letter or `_` "
+                        "and contain only "
                         "letters, digits, `.`, `-` and `_`",
                     )
                 for param in statement.params:
@@ -42,18 +43,18 @@ def _variable(name: Name) -> Iterator[Finding]:
     if reason := variable_problem(name.value):
         yield RULE.at(name.span, reason)
     elif name.value in EVENT_VARIABLES:
-        message = f"`{name.value}` is also what received data are called: where these are known, the variable is not"
+        message = f"`{name.value}` is also the name of received data, which hides the variable where it is available"
         yield RULE.at(name.span, message, severity=Severity.WARNING)
 
 
 def _parameter(name: Name) -> Iterator[Finding]:
     if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
-        message = f"`{name.value}` cannot name a parameter: letters, digits and `_`, the last no `_`"
+        message = f"`{name.value}` is not a valid parameter name: only letters, digits and `_`, and no `_` at the end"
         yield RULE.at(name.span, message)
 
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
-    """Names that become parts of event names."""
+    """Check names that become parts of event names."""
     what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
     name = declaration.handle if declaration.kind == "timer" else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
@@ -61,7 +62,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
-    """Ports give such names, too. An error in a node of several instances is one error."""
+    """Check the names that ports pass. An error in a node with several instances is reported once."""
     found: dict[Finding, None] = {}
     for node, automaton, use in named_by_ports(context):
         value = automaton.port(use.port)
@@ -76,11 +77,13 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
 
 
 def _with_spaces(name: str, what: str) -> str:
-    return f"`{name}` cannot name {_a(what)}: it has spaces"
+    return f"`{name}` is not a valid name of {_a(what)}: it contains spaces"
 
 
 def _a(what: str) -> str:
     return f"{'an' if what == 'action' else 'a'} {what}"
 
 
-RULE = Rule("invalid-name", Severity.ERROR, "A name cannot be used for what it names.", machine=check, tree=check_tree)
+RULE = Rule(
+    "invalid-name", Severity.ERROR, "A name is not valid for the thing that it names.", machine=check, tree=check_tree
+)
