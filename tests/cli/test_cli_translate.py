@@ -15,7 +15,7 @@ import pytest
 from command import Command
 from lxml import etree
 
-import as2fm_lsp.cli.progress
+import as2fm_lsp.cli.status_line
 import as2fm_lsp.cli.translate
 from roaml import api
 from roaml.jani.reader import read_model
@@ -320,15 +320,15 @@ def test_same_bytes_whatever_the_hashes(robot: Path) -> None:
 
 
 def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stages are told once patience is over, and wiped away at the end; a pipe is told nothing."""
+    """The stages are told once the delay is over, and wiped away at the end; a pipe is told nothing."""
     leader, follower = pty.openpty()
-    monkeypatch.setattr(as2fm_lsp.cli.progress, "PATIENCE", 0.0)
+    monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
     with os.fdopen(follower, "w") as terminal:
         monkeypatch.setattr(sys, "stderr", terminal)
-        with as2fm_lsp.cli.progress.Progress() as progress:
-            progress.stage("reading")
-            progress.shown.wait(10)
-            progress.stage("translating")
+        with as2fm_lsp.cli.status_line.StatusLine() as status:
+            status.stage("reading")
+            status.shown.wait(10)
+            status.stage("translating")
     said = b""
     with contextlib.suppress(OSError):  # as the end of what a terminal holds is told
         while chunk := os.read(leader, 1000):
@@ -339,7 +339,7 @@ def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_progress_elsewhere(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(as2fm_lsp.cli.progress, "PATIENCE", 0.0)
-    with as2fm_lsp.cli.progress.Progress() as progress:
-        progress.stage("reading")
+    monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
+    with as2fm_lsp.cli.status_line.StatusLine() as status:
+        status.stage("reading")
     assert capsys.readouterr().err == ""

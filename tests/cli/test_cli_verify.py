@@ -25,7 +25,7 @@ from command import Command
 from smc_models import Json, at, automaton, document, edge, op, probability, variable, way
 
 import as2fm_lsp.verification.traces
-from as2fm_lsp.verification.bar import line, search_line
+from as2fm_lsp.cli.bar import line, search_line
 from as2fm_lsp.verification.expectations import parse
 from patience import PATIENCE
 from roaml import api
@@ -204,6 +204,22 @@ def test_writes_traces(command: Command, robot: Path) -> None:
         values.update({c["variable"]: c["value"] for c in step["changes"] if "automaton" not in c})
     last = table[-1]
     assert {name: str(int(v)) for name, v in values.items() if isinstance(v, (bool, int))}.items() <= last.items()
+
+
+def test_any_name_is_a_column(command: Command, tmp_path: Path) -> None:
+    """Line ends, quotes and separators in names of variables do not break the table."""
+    names = ["a,b", 'c"d', "e\rf", "g\nh", "i"]
+    goal = op("F", op("=", "i", 1))
+    steps = [edge("s", way("e", **dict.fromkeys(names, 1)))]
+    variables = [variable(name) for name in names]
+    model = document(automaton("a", "s e", steps), variables=variables, properties={"done": probability(goal)})
+    assert command("verify", write(tmp_path, model), "--traces", "out", "--traces-limit", 1).status == 0
+    (path,) = tmp_path.glob("out/*.csv")
+    with path.open(encoding="utf-8", newline="") as file:
+        header, first, last = csv.reader(file)
+    assert header == ["step", "end", *names]
+    assert first == ["0", "", *["0"] * 5]
+    assert last[2:] == ["1"] * 5
 
 
 def test_a_full_disk_leaves_whole_traces(command: Command, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:

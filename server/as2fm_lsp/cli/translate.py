@@ -15,7 +15,7 @@ from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text
-from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
 from as2fm_lsp.write import write_file
@@ -55,19 +55,19 @@ def run(arguments: Sequence[str]) -> int:
     settings = replace(settings, ament_prefixes=ament_prefixes())
     if output == STANDARD_OUTPUT and options.map == STANDARD_OUTPUT:
         return _fail("the model and the map cannot both go to standard output")
-    with Progress() as progress:
+    with StatusLine() as status:
         try:
-            progress.stage("reading")
+            status.stage("reading")
             system = api.load(options.main, options.ros_path, settings, overrides=overrides)
             for path in (output, options.map):
                 if path is not None:
                     keep_off(path, system)
-            progress.stage("translating")
+            status.stage("translating")
             network = api.to_scxml(system)
             model, left_out = without_bounded(api.to_jani(system, options.property or None))
             is_refused = bool(left_out and options.property)
             if not is_refused:
-                progress.stage("writing")
+                status.stage("writing")
                 _write(options, output, system, network, model)
         except (api.PathError, api.PropertyError, OutputError) as error:
             return _fail(str(error))

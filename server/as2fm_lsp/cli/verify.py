@@ -16,14 +16,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.bar import Bar
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import complain, flush, print_text
-from as2fm_lsp.cli.progress import Progress
+from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck
-from as2fm_lsp.verification.bar import Bar
 from as2fm_lsp.verification.choices import asks_for_minimum, under_all_schedulers
 from as2fm_lsp.verification.expectations import Expectation, RangeError, Verdict, check_range, judge, parse
 from as2fm_lsp.verification.nodes import explained
@@ -100,8 +100,8 @@ def _run(options: argparse.Namespace) -> int:
     settings = replace(settings_found, ament_prefixes=ament_prefixes())
     overrides = Overrides(options.max_time, None)
     try:
-        with Progress() as progress:
-            progress.stage("reading and translating")
+        with StatusLine() as status:
+            status.stage("reading and translating")
             subject = load(options.main, options.ros_path, settings, overrides, options.constant)
             names = options.property or None
             if names is not None:
@@ -112,7 +112,7 @@ def _run(options: argparse.Namespace) -> int:
             for each in expectations:
                 if each.name not in (*known, STUCK_PROPERTY):
                     raise api.PropertyError(f"there is no property {each.name}, of which something is expected")
-            progress.stage("compiling")
+            status.stage("compiling")
             checker = api.checker(subject.model, names)
     except api.ModelError as error:
         return _errors(options, error.result.diagnostics, error.result.source, error.result.files)

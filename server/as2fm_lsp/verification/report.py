@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import json
 import math
-import re
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from as2fm_lsp import junit
+from as2fm_lsp.junit import Case, Outcome
 from as2fm_lsp.verification import choices, ends
 from as2fm_lsp.verification.expectations import Verdict
 from as2fm_lsp.verification.refusal import Refusal
@@ -18,8 +18,6 @@ from as2fm_lsp.verification.stuck import NOT_STUCK, PROBABILITY, WARNING, Look, 
 from as2fm_lsp.verification.stuck import as_text as stuck_text
 from roaml.smc.choices import Choices
 from roaml.smc.run import Answer, ratio_of
-
-_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,43 +288,21 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Loo
     """A test for each property; it fails if an expectation is not met, and is an error if there is no answer. One more
     tells whether the system gets stuck: it fails if that is an error."""
     level = WARNING if look is None else look.level
-    errors = sum(result.refusal is not None for result in results)
-    failures = sum(not result.is_met for result in results) - errors + (look is not None and not look.is_met)
-    counts = {
-        "tests": str(len(results) + (look is not None)),
-        "failures": str(failures),
-        "errors": str(errors),
-    }
-    suites = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
-    suite = ET.SubElement(suites, "testsuite", {"name": "verify", **counts})
-    for result in results:
-        names = {"classname": _clean(title), "name": _clean(result.name), "time": f"{result.seconds:.3f}"}
-        case = ET.SubElement(suite, "testcase", names)
-        text = _clean(one_as_text(result, place_of, level))
-        uniform = [verdict for verdict in result.verdicts if verdict.is_uniform]
-        about = warning(result)
-        if uniform or about:
-            properties = ET.SubElement(case, "properties")
-            for verdict in uniform:
-                ET.SubElement(
-                    properties, "property", {"name": f"expected {verdict.expectation.text}", "value": verdict.text}
-                )
-            if about:
-                ET.SubElement(properties, "property", {"name": "warning", "value": _clean(about)})
-        if result.refusal is not None:
-            ET.SubElement(case, "error", {"message": result.refusal.message, "type": result.refusal.code}).text = text
-        elif result.is_met:
-            ET.SubElement(case, "system-out").text = text
-        else:
-            missed = [v.expectation.text for v in result.verdicts if not v.is_met]
-            ET.SubElement(case, "failure", {"message": f"expected {' and '.join(missed)}"}).text = text
+    cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if look is not None:
-        case = ET.SubElement(suite, "testcase", {"classname": _clean(title), "name": NOT_STUCK})
-        output = ET.SubElement(case, "system-out") if look.is_met else ET.SubElement(case, "failure", message="stuck")
-        output.text = _clean(stuck_text(look, place_of))
-    ET.indent(suites)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
+        outcome = Outcome.PASSED if look.is_met else Outcome.FAILED
+        cases.append(Case(title, NOT_STUCK, outcome, stuck_text(look, place_of), "" if look.is_met else "stuck"))
+    return junit.render("verify", cases)
 
 
-def _clean(text: str) -> str:
-    return _FORBIDDEN.sub("\ufffd", text)
+def _case(result: Result, title: str, text: str) -> Case:
+    properties = [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
+    if about := warning(result):
+        properties.append(("warning", about))
+    case = Case(title, result.name, Outcome.PASSED, text, "", "", result.seconds, tuple(properties))
+    if result.refusal is not None:
+        return replace(case, outcome=Outcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+    if result.is_met:
+        return case
+    missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]
+    return replace(case, outcome=Outcome.FAILED, message=f"expected {' and '.join(missed)}")

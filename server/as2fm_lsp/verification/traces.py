@@ -8,10 +8,11 @@ elements; true is 1, false 0.
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from as2fm_lsp.verification.stuck import time_of
 from as2fm_lsp.verification.subject import Subject
@@ -57,21 +58,19 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
     places = None if clock is None else (names.index(clock[0]), names.index(clock[1]))
 
     def row(number: int, values: list[Plain], end: str = "") -> str:
-        cells = [str(number)]
+        cells: list[int | float | str] = [number]
         if places is not None:
             seconds, nanoseconds = values[places[0]], values[places[1]]
             assert not isinstance(seconds, list)
             assert not isinstance(nanoseconds, list)
-            cells.append(_cell(seconds + nanoseconds / 1e9))
-        cells.append(end)
-        cells += (_cell(each) for value in values for each in _cells(value))
-        return ",".join(cells) + "\n"
+            cells.append(seconds + nanoseconds / 1e9)
+        return csv_line([*cells, end, *(cell for value in values for cell in _cells(value))])
 
     start = recorder.initial(storages)
     header = ["step", *(() if places is None else ("time",)), "end"]
     for name, value in zip(names, start, strict=True):
-        header += (_quoted(name + suffix) for suffix in _suffixes(value))
-    yield ",".join(header) + "\n"
+        header += (name + suffix for suffix in _suffixes(value))
+    yield csv_line(header)
     recording = Recording(trace)
     number, values = 0, start
     for step in recorder.walk(recording):
@@ -147,25 +146,33 @@ def _json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _cells(value: Plain) -> Iterator[bool | int | float]:
+class _Echo:
+    """A file that returns what is written to it."""
+
+    def write(self, text: str) -> str:
+        return text
+
+
+_CSV = csv.writer(_Echo())
+"""With its own line end, CR LF: the writer quotes a cell that holds a character of the line end."""
+
+
+def csv_line(cells: Iterable[int | float | str]) -> str:
+    line: str = _CSV.writerow(cells)
+    return line.removesuffix("\r\n") + "\n"
+
+
+def _cells(value: Plain) -> Iterator[int | float]:
     if isinstance(value, list):
-        for each in value:
-            yield from _cells(each)
+        for element in value:
+            yield from _cells(element)
     else:
-        yield value
+        yield int(value) if isinstance(value, bool) else value
 
 
 def _suffixes(value: Plain) -> Iterator[str]:
     if isinstance(value, list):
-        for position, each in enumerate(value):
-            yield from (f"[{position}]{more}" for more in _suffixes(each))
+        for position, element in enumerate(value):
+            yield from (f"[{position}]{more}" for more in _suffixes(element))
     else:
         yield ""
-
-
-def _cell(value: bool | int | float) -> str:
-    return str(int(value)) if isinstance(value, bool) else repr(value)
-
-
-def _quoted(name: str) -> str:
-    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\n') else name

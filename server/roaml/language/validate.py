@@ -21,6 +21,7 @@ from roaml.language.grammar import AttributeType, ElementType, Grammar, SimpleTy
 from roaml.language.resources import schema_path
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
+from roaml.xml_syntax.escapes import replace_forbidden
 from roaml.xml_syntax.names import SPACE, is_local_name
 
 _UNREAD = ("xml-syntax", "nesting-too-deep")
@@ -303,19 +304,12 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
                 last = _new(copy, node)
                 back[last] = node
                 stack.append((node, last))
-            elif isinstance(node, (Text, CData)) and (text := _clean(node.value.strip())):
+            elif isinstance(node, (Text, CData)) and (text := replace_forbidden(node.value.strip())):
                 if last is None:
                     copy.text = (copy.text or "") + text
                 else:
                     last.tail = (last.tail or "") + text
     return top, back
-
-
-_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
-
-
-def _clean(value: str) -> str:
-    return value if value.isprintable() else _FORBIDDEN.sub("\ufffd", value)
 
 
 _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
@@ -324,7 +318,9 @@ _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
 
 def _new(parent: Any, element: Element) -> Any:
     attributes = {
-        a.name: _clean(a.value) for a in element.attributes if _is_local_name(a.name) and not a.name.startswith("xml")
+        a.name: replace_forbidden(a.value)
+        for a in element.attributes
+        if _is_local_name(a.name) and not a.name.startswith("xml")
     }
     tag = element.name if _is_local_name(element.name) else "not-a-name"
     return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)

@@ -8,6 +8,7 @@ reference stays as it is written. Nothing is ever expanded from a document type 
 from __future__ import annotations
 
 import re
+import sys
 
 from roaml.text import Decoded, Span
 
@@ -24,9 +25,18 @@ def resolve(match: re.Match[str]) -> str:
     return chr(code) if is_character(code) else match[0]
 
 
+FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+"""A character that XML 1.0 does not allow (production 2)."""
+
+
 def is_character(code: int) -> bool:
-    """Whether XML 1.0 allows the character (production 2)."""
-    return code in (9, 10, 13) or 0x20 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or 0x10000 <= code <= 0x10FFFF
+    """Whether XML 1.0 allows the character with this code point."""
+    return code <= sys.maxunicode and not FORBIDDEN.match(chr(code))
+
+
+def replace_forbidden(text: str) -> str:
+    """`text` with U+FFFD for each character that XML does not allow."""
+    return text if text.isprintable() else FORBIDDEN.sub("\ufffd", text)
 
 
 def unescape(raw: str) -> str:

@@ -16,7 +16,7 @@ from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
 from roaml.text import Span, TextEdit, span_of
-from roaml.xml_syntax.escapes import PREDEFINED, REFERENCE, is_character, unescape
+from roaml.xml_syntax.escapes import FORBIDDEN, PREDEFINED, REFERENCE, is_character, unescape
 from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_name
 from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
@@ -45,7 +45,6 @@ _TAG_END = re.compile(r"\s*(/?>)")
 _JUNK = re.compile(r"\s*([^\s<>/]+|/(?!>))")
 _TAG_SPACE = re.compile(r"\s*")
 _ODD_SPACE = re.compile(rf"[^\S{SPACE}]+")
-_BAD_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _LESS = re.compile("<")
 _AMPERSAND = re.compile("&")
 _LONGEST_ODD_VALUE = 5000
@@ -483,7 +482,7 @@ class _Parser:
     # ---------------------------------------------------------------- checks
 
     def check_characters(self) -> None:
-        if bad := _BAD_CHARACTER.search(self.text):
+        if bad := FORBIDDEN.search(self.text):
             self.report(Span(*bad.span()), f"the character U+{ord(bad[0]):04X} is not allowed in XML")
 
     def check_references(self, span: Span) -> None:

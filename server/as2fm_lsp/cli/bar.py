@@ -4,31 +4,23 @@
 from __future__ import annotations
 
 import math
-import shutil
-import sys
 import time
 from dataclasses import replace
 from types import TracebackType
 
+from as2fm_lsp.cli.status_line import StatusLine
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search
 from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
 
-PAUSE = 0.1
-"""Seconds between two pictures."""
-PATIENCE = 0.7
-"""Seconds before the first one."""
-WIDTH = 20
-_CLEAR = "\r\033[K"
+BAR_CHARACTERS = 20
 
 
 class Bar:
-    """Within `with`; shows nothing where standard error is no terminal. The line is gone at the end."""
+    """Within `with`; shows nothing where standard error is not a terminal. The line is gone at the end."""
 
     def __init__(self) -> None:
-        self._is_shown = False
-        self._is_wanted = sys.stderr.isatty()
-        self._next = time.monotonic() + PATIENCE
+        self._line = StatusLine()
         self._question: Question | None = None
         self._search: Search | None = None
         self._options = Options()
@@ -37,12 +29,11 @@ class Bar:
         self._first = 0
 
     def __enter__(self) -> Bar:
+        self._line.__enter__()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        if self._is_shown:
-            sys.stderr.write(_CLEAR)
-            sys.stderr.flush()
+        self._line.__exit__(kind, error, at)
 
     def begin(self, question: Question, options: Options, tally: Tally) -> None:
         """What is shown from here on."""
@@ -68,18 +59,13 @@ class Bar:
         self._show(f", trace {trace:,} at step {steps:,}" if steps else "")
 
     def _show(self, more: str = "") -> None:
-        now = time.monotonic()
-        if not self._is_wanted or now < self._next or self._question is None:
+        if not self._line.is_due or self._question is None:
             return
-        self._next = now + PAUSE
-        self._is_shown = True
-        width = shutil.get_terminal_size().columns - 1
         if self._search is None:
-            text = line(self._question, self._options, self._tally, now - self._began, self._first) + more
+            seconds = time.monotonic() - self._began
+            self._line.show(line(self._question, self._options, self._tally, seconds, self._first) + more)
         else:
-            text = search_line(self._question, self._search, self._options)
-        sys.stderr.write(_CLEAR + text[:width])
-        sys.stderr.flush()
+            self._line.show(search_line(self._question, self._search, self._options))
 
 
 def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
@@ -87,10 +73,10 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
     if tally.traces == 0:
         return f"{question.name} …"
     share = progress(question, options, tally)
-    full = int(share * WIDTH)
+    full = int(share * BAR_CHARACTERS)
     lower, upper = bounds_of(tally, question, options)
     value = tally.mean.mean if question.is_reward else (tally.successes + tally.undecided / 2) / tally.traces
-    text = f"{question.name} {'━' * full}{'─' * (WIDTH - full)} {share:4.0%}  {tally.traces:,} traces"
+    text = f"{question.name} {'━' * full}{'─' * (BAR_CHARACTERS - full)} {share:4.0%}  {tally.traces:,} traces"
     text += f"  {value:.4g} [{lower:.4g}, {upper:.4g}]"
     made = tally.traces - first
     if seconds > 1 and 0 < share < 1 and made:

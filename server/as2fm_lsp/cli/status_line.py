@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One line on a terminal that says what is being done, for as long as it is done."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import threading
+import time
+from types import TracebackType
+
+SHOW_DELAY_S = 0.7
+"""How long a command works before the line appears."""
+REFRESH_INTERVAL_S = 0.1
+
+_CLEAR = "\r\033[K"
+
+
+class StatusLine:
+    """A line on standard error, within `with`. Nothing is written where standard error is not a terminal."""
+
+    def __init__(self) -> None:
+        self.shown = threading.Event()
+        self._is_terminal = sys.stderr.isatty()
+        self._next = time.monotonic() + SHOW_DELAY_S
+        self._text = ""
+        self._lock = threading.Lock()
+        self._timer = threading.Timer(SHOW_DELAY_S, self._appear)
+        self._timer.daemon = True
+
+    def __enter__(self) -> StatusLine:
+        if self._is_terminal:
+            self._timer.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._timer.cancel()
+        with self._lock:
+            if self.shown.is_set():
+                self._write("")
+
+    @property
+    def is_due(self) -> bool:
+        """Whether the line is worth another text: it appears now, or was last written a while ago."""
+        return self._is_terminal and time.monotonic() >= self._next
+
+    def stage(self, text: str) -> None:
+        """Say what is done next; it is shown until something else is, as soon as the delay is over."""
+        with self._lock:
+            self._text = f"{text} …"
+            if self.shown.is_set():
+                self._write(self._text)
+
+    def show(self, text: str) -> None:
+        """Show a text now. Call it only if `is_due`."""
+        with self._lock:
+            self._next = time.monotonic() + REFRESH_INTERVAL_S
+            self._text = text
+            self.shown.set()
+            self._write(text)
+
+    def _appear(self) -> None:
+        with self._lock:
+            if not self.shown.is_set():
+                self._write(self._text)
+                self.shown.set()
+
+    @staticmethod
+    def _write(text: str) -> None:
+        width = shutil.get_terminal_size().columns - 1
+        sys.stderr.write(_CLEAR + text[:width])
+        sys.stderr.flush()

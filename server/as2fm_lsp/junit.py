@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JUnit XML, which continuous integration reads as results of tests."""
+
+from __future__ import annotations
+
+import enum
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from roaml.xml_syntax.escapes import replace_forbidden
+
+
+class Outcome(enum.Enum):
+    """The outcome of a test; the values are the names of elements."""
+
+    PASSED = "system-out"
+    FAILED = "failure"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A test.
+
+    Attributes:
+        text: what it printed; nothing is written if it is empty and the test passed.
+        message: why it failed, in one line.
+        type: the kind of the failure.
+        seconds: how long it took, if that is known.
+        properties: further facts, as names and values.
+    """
+
+    class_name: str
+    name: str
+    outcome: Outcome = Outcome.PASSED
+    text: str = ""
+    message: str = ""
+    type: str = ""
+    seconds: float | None = None
+    properties: tuple[tuple[str, str], ...] = ()
+
+
+def render(suite: str, cases: Sequence[Case]) -> str:
+    """A report with one suite of tests. Characters that XML does not allow are replaced."""
+    failures = sum(case.outcome is Outcome.FAILED for case in cases)
+    errors = sum(case.outcome is Outcome.ERROR for case in cases)
+    counts = {"tests": str(len(cases)), "failures": str(failures), "errors": str(errors)}
+    root = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
+    parent = _child(root, "testsuite", {"name": suite, **counts})
+    for case in cases:
+        _add(parent, case)
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _add(suite: ET.Element, case: Case) -> None:
+    time = {} if case.seconds is None else {"time": f"{case.seconds:.3f}"}
+    element = _child(suite, "testcase", {"classname": case.class_name, "name": case.name, **time})
+    if case.properties:
+        properties = _child(element, "properties", {})
+        for name, value in case.properties:
+            _child(properties, "property", {"name": name, "value": value})
+    if case.text or case.outcome is not Outcome.PASSED:
+        details = {"type": case.type, "message": case.message}
+        attributes = {name: value for name, value in details.items() if value}
+        _child(element, case.outcome.value, attributes).text = replace_forbidden(case.text)
+
+
+def _child(parent: ET.Element, name: str, attributes: dict[str, str]) -> ET.Element:
+    return ET.SubElement(parent, name, {key: replace_forbidden(value) for key, value in attributes.items()})
