@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What other programs import.
+"""The public interface of the library.
 
     from roaml import api
-
     result = api.check(["main.xml"], ros_paths=["interfaces"])
     for diagnostic in result.diagnostics:
         print(diagnostic.path, diagnostic.message)
-
     system = api.load("main.xml")
     network = api.to_scxml(system)
     model = api.to_jani(system)
     for answer in api.verify(model, jobs=2):
         print(answer.question.name, answer.value, answer.bounds)
 
-Nothing here prints or raises for what stands in a user's files; a path that does not exist is a `PathError`.
+No function prints, or raises for the content of a user's files; a path that does not exist is a `PathError`.
 """
 
 from __future__ import annotations
@@ -55,17 +53,17 @@ if TYPE_CHECKING:
 
 
 class PathError(ValueError):
-    """A path was named that cannot be checked; the message says why."""
+    """A given path cannot be checked; the message contains the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """What `check` found.
+    """The result of `check`.
 
     Attributes:
-        diagnostics: sorted by file, in the order in which files were checked, then by place.
+        diagnostics: sorted by file, in the order in which files were checked, then by position.
         files: the files that were checked.
-        problems: what is wrong with the configuration, in sentences.
+        problems: errors in the configuration, as sentences.
         snapshot: the models behind the diagnostics.
     """
 
@@ -90,17 +88,17 @@ def check(
     """Check system files, single files and folders.
 
     A system file is checked with all files that it names; a folder with all systems and files in it. Any other file is
-    checked as a part of the systems that name it, which are looked for in the configured roots, else in the enclosing
-    repository, else in its folder.
+    checked as a part of the systems that name it. They are searched for in the configured roots, otherwise in the
+    enclosing repository, otherwise in the folder of the file.
 
     Args:
-        paths: what to check.
-        ros_paths: folders with ROS interface packages, besides those configured.
-        settings: in place of the configuration found around the first path.
-        texts: path -> text, or the bytes of a file, that is taken in place of what the file holds.
+        paths: the files and folders to check.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        texts: path -> text, or the bytes of a file, used instead of the content of the file.
 
     Raises:
-        PathError: a path does not exist or cannot be read, and no text is given for it.
+        PathError: a path does not exist or cannot be read, and `texts` has no text for it.
     """
     named = [os.path.abspath(path) for path in paths]
     texts = {os.path.abspath(path): text for path, text in (texts or {}).items()}
@@ -120,10 +118,10 @@ def check(
 
 
 def fix(result: CheckResult) -> dict[str, bytes]:
-    """What becomes of the checked files when all safe fixes of what was found are made. Nothing is written.
+    """The texts of the checked files after all safe fixes have been applied. Nothing is written.
 
-    A safe fix takes away nothing that has an effect and guesses nothing. Files that stay as they are, and those that
-    hold bytes that are no text, are left out.
+    A safe fix removes nothing that has an effect and guesses nothing. Unchanged files and files that are not valid text
+    are left out.
     """
     sources = {path: result.source(path) for path in result.files}
     mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
@@ -135,12 +133,12 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:
-    """Whether a text that was not read from a file can be written to one: halves of characters cannot."""
+    """Whether a text that was not read from a file can be encoded: lone surrogates cannot."""
     return _HALF.search(text) is None
 
 
 class ModelError(ValueError):
-    """A system has errors and cannot be translated. `result` holds these errors and nothing else."""
+    """A system has errors and cannot be translated. `result` contains only these errors."""
 
     def __init__(self, result: CheckResult) -> None:
         first = result.diagnostics[0]
@@ -150,15 +148,15 @@ class ModelError(ValueError):
 
 
 class PropertyError(ValueError):
-    """A property was named that the system does not have; the message names those that it has."""
+    """The system has no property with a given name; the message lists those that it has."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadedSystem:
-    """A system without errors, as its files were when it was loaded.
+    """A system without errors, with its files as they were when it was loaded.
 
     Attributes:
-        path: of the system file.
+        path: the system file.
         properties: those in its property files, in their order.
         analysis: the models behind it.
     """
@@ -185,7 +183,7 @@ def load(
     Args:
         path: the system file.
         ros_paths, settings, texts: as for `check`.
-        overrides: parameters in place of those in the system file.
+        overrides: parameters that replace those in the system file.
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
@@ -202,7 +200,7 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     """A system of a workspace.
 
     Args:
-        path: absolute, of the system file.
+        path: the absolute path of the system file.
 
     Raises:
         PathError: the path is not a system file.
@@ -210,7 +208,7 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     """
     analysis = snapshot.analysis
     if analysis.kind(path) is not FileKind.SYSTEM or analysis.system(path) is None:
-        raise PathError(f"{path}: this is no system file")
+        raise PathError(f"{path}: not a system file")
     errors = snapshot.checker.errors(path)
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
@@ -218,18 +216,18 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
 
 
 def to_scxml(system: LoadedSystem) -> Network:
-    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` gives the files."""
+    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` creates the files."""
     return lower(program_of(system.analysis, system.path))
 
 
 def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Model:
-    """The system as a network of Markov decision processes. `roaml.jani.write` gives the text.
+    """The system as a network of Markov decision processes. `roaml.jani.write` creates the text.
 
     Args:
-        properties: the names of the properties that the model shall have; all if not given.
+        properties: the names of the properties to include; `None` for all.
 
     Raises:
-        PropertyError: the system has no property of a name.
+        PropertyError: the system has no property with one of the names.
     """
     found = system.properties
     if properties is not None:
@@ -243,7 +241,7 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
 
 
 class JaniError(ValueError):
-    """A JANI file has errors: `diagnostics`, with places in `source`."""
+    """A JANI file has errors: `diagnostics`, with positions in `source`."""
 
     def __init__(self, diagnostics: tuple[Diagnostic, ...], source: SourceFile) -> None:
         super().__init__(f"{diagnostics[0].path}: {diagnostics[0].message}")
@@ -252,7 +250,7 @@ class JaniError(ValueError):
 
 
 def read_jani(path: str) -> tuple[Model, SourceFile]:
-    """Read a JANI model; its places are those in the file.
+    """Read a JANI model; its positions are those in the file.
 
     Raises:
         PathError: the file cannot be read.
@@ -264,7 +262,7 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     except NotReadableError as error:
         raise PathError(str(error)) from None
     if source.undecodable is not None:
-        raise PathError(f"{path}: it holds bytes that are no text")
+        raise PathError(f"{path}: not valid UTF-8; fix the encoding")
     value, syntax = parse(source.text)
     model, findings = (None, ()) if syntax else read_model(value, path)
     diagnostics = tuple(
@@ -278,16 +276,16 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
-    """A model made ready to be verified.
+    """A model prepared for verification.
 
     Args:
-        properties: the names of those that will be asked about; all if not given. `stuck` asks whether traces get
-            stuck (`roaml.smc.end.End.STUCK`), which every translated system can be asked.
+        properties: the names of those to verify; `None` for all. `stuck` asks whether traces get stuck
+            (`roaml.smc.end.End.STUCK`), which is possible for every translated system.
 
     Raises:
-        PropertyError: the model has no property of a name.
-        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
-            are in `refused`.
+        PropertyError: the model has no property with one of the names.
+        FaultError: the model is of an unsupported kind; see `roaml.smc.fault`. Properties that cannot be decided are in
+            `refused`.
     """
     from roaml.smc.goal import STUCK_PROPERTY  # noqa: PLC0415 - checking and translating start faster without it
     from roaml.smc.model import Checker  # noqa: PLC0415
@@ -316,18 +314,18 @@ def verify(
     jobs: int = 1,
     executor: Executor | None = None,
 ) -> Iterator[Answer]:
-    """Estimate how probable properties are, by random traces with uniform choices. Answers come one by one.
+    """Estimate the probabilities of properties, by random traces with uniform choices. Yields the answers one by one.
 
     Args:
-        properties: their names; all if not given.
+        properties: their names; `None` for all.
         options: confidence, width of the interval, seed and limits.
-        jobs: processes to use; has no influence on the answers.
-        executor: where to run batches of traces instead.
+        jobs: the number of processes; has no influence on the answers.
+        executor: runs batches of traces, instead of `jobs` processes.
 
     Raises:
-        PropertyError: the model has no property of a name.
-        FaultError: the model cannot be run, or did something that has no meaning; or a property cannot be answered.
-        ValueError: an option makes no sense.
+        PropertyError: the model has no property with one of the names.
+        FaultError: the model cannot be run, or executed an undefined operation; or a property cannot be decided.
+        ValueError: an option is not valid.
     """
     from roaml.smc.pool import Pool  # noqa: PLC0415
     from roaml.smc.run import Options as _Options  # noqa: PLC0415
@@ -341,21 +339,21 @@ def verify(
 
 
 def source_map(system: LoadedSystem, model: Model) -> SourceMap:
-    """Where every automaton, edge and variable of a translated model comes from, as a value for JSON."""
+    """The sources of every automaton, edge and variable of a translated model, as a value for JSON."""
     return _source_map(model, system.analysis, system.path)
 
 
 class SharedFileError(ValueError):
-    """Systems that are not migrated would break. `shared` is each file that they use and that would change."""
+    """Systems that are not migrated would break. `shared` are the files that they use and that would change."""
 
     def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
         path, systems = next(iter(shared.items()))
-        super().__init__(f"{path}: it belongs to {', '.join(systems)}, too")
+        super().__init__(f"{path}: also used by {', '.join(systems)}; migrate them together")
         self.shared = shared
 
     @property
     def systems(self) -> tuple[str, ...]:
-        """The systems that would have to be migrated as well, each once."""
+        """The systems that would have to be migrated as well, without duplicates."""
         return tuple(dict.fromkeys(system for systems in self.shared.values() for system in systems))
 
 
@@ -366,29 +364,29 @@ def migrate(
     *,
     with_related: bool = False,
 ) -> tuple[Migration, ...]:
-    """What becomes of systems when they are moved to the current dialect. Nothing is written.
+    """The changes that migrate systems to the current dialect. Nothing is written.
 
     Args:
-        paths: system files, or folders in which they are looked for.
-        ros_paths: folders with ROS interface packages, besides those configured.
-        settings: in place of the configuration found around the first path.
-        with_related: whether to migrate the systems, too, that would break because they share a file, and so on. They
-            are looked for in the repository around each system, or else in the folder around its files.
+        paths: system files, or folders that are searched for them.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        with_related: whether to also migrate the systems that would break because they share a file, and so on. They
+            are searched for in the repository around each system, or in the folder around its files.
 
     Raises:
-        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is no proper text.
+        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is not valid text.
         SharedFileError: another system would break; only if not `with_related`.
     """
     paths = [os.path.abspath(path) for path in paths]
     if settings is None:
         settings, _ = find_settings(paths[0] if paths else os.getcwd())
-    # What is not to be reported is moved all the same.
+    # Files that are not reported are migrated as well.
     settings = replace(settings, select=frozenset(), ignore=frozenset())
     result = check(paths, ros_paths, settings)
     systems = result.snapshot.analysis.system_paths
     for path in paths:
         if not os.path.isdir(path) and path not in systems:
-            raise PathError(f"{path}: only systems are migrated; name their system file")
+            raise PathError(f"{path}: not a system file; only systems can be migrated, so name the system file")
 
     def snapshot_of(texts: Mapping[str, str]) -> Snapshot:
         return check(systems, ros_paths, settings, texts).snapshot
@@ -396,7 +394,7 @@ def migrate(
     migrations = _migrate(systems, snapshot_of) if systems else ()
     for migration in migrations:
         if result.source(migration.path).undecodable is not None:
-            raise PathError(f"{migration.path}: it holds bytes that are no text; mend it first")
+            raise PathError(f"{migration.path}: not valid UTF-8; fix the encoding")
     around = _around(systems, result.snapshot.analysis, settings) if migrations else None
     shared = {} if around is None else _broken(migrations, frozenset(systems), around)
     if not shared:
@@ -408,7 +406,8 @@ def migrate(
 
 
 def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
-    """File that changes -> the systems, other than those migrated, that it breaks: it is renamed, or brings errors."""
+    """For each file that changes, the systems that it breaks, other than those being migrated: the file is renamed, or
+    causes errors."""
     memberships = around.analysis.memberships
     shared: dict[str, tuple[str, ...]] = {}
     for each in migrations:
@@ -422,7 +421,7 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
 
 
 def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
-    """All that lies in the configured roots, and in the repositories of some systems or else around their files."""
+    """The files in the configured roots, and in the repositories of some systems or otherwise around their files."""
     roots = dict.fromkeys(settings.roots)
     for system in systems:
         folders = {os.path.dirname(path) for path in analysis.files_of(system)}
@@ -433,7 +432,7 @@ def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> S
 def _workspace(
     named: list[str], settings: Settings, texts: Mapping[str, str | bytes]
 ) -> tuple[Workspace, dict[str, FileKind]]:
-    """The workspace in which the named paths are checked, and what kinds of files they are (folders left out)."""
+    """The workspace in which the named paths are checked, and the kinds of the files among them."""
     folders = [path for path in named if os.path.isdir(path)]
     single = Workspace((), settings)
     for path, text in texts.items():
@@ -451,7 +450,7 @@ def _workspace(
         if not any(is_inside(path, folder) for folder in folders):
             roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
     interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
-    # Whoever names a link means the file that it leads to.
+    # A link stands for the file that it leads to.
     interfaces += [os.path.dirname(os.path.realpath(path)) for path in others if os.path.islink(path)]
     workspace = Workspace(dict.fromkeys(roots), settings, systems, packages=dict.fromkeys((*roots, *interfaces)))
     for path, text in texts.items():
@@ -460,9 +459,9 @@ def _workspace(
 
 
 def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
-    """The files that are reported on: the configuration, and what was named, in that order."""
+    """The files that are reported on, in this order: the configuration, and the named paths."""
     analysis, found = snapshot.analysis, dict[str, None]()
-    if origin := snapshot.checker.settings.origin:  # what is wrong in it matters to all of them
+    if origin := snapshot.checker.settings.origin:  # errors in it affect all of them
         found[origin] = None
     for path in named:
         if path not in kinds:

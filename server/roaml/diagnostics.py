@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tool says about a text, as plain values.
+"""Findings about a text, as plain values.
 
-- A `Finding` belongs to one file and knows no path: it is what parsers and rules produce and what is memoised.
-- A place in *another* file is named by a `Symbol`, never by a span, so a memoised finding stays right when the other
-  file is edited; `roaml.project` looks the span up when a `Diagnostic` is published.
+- A `Finding` is about one file and has no path: parsers and rules produce it, and it can be memoised.
+- A place in *another* file is identified by a `Symbol`, never by a span, so a memoised finding stays correct when the
+  other file is edited; `roaml.project` resolves the symbol when a `Diagnostic` is published.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from roaml.text import Location, Span, TextEdit
 
 
 class Severity(enum.IntEnum):
-    """How much a finding matters; a greater value matters more."""
+    """How important a finding is; a greater value is more important."""
 
     HINT = 0
     INFORMATION = 1
@@ -36,9 +36,10 @@ class Tag(enum.Enum):
 
 
 class Symbol(NamedTuple):
-    """A named thing in a file, independent of where it stands: `kind` is what the schemas say that a value defines.
+    """A named thing in a file, independent of its position. `kind` is the kind of symbol that the schemas define for
+    the value.
 
-    `scope` tells equal names apart (for example the thread that a state belongs to); it is empty for most kinds.
+    `scope` distinguishes equal names (for example by the thread that contains a state); it is empty for most kinds.
     """
 
     path: str
@@ -57,12 +58,12 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change of the finding's own file that mends it. New lines are written with `\\n`.
+    """A change of the finding's own file that fixes it. New lines are written with `\\n`.
 
     Attributes:
         title: in the imperative.
-        preferred: it is the one obvious mend.
-        safe: it takes away nothing that has an effect and guesses nothing, so it may be made without a look.
+        preferred: whether it is the one obvious fix.
+        safe: whether it removes nothing that has an effect and guesses nothing, so it may be applied without a review.
     """
 
     title: str
@@ -73,7 +74,7 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something to say about a span. Without `severity` the rule's own severity holds."""
+    """A finding about a span. Without `severity`, the severity of the rule is used."""
 
     code: str
     span: Span
@@ -86,7 +87,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class RelatedPlace:
-    """A `Related` whose place has been looked up."""
+    """A `Related` whose place has been resolved."""
 
     location: Location
     message: str
@@ -94,7 +95,7 @@ class RelatedPlace:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """A finding as it is published: with its file, its final severity and all places looked up."""
+    """A finding as it is published: with its file, its final severity and all places resolved."""
 
     path: str
     code: str

@@ -221,7 +221,7 @@ def test_wrong_use(command: Command, robot: Path, options: tuple[str, ...], mess
 
 
 def test_no_system_file(command: Command, robot: Path) -> None:
-    for path, message in (("nothing.xml", "there is no such file"), ("tree.xml", "this is no system file")):
+    for path, message in (("nothing.xml", "there is no such file"), ("tree.xml", "not a system file")):
         done = command("translate", path)
         assert done.status == 2
         assert message in done.err

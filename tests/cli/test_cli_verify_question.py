@@ -303,15 +303,15 @@ def test_constants(command: Command, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("N", "a constant is given like N=20, not 'N'"),
+        ("N", "a constant must have the form N=20, not 'N'"),
         ("N=", "a constant is given like N=20"),
-        ("N=2.5", "the constant N is a whole number, not '2.5'"),
+        ("N=2.5", "the constant N must be a whole number, not '2.5'"),
         ("N=99999999999999999999", "the constant N is a whole number"),
-        ("p=nan", "the constant p is a number, not 'nan'"),
-        ("p=1e999", "the constant p is a number, not '1e999'"),
-        ("on=1", "the constant on is true or false, not '1'"),
-        ("k=0", "the constant k is at least 1, not 0"),
-        ("k=21", "the constant k is at most 20, not 21"),
+        ("p=nan", "the constant p must be a number, not 'nan'"),
+        ("p=1e999", "the constant p must be a number, not '1e999'"),
+        ("on=1", "the constant on must be true or false, not '1'"),
+        ("k=0", "the constant k must be at least 1, not 0"),
+        ("k=21", "the constant k must be at most 20, not 21"),
         ("fixd=1", "there is no constant fixd; did you mean fixed?"),
         ("fixed=1", "the constant fixed has a value in the model"),
         ("N=3", "the constant N is given twice"),
@@ -552,4 +552,4 @@ def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "state.json")
     done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
     assert done.status == 2
-    assert "state.json: it is no regular file" in done.err
+    assert "state.json: it is not a regular file" in done.err

@@ -149,7 +149,7 @@ async def test_what_cannot_be_migrated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
     assert current == {"edit": None, "files": [], "problem": ""}
-    assert no_system["problem"].endswith("only systems are migrated; name their system file")
+    assert no_system["problem"].endswith("not a system file; only systems can be migrated, so name the system file")
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
     (taken,) = await asked(tmp_path, "as2fm/migrate", "main.xml")

@@ -291,7 +291,7 @@ async def test_errors_of_the_model_have_their_place(tmp_path: Path) -> None:
         assert (error["code"], error["uri"]) == ("undeclared-variable", (tmp_path / "clock.ascxml").as_uri())
         assert error["range"]["start"] == {"line": 8, "character": 30}
         missing = await verify(client, tmp_path / "none.xml", [], {"silent": True})
-        assert missing["errors"][0]["message"].endswith("none.xml: this is no system file")
+        assert missing["errors"][0]["message"].endswith("none.xml: not a system file")
         assert [message.message for message in client.messages] == ["main.xml has 1 error and was not verified."]
 
 
