@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the reference manual from the schemas and the rule documents: `python docs/build.py`.
+"""Writes the reference manual from the schemas and the rule documents, and the nodes of the schema of trees:
+`python docs/build.py`.
 
 The writer is also the test that nothing has drifted: `python docs/build.py --check` writes nothing and exits with 1 if
 a page differs from what would be written.
@@ -15,13 +16,16 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import node_schema
+
 from as2fm_lsp.cli import format as layout
 from as2fm_lsp.cli import init, migrate, translate, verify
 from as2fm_lsp.cli.main import EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
-from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar
+from roaml.language.grammar import AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
 from roaml.rules import GROUPS, RULES, document, document_file, in_reference
 
 HERE = Path(__file__).resolve().parent
@@ -269,6 +273,16 @@ def drifted() -> Iterator[Path]:
     yield from (path for path in REFERENCE.glob("*") if path.name not in wanted)
 
 
+def update_schema(check: bool) -> bool:
+    """Write the nodes of the schema of trees, or only look; whether they were as they should be."""
+    path = schema_path(BEHAVIOR_TREE.schema)
+    before = path.read_text(encoding="utf-8")
+    after = node_schema.with_nodes(before)
+    if before != after and not check:
+        path.write_text(after, encoding="utf-8")
+    return before == after
+
+
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--check", action="store_true", help="write nothing; exit with 1 if a page has drifted")
@@ -277,6 +291,11 @@ def main() -> int:
     if options_given.rules:
         options_given.rules.write_text(all_rules(), encoding="utf-8")
         return 0
+    if not update_schema(options_given.check):
+        if options_given.check:
+            print(f"schemas/{BEHAVIOR_TREE.schema} is not what docs/build.py writes", file=sys.stderr)
+            return 1
+        return main()
     stale = list(drifted())
     if options_given.check:
         for path in stale:

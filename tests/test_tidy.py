@@ -23,7 +23,7 @@ SERVER = ROOT / "server"
 MODULES = sorted(SERVER.rglob("*.py"))
 
 # Who may touch the disk: the user's files, or the package's own resources.
-READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api.py", "roaml/interfaces/search.py", "as2fm_lsp/")
+READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api/", "roaml/interfaces/search.py", "as2fm_lsp/")
 READS_RESOURCES = (
     "roaml/language/resources.py",
     "roaml/language/grammar.py",

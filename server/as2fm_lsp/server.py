@@ -33,7 +33,7 @@ from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
 from as2fm_lsp.sockets import Client
 from as2fm_lsp.trust import DID_CHANGE, Trust
-from as2fm_lsp.verification.verified import Verified
+from as2fm_lsp.verification.known_results import KnownResults
 from roaml import __version__
 from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, PROJECT_EXTENSION
 
@@ -66,7 +66,7 @@ class Server(LanguageServer):
         self.trust = Trust()
         self.session = Session(self._checkpoint)
         self.diagnostics = Diagnostics(self, self.session, self.inbox)
-        self.verified = Verified()
+        self.verified = KnownResults()
         self.refresh = Refresh(self)
         self.diagnostics.finished = self.refresh.look
 

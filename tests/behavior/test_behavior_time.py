@@ -32,8 +32,9 @@ def write(folder: Path) -> None:
 
 def probability(folder: Path) -> float:
     model = api.to_jani(api.load(str(folder / "main.xml")))
-    [answer] = api.verify(model, options=Options(epsilon=0.1, seed=1))
-    return answer.value
+    [result] = api.verify(model, options=Options(epsilon=0.1, seed=1))
+    assert result.answer is not None
+    return result.answer.value
 
 
 def test_the_fix_starts_the_clock(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from command import Command
 
 import clock
 import prefork
-from as2fm_lsp.write import PREFIX, write_file
+from as2fm_lsp.atomic_write import PREFIX, write_file
 
 INSTALLED = str(Path(sys.executable).parent / "as2fm-lsp")
 
@@ -143,7 +143,7 @@ def files(folder: Path) -> dict[str, bytes]:
 
 WRITES = """
 import sys
-from as2fm_lsp.write import write_file
+from as2fm_lsp.atomic_write import write_file
 
 def pieces():
     yield "half"

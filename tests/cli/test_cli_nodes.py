@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from as2fm_lsp.verification.nodes import explained
+from as2fm_lsp.verification.node_names import explained
 from roaml.jani.model import Automaton, Model, ModelType, System
 from roaml.text import Location, Span
 

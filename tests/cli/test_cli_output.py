@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from command import Command
 
-import as2fm_lsp.write
+import as2fm_lsp.atomic_write
 import clock
-from as2fm_lsp.write import write_file
+from as2fm_lsp.atomic_write import write_file
 
 
 def test_output(command: Command, tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_a_full_disk_is_told(command: Command, tmp_path: Path, monkeypatch: pyte
     def fail(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(as2fm_lsp.write.tempfile, "mkstemp", fail)
+    monkeypatch.setattr(as2fm_lsp.atomic_write.tempfile, "mkstemp", fail)
     done = command("--check", "main.xml", "--output", "report.txt")
     assert (done.status, done.err) == (2, "as2fm-lsp: report.txt: No space left on device\n")
 

@@ -24,14 +24,14 @@ import pytest
 from command import Command
 from smc_models import Json, at, automaton, document, edge, op, probability, variable, way
 
-import as2fm_lsp.verification.traces
-from as2fm_lsp.cli.bar import line, search_line
-from as2fm_lsp.verification.expectations import parse
+import as2fm_lsp.verification.trace_files
+from as2fm_lsp.cli.progress_bar import line, search_line
 from patience import PATIENCE
 from roaml import api
 from roaml.smc.goal import Question
 from roaml.smc.lss import GREATEST, LEAST, Search, Side
 from roaml.smc.run import FIXED, Options, Tally
+from roaml.verification.expectations import parse
 
 
 @pytest.fixture
@@ -223,7 +223,7 @@ def test_any_name_is_a_column(command: Command, tmp_path: Path) -> None:
 
 
 def test_a_full_disk_leaves_whole_traces(command: Command, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_whole = as2fm_lsp.verification.traces.write_file
+    write_whole = as2fm_lsp.verification.trace_files.write_file
     written: list[str] = []
 
     def write_file(path: str, lines: Iterable[str]) -> None:
@@ -232,7 +232,7 @@ def test_a_full_disk_leaves_whole_traces(command: Command, robot: Path, monkeypa
         written.append(path)
         write_whole(path, lines)
 
-    monkeypatch.setattr(as2fm_lsp.verification.traces, "write_file", write_file)
+    monkeypatch.setattr(as2fm_lsp.verification.trace_files, "write_file", write_file)
     done = command("verify", "main.xml", "--traces", "out")
     assert done.status == 2
     assert "No space left on device" in done.err
@@ -584,8 +584,10 @@ def test_expectations_are_read_as_people_write_them() -> None:
 
 def test_from_python(robot: Path) -> None:
     found = api.to_jani(api.load("main.xml"))
-    answers = {answer.question.name: answer for answer in api.verify(found, ["never_empty"], Options(epsilon=0.05))}
-    assert answers["never_empty"].value == 1
+    [result] = api.verify(found, ["never_empty"], Options(epsilon=0.05))
+    assert result.name == "never_empty"
+    assert result.answer is not None
+    assert result.answer.value == 1
     with pytest.raises(api.PropertyError, match="there is no property x"):
         list(api.verify(found, ["x"]))
     (robot / "bad.jani").write_text("{")

@@ -9,6 +9,7 @@ from expr_cases import show, tree_of
 
 from marked import Case, found
 from roaml.expr.parse import MAX_DEPTH, MAX_FINDINGS, SYNTAX, UNSUPPORTED, parse
+from roaml.expr.words import CONTEXTUAL, LITERALS, OPERATORS, PREFIXES, RESERVED, STATEMENTS
 from roaml.text import Decoded
 
 ACCEPTED = [
@@ -491,3 +492,12 @@ SIMPLE += ["0", "12", "012", "0.5", "2.0", "10.250", "0.1234567890123456789", "1
 def test_simple_ones_are_read_like_all_others(text: str) -> None:
     """White space behind an expression changes nothing but that it is not read the quick way."""
     assert parse(Decoded(text, 5)) == parse(Decoded(f"{text} ", 5))
+
+
+def test_reserved_words_by_their_use() -> None:
+    """Each reserved word is of one kind; those that only other expressions have are reported."""
+    kinds = (LITERALS, OPERATORS, PREFIXES, STATEMENTS, {"this"})
+    assert sorted(word for kind in kinds for word in kind) == sorted(RESERVED | CONTEXTUAL)
+    for word in (RESERVED | CONTEXTUAL) - LITERALS:
+        _, findings = parse(Decoded(f"a {word} b" if word in OPERATORS else word, 0))
+        assert findings, word

@@ -48,7 +48,7 @@ def found(occurrences: Iterable[Occurrence]) -> list[tuple[int, int, str]]:
 def _words(each: Occurrence) -> str:
     verb = "defines" if each.defines else WORDS[each.access]
     scope = f" in {each.symbol.scope}" if each.symbol.scope else ""
-    return f"{verb} {each.symbol.kind} {each.symbol.name}{scope}"
+    return f"{verb} {each.symbol.kind.value} {each.symbol.name}{scope}"
 
 
 ROBOT = (

@@ -36,7 +36,7 @@ class Case:
     @property
     def name(self) -> str:
         symbol = self.thing.symbols[0]
-        return " ".join(filter(None, (symbol.kind, symbol.name, symbol.scope)))
+        return " ".join(filter(None, (symbol.kind.value, symbol.name, symbol.scope)))
 
 
 class System:

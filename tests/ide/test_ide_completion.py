@@ -651,7 +651,7 @@ def test_every_item_is_documented_or_simple() -> None:
             if item.about is not None:
                 told = document(texts.analysis, item.about)
                 assert told, item
-                documented.add(item.about.kind)
+                documented.add(item.about.kind.value)
     assert documented >= {"element", "attribute", "variable", "field", "publisher", "machine", "tree", "port", "event"}
 
 

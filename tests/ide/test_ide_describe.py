@@ -16,6 +16,7 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.describe.comment import remark
 from roaml.ide.describe.markdown import file, name, names, plain, prose
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import parse
 
 FILES = split_files(ROBOT)
@@ -119,18 +120,18 @@ def cases() -> list[tuple[str, list[str]]]:
 def test_names(tmp_path: Path, asked: str, expected: list[str]) -> None:
     analysis = load(tmp_path, FILES)
     file, kind, called, *scope = asked.split()
-    text = describe(analysis, Symbol(str(tmp_path / file), kind, called, " ".join(scope)))
+    text = describe(analysis, Symbol(str(tmp_path / file), SymbolKind(kind), called, " ".join(scope)))
     shown = [line for line in plain(text).replace("\u202f", " ").splitlines() if line]
     assert shown == expected
 
 
 def test_ros_definitions(tmp_path: Path) -> None:
     analysis = load(tmp_path, FILES)
-    text = describe(analysis, Symbol("", "ros-type", "std_msgs/Int32", "msg"))
+    text = describe(analysis, Symbol("", SymbolKind.ROS_TYPE, "std_msgs/Int32", "msg"))
     assert text.startswith("```rosmsg\n# std_msgs/Int32\n")
     assert "\nint32 data\n```" in text
-    assert describe(analysis, Symbol("", "ros-type", "std_msgs/Nothing", "msg")) == ""
-    field = describe(analysis, Symbol("", "field", "data", "std_msgs/Int32"))
+    assert describe(analysis, Symbol("", SymbolKind.ROS_TYPE, "std_msgs/Nothing", "msg")) == ""
+    field = describe(analysis, Symbol("", SymbolKind.FIELD, "data", "std_msgs/Int32"))
     assert plain(field).splitlines() == ["int32 data", "", "Field of std_msgs/Int32"]
 
 

@@ -152,7 +152,7 @@ def test_lenses(tmp_path: Path, model: str, name: str, expected: list[str]) -> N
     for lens in lenses(analysis, path):
         line = source.lines.position(lens.span.start).line + 1
         told = counted(analysis, lens.symbol, path)
-        found.append(f"{line} {lens.symbol.kind} {lens.symbol.name}: {told.title}")
+        found.append(f"{line} {lens.symbol.kind.value} {lens.symbol.name}: {told.title}")
         assert all(analysis.source(place.path) is not None for place in told.places)
         assert told.places == tuple(sorted(set(told.places)))
     assert found == expected

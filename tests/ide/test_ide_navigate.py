@@ -110,9 +110,11 @@ def test_highlights(tmp_path: Path) -> None:
 def test_search(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     paths = analysis.files_of(str(tmp_path / "main.xml"))
-    found = {(each.symbol.kind, each.symbol.name, each.container) for each in search(analysis, paths, "PO")}
+    found = {(each.symbol.kind.value, each.symbol.name, each.container) for each in search(analysis, paths, "PO")}
     assert found == {("struct", "Pose", "")}
-    assert ("state", "s", "A") in {(e.symbol.kind, e.symbol.name, e.container) for e in search(analysis, paths, "")}
+    assert ("state", "s", "A") in {
+        (e.symbol.kind.value, e.symbol.name, e.container) for e in search(analysis, paths, "")
+    }
 
 
 GRAPH = """
@@ -126,7 +128,7 @@ tree.xml ID="|Sub" t tree Sub < tree Main > machine Walk
 
 
 def names(found: Iterable[calls.Call]) -> list[str]:
-    return sorted(f"{call.item.symbol.kind} {call.item.symbol.name}" for call in found)
+    return sorted(f"{call.item.symbol.kind.value} {call.item.symbol.name}" for call in found)
 
 
 @pytest.mark.parametrize("row", GRAPH.strip().splitlines())
@@ -137,7 +139,7 @@ def test_calls(row: str, tmp_path: Path) -> None:
     *piece, kind, name = rest.split()
     place = caret(tmp_path, file, " ".join(piece))
     (item,) = calls.items_at(analysis, *place)
-    assert (item.symbol.kind, item.symbol.name) == (kind, name)
+    assert (item.symbol.kind.value, item.symbol.name) == (kind, name)
     incoming, outgoing = calls.incoming(analysis, item.symbol), calls.outgoing(analysis, item.symbol)
     assert names(incoming) == sorted(filter(None, map(str.strip, callers.split(","))))
     assert names(outgoing) == sorted(filter(None, map(str.strip, called.split(","))))

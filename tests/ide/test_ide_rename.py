@@ -45,9 +45,12 @@ a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      divides the parts of names
 a.ascxml         event="|go" target      topic_x   the translation calls its own events so
 types.xml        id="|Pose"              int32     cannot name a struct
+types.xml        id="|Pose"              true      cannot name a struct
+types.xml        id="|x"                 false     cannot name a member
 tree.xml         <|Walk                  Sequence  is a name of BehaviorTree.CPP
 tree.xml         <|Walk                  A         there is a state machine `A` already
 tree.xml         ID="|Sub"               Main      there is a behavior tree `Main` already
+tree.xml         {|own}"                 true      cannot name a blackboard variable
 tree.xml         {|own}"                 g         there is a blackboard variable `g` already
 plugin.ascxml    key="|goal"             out       there is a port `out` already
 plugin.ascxml    key="|goal"             ID        cannot name a port

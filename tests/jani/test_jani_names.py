@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Suggestions for unknown names, and types in words."""
+"""Unknown names, and types in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import json
 import pytest
 
 from roaml.jani.reader import read_model
-from roaml.jani.suggest import nearest
 from roaml.jani.types import (
     BOOL,
     INT,
@@ -25,31 +24,6 @@ from roaml.jani.types import (
     join,
 )
 from roaml.json_syntax import parse
-
-KNOWN = ["topic_level_msg__ros_fields__data", "topic_level_msg.valid", "seen.valid", "level", "idle", "n"]
-
-
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-        ("topic_level_msg__ros_field__data", "topic_level_msg__ros_fields__data"),
-        ("topic_lvel_msg.valid", "topic_level_msg.valid"),
-        ("seen.vaild", "seen.valid"),
-        ("levels", "level"),
-        ("Idle", "idle"),
-        ("idel", "idle"),
-        ("iddel", None),
-        ("m", None),
-        ("alarm", None),
-        ("", None),
-    ],
-)
-def test_suggestions(name: str, meant: str | None) -> None:
-    assert nearest(name, KNOWN) == meant
-
-
-def test_the_nearest_name_wins() -> None:
-    assert nearest("counter_10", ["counter_2", "counter_11", "counter_20", "counter_1"]) == "counter_11"
 
 
 def test_many_unknown_names() -> None:

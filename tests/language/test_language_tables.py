@@ -12,8 +12,10 @@ import xmlschema
 from lxml import etree
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM
-from roaml.language.grammar import UNBOUNDED, AttributeType, ElementType, Grammar, Occurrence
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
+from roaml.roles import SymbolKind
 
 GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE]
 XS = "{http://www.w3.org/2001/XMLSchema}"
@@ -157,14 +159,14 @@ VALUES = {
     "script",
 }
 VALUE_TYPES = {"", "bool", "int", "any", "msg", "srv", "action"}
-ELSEWHERE = {"topic", "service", "action", "field", "plugin"}
+ELSEWHERE = {SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION, SymbolKind.FIELD, SymbolKind.PLUGIN}
 """Symbols that no attribute of a language defines: names in the ROS graph, fields of its types, machines as plugins."""
 
 
 def test_roles_are_those_that_tools_know() -> None:
     every = [ours for grammar in GRAMMARS for _, ours, _ in pairs(grammar)]
     attributes = [attribute for element in every for attribute in element.attributes.values()]
-    defined = {attribute.defines for attribute in attributes} - {""}
+    defined = {attribute.defines for attribute in attributes} - {None}
     assert {kind for a in attributes for kind in a.refers} | {k for e in every for k in e.refers} <= defined | ELSEWHERE
     assert {a.value for a in attributes} | {e.value for e in every} <= VALUES | {""}
     assert {a.value_type for a in attributes} | {e.value_type for e in every} <= VALUE_TYPES

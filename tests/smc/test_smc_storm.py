@@ -17,7 +17,6 @@ from storm import exact as storm_exact
 from test_translate_storm import COINS, JUDGE, LISTENER, reaches, system
 from translating import loaded
 
-from as2fm_lsp.verification.exactly import ExactError, exactly
 from roaml import api
 from roaml.jani.model import Model
 from roaml.smc.explore import Explorer, TooManyStatesError
@@ -27,6 +26,7 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import FIXED, Options
 from roaml.smc.solve import solve
+from roaml.verification.storm import ExactError, exact_values
 
 ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
@@ -199,10 +199,10 @@ def test_exact_answers() -> None:
         )
     )
     checker = Checker(found)
-    result = exactly(checker, checker.asked[0], 100)
+    result = exact_values(checker, checker.asked[0], 100)
     assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
     with pytest.raises(ExactError, match="more than 2 states"):
-        exactly(checker, checker.asked[0], 2)
+        exact_values(checker, checker.asked[0], 2)
     ((successes, traces),) = estimates(found).values()
     assert two_sided(successes, traces, 0.375) > 1e-4
 

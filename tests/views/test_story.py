@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from as2fm_lsp.verification.subject import of_system
 from roaml import api
 from roaml.smc.model import Checker
 from roaml.smc.record import Recorder
@@ -30,7 +29,7 @@ PlaceOf = Callable[[Location], str]
 
 @pytest.fixture(scope="module")
 def bug() -> tuple[Story, PlaceOf]:
-    subject = of_system(api.load(str(ROBOT / "main_with_bug.xml")))
+    subject = api.as_target(api.load(str(ROBOT / "main_with_bug.xml")))
     ready = api.checker(subject.model, ["never_placed_empty"])
     story = tell(Recorder(ready, ready.asked[0], 0, 10_000), DROPPED, subject.clock)
 
@@ -58,7 +57,7 @@ def test_what_only_passes_on_is_left_out() -> None:
     """Between a client and its server stands a handler, and the answer holds a text with its length."""
     folder = ROBOT.parent / "delivery_robot"
     texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
-    subject = of_system(api.load(str(folder / "main.xml"), texts=texts))
+    subject = api.as_target(api.load(str(folder / "main.xml"), texts=texts))
     ready = api.checker(subject.model, ["never_empty"])
     story = tell(Recorder(ready, ready.asked[0], 0, 10_000), EMPTY, subject.clock)
     told = lines(story, lambda _: "")

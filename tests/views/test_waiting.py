@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from as2fm_lsp.verification import stuck
-from as2fm_lsp.verification.subject import of_system
+from as2fm_lsp.verification import stuck_report
 from roaml import api
 from roaml.rules import BY_CODE
 from roaml.smc.run import Options
+from roaml.verification import stuck
 from roaml.views.event_words import said
 from roaml.views.waiting import NEEDS_TIME
 from stuck_models import CROSSED, hospital, system
@@ -23,14 +23,14 @@ def told(folder: Path, files: dict[str, str]) -> str:
     """What is said of the shortest trace that gets stuck, each line with its place; "" if none does."""
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
-    subject = of_system(api.load(str(folder / "main.xml")))
+    subject = api.as_target(api.load(str(folder / "main.xml")))
     look = stuck.look(subject, api.checker(subject.model), Options(), stuck.WARNING)
 
     def place_of(origin: object) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)  # type: ignore[arg-type]
         return f"{Path(path).name}:{line}"
 
-    lines = stuck.as_text(look, place_of).splitlines()[2:]
+    lines = stuck_report.as_text(look, place_of).splitlines()[2:]
     # The rule stands on a line of its own here, which would be too long otherwise.
     return "".join(f"{line.strip()}\n" for line in lines).replace(" [", "\n[")
 

@@ -12,9 +12,9 @@ import os
 from collections import Counter
 from collections.abc import Sequence
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.formats.report import Entry
 from as2fm_lsp.cli.output import complain
-from as2fm_lsp.write import write_file
 from roaml.disk import MAX_DATA, required
 
 VERSION = 1

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 import roaml.smc
-from as2fm_lsp.write import write_file
+from as2fm_lsp.atomic_write import write_file
 
 SOURCE = Path(roaml.smc.__file__).with_name("kernel.c")
 FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TextIO
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
 from as2fm_lsp.cli.arguments import unknown_rule
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text
-from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings

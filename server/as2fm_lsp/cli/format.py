@@ -6,12 +6,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
-from as2fm_lsp.write import write_file
 from roaml.disk import Problem
 from roaml.ide.formatting import can_format, format_edits, is_ours
 from roaml.language import HL_SCXML

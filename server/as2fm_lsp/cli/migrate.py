@@ -7,12 +7,12 @@ import os
 import shutil
 from collections.abc import Sequence
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
-from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.project.migrate import Migration
 

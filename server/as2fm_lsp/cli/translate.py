@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
@@ -18,7 +19,6 @@ from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
-from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model

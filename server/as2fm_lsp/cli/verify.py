@@ -9,43 +9,45 @@ import math
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.bar import Bar
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.output import complain, flush, print_text
+from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
-from as2fm_lsp.verification import stuck
-from as2fm_lsp.verification.choices import asks_for_minimum, under_all_schedulers
-from as2fm_lsp.verification.expectations import Expectation, RangeError, Verdict, check_range, judge, parse
-from as2fm_lsp.verification.nodes import explained
-from as2fm_lsp.verification.refusal import refusal
-from as2fm_lsp.verification.report import Found, Result, as_json, as_junit, as_text
-from as2fm_lsp.verification.state import State, StateError
-from as2fm_lsp.verification.subject import ConstantError, Subject, load
-from as2fm_lsp.write import write_file
+from as2fm_lsp.verification import stuck_report
+from as2fm_lsp.verification.node_names import explained
+from as2fm_lsp.verification.report import as_json, as_junit, as_text
+from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.model.system_file import Overrides
+from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
-from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
-from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
-from roaml.smc.model import Checker
+from roaml.smc.goal import Asked
+from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, LEAST_EPSILON, METHODS, SPRT, Answer, Options, Tally, summary
+from roaml.smc.run import ADAPTIVE, LEAST_EPSILON, METHODS, Options, Tally
 from roaml.text import Location, SourceFile, Span
+from roaml.verification import stuck
+from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
+from roaml.verification.expectations import Expectation, RangeError, parse
+from roaml.verification.refusal import fault_message
+from roaml.verification.results import Result
+from roaml.verification.storm import ExactError
+from roaml.verification.target import Target
+from roaml.verification.verifier import NoThresholdError, Verifier
 
 if TYPE_CHECKING:
     from roaml.smc.story import Story
@@ -81,7 +83,7 @@ def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
         return _run(options)
-    except (UsageError, RangeError, ConstantError, StateError) as error:
+    except (UsageError, RangeError, api.ConstantError, StateError) as error:
         return _fail(str(error))
     except (api.PathError, api.PropertyError, WorkersLostError) as error:
         return _fail(str(error))
@@ -99,191 +101,129 @@ def _run(options: argparse.Namespace) -> int:
         raise UsageError(problems[0])
     settings = replace(settings_found, ament_prefixes=ament_prefixes())
     overrides = Overrides(options.max_time, None)
+    if options.main.endswith(".jani"):
+        if overrides != NO_OVERRIDES:
+            raise UsageError("--max-time is for systems; a JANI model has no such parameter")
+    elif options.constant:
+        raise UsageError("--constant is for JANI models; a system has no constants")
+    only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
+    names = options.property or None
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            subject = load(options.main, options.ros_path, settings, overrides, options.constant)
-            names = options.property or None
-            if names is not None:
-                names = [*names, *(each.name for each in expectations)]
-            known = [each.name for each in subject.model.properties]
-            if names is None and any(each.name == STUCK_PROPERTY for each in expectations):
-                names = [*known, STUCK_PROPERTY]
-            for each in expectations:
-                if each.name not in (*known, STUCK_PROPERTY):
-                    raise api.PropertyError(f"there is no property {each.name}, of which something is expected")
+            target = api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
             status.stage("compiling")
-            checker = api.checker(subject.model, names)
+            verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
     except api.ModelError as error:
         return _errors(options, error.result.diagnostics, error.result.source, error.result.files)
     except api.JaniError as error:
         source = error.source
         return _errors(options, error.diagnostics, lambda _: source, (source.path,))
     except FaultError as fault:
-        return _fault(options, subject, fault)
-    if not checker.asked and not checker.refused:
+        return _fault(options, target, fault)
+    if not verifier.names:
         raise UsageError(f"{shown_path(options.main)} has no properties")
-    for asked in checker.asked:
-        for expectation in expectations:
-            if expectation.name == asked.question.name:
-                check_range(expectation, asked.question)
-    is_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
-    return _Verification(options, subject, checker, expectations, limits, is_uniform).run()
+    return _Verification(options, verifier).run()
 
 
 class _Verification:
     """One call of the command, after everything is read."""
 
-    def __init__(
-        self,
-        options: argparse.Namespace,
-        subject: Subject,
-        checker: Checker,
-        expectations: list[Expectation],
-        limits: Options,
-        is_uniform: bool,
-    ) -> None:
+    def __init__(self, options: argparse.Namespace, verifier: Verifier) -> None:
         self.options = options
-        self.subject = subject
-        self.checker = checker
-        self.expectations = expectations
-        self.limits = limits
-        self.is_uniform = is_uniform
+        self.verifier = verifier
+        self.target = verifier.target
+        self.limits = verifier.options
         self.look: stuck.Look | None = None
-        self.state = None if options.resume is None else State(options.resume, self.limits)
+        self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
 
     def run(self) -> int:
-        asked = {each.question.name: self._with_threshold(each) for each in self.checker.asked}
+        checker = self.verifier.checker
         interrupted = False
-        with _executor(self.options.dask) as (executor, workers), Bar() as bar:
-            for name in self.checker.names:
+        with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar:
+            for name in self.verifier.names:
                 try:
-                    if name in self.checker.refused:
-                        raise self.checker.refused[name]
                     with Pool(workers or self.options.jobs, executor) as pool:
-                        result = self._answer(asked[name], pool, bar)
+                        result = self._answer(self.verifier.question(name), pool, bar)
                 except FaultError as fault:
                     self.faults.append(fault)
-                    why = refusal(fault, self.subject, self.limits.seed, shown_path)
-                    result = Result(name, None, (), 0.0, refusal=why)
+                    result = self._refused(name, fault)
                 self.results.append(result)
                 if result.is_interrupted:
                     interrupted = True
                     break
-            if not interrupted and not self.options.exact and stuck.can_be_stuck(self.checker):
-                asks_stuck = any(each.question.is_stuck for each in asked.values())
+            if not interrupted and not self.options.exact and stuck.can_be_stuck(checker):
+                asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
                 self.look = self._look(None if asks_stuck or self.faults else bar)
         self._print()
         self._tell_faults()
         is_met = all(r.is_met for r in self.results) and (self.look is None or self.look.is_met)
         status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
-            self._tell(asked)
+            self._tell()
         return status
 
-    def _with_threshold(self, asked: Asked) -> Asked:
-        """The question with the first number that it is compared with, for the sequential test."""
-        if asked.question.threshold is None:
-            for expectation in self.expectations:
-                if expectation.name == asked.question.name:
-                    return replace(asked, question=with_threshold(asked.question, expectation.threshold))
-        return asked
+    def _refused(self, name: str, fault: FaultError) -> Result:
+        """The result of a property that cannot be answered, with a path as people read it."""
+        result = self.verifier.refused(name, fault)
+        why = result.refusal
+        if why is None or why.place is None:
+            return result
+        return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _expected(self, asked: Asked) -> Iterator[Expectation]:
-        own = [each for each in self.expectations if each.name == asked.question.name]
-        threshold = asked.question.threshold
-        if threshold is not None and not any(each.threshold == threshold for each in own):
-            yield Expectation(asked.question.name, threshold, is_own=True)
-        yield from own
-
-    def _answer(self, asked: Asked, pool: Pool, bar: Bar) -> Result:
+    def _answer(self, asked: Asked, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
         name = asked.question.name
         if self.options.exact:
-            return self._exact(asked, began)
-        if self.limits.method == SPRT and (asked.question.threshold is None or asked.question.is_reward):
-            raise UsageError(f"{name} is not compared with a number, which a sequential test needs; use --expect")
+            return self._exact(asked)
+        try:
+            self.verifier.check_method(asked)
+        except NoThresholdError as error:
+            raise UsageError(f"{error}; use --expect") from None
         tally = Tally()
-        payload = self.checker.payload(asked)
+        payload = self.verifier.checker.payload(asked)
         if self.state is not None:
             tally = self.state.tally(asked.question, payload)
         bar.begin(asked.question, self.limits, tally)
-        interrupted = False
-        choices: Choices | None = None
 
-        def watch(found: Tally) -> None:
-            bar.watch(found)
+        def watch(so_far: Tally) -> None:
+            bar.watch(so_far)
             if self.state is not None:
-                self.state.keep(name, payload, found)
+                self.state.keep(name, payload, so_far)
 
         if self.options.scheduler == "lss":
             return self._search(asked, pool, bar, began)
         try:
-            answer = self.checker.answer(asked, self.limits, pool, tally, watch, bar.pulse)
-            if not self.is_uniform and not asked.question.is_stuck:
-                choices = self.checker.choices(asked, answer, pool, bar.pulse)
+            result = self.verifier.answer(asked, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
-            interrupted = True
-            answer = summary(asked.question, self.limits, tally)
-            if not self.is_uniform:
-                choices = Choices()
+            result = self.verifier.interrupted(asked, tally, time.monotonic() - began)
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
-        verdicts = tuple(under_all_schedulers(judge(each, answer), answer, choices) for each in self._expected(asked))
-        took = time.monotonic() - began
-        stuck_traces = self._stuck(asked, answer)
-        return Result(name, answer, verdicts, took, interrupted, stuck=stuck_traces, choices=choices)
+        return result
 
-    def _search(self, asked: Asked, pool: Pool, bar: Bar, began: float) -> Result:
+    def _search(self, asked: Asked, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The least and the greatest probability that sampled schedulers achieve; as much as is known if that is
         interrupted."""
         search, interrupted = Search(), False
         try:
-            self.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
+            self.verifier.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
             interrupted = True
-        found = []
-        for side, (scheduler, tally) in search.found.items():
-            if tally.traces:
-                answer = summary(asked.question, sampling_options(self.limits), tally)
-                words = described(scheduler, self.checker.automata)
-                found.append(Found(side, answer, scheduler, words, self._stuck(asked, answer, scheduler)))
-        side = LEAST if asks_for_minimum(asked.question) else GREATEST
-        own = next((each for each in found if each.side == side), None)
-        verdicts = [
-            Verdict(each, False, False, under="so far") if own is None else judge(each, own.answer)
-            for each in self._expected(asked)
-        ]
-        if own is not None:
-            verdicts = [each if each.is_met else replace(each, under=f"under {own.words}") for each in verdicts]
-        took = time.monotonic() - began
-        example = stuck.shortest([each.stuck for each in found])
-        return Result(
-            asked.question.name, None, tuple(verdicts), took, interrupted, tuple(found), search.tried, example
-        )
+        return self.verifier.sampled(asked, search, time.monotonic() - began, is_interrupted=interrupted)
 
-    def _stuck(self, asked: Asked, answer: Answer, scheduler: int = 0) -> stuck.Stuck | None:
-        return stuck.stuck_in(self.subject, self.checker, asked, answer, scheduler)
-
-    def _look(self, bar: Bar | None) -> stuck.Look:
+    def _look(self, bar: ProgressBar | None) -> stuck.Look:
         """What is known of getting stuck; with a bar, traces are made for it."""
         level = self.options.stuck
-        own = stuck.Look(None, None, level)
-        if bar is not None:
-            own = stuck.look(self.subject, self.checker, self.limits, level, bar.pulse)
+        own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exact(self, asked: Asked, began: float) -> Result:
-        from as2fm_lsp.verification.exactly import ExactError, exactly, judged  # noqa: PLC0415
-
+    def _exact(self, asked: Asked) -> Result:
         try:
-            found = exactly(self.checker, asked, self.options.max_states)
+            return self.verifier.exact(asked, self.options.max_states)
         except ExactError as error:
             raise UsageError(f"{asked.question.name}: {error}") from None
-        verdicts = tuple(judged(each, found, asked.question) for each in self._expected(asked))
-        return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=found)
 
     def _print(self) -> None:
         text = self._text()
@@ -293,7 +233,7 @@ class _Verification:
     def _text(self) -> str:
         if self.options.format == "json":
             entries = [_row(each) for each in self._fault_entries()]
-            row = None if self.look is None else stuck.as_row(self.look, self._place_row)
+            row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
             return as_json(self.results, entries, stuck=row)
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
@@ -302,8 +242,8 @@ class _Verification:
         is_told = is_told and not any(each.is_interrupted for each in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
         if self.look is not None:
-            text += stuck.as_text(self.look, self._place, self._where_shown(is_told))
-        return f"{text}{'' if is_told else explained(text, self.subject.model, self._place)}{self._assumptions()}\n"
+            text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
+        return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
 
     def _where_shown(self, is_told: bool) -> str:
         """Where it was shown who waits for whom, as in the example that is known of getting stuck; "" if nowhere."""
@@ -325,17 +265,17 @@ class _Verification:
         return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
 
     def _place(self, origin: Location) -> str:
-        path, line, _ = self.subject.place(origin) or ("", 0, 0)
+        path, line, _ = self.target.place(origin) or ("", 0, 0)
         return f"{shown_path(path)}:{line}"
 
     def _place_row(self, origin: Location) -> dict[str, Any]:
-        path, line, column = self.subject.place(origin) or ("", 0, 0)
+        path, line, column = self.target.place(origin) or ("", 0, 0)
         return {"file": shown_path(path), "line": line, "column": column}
 
     def _fault_entries(self) -> list[Entry]:
         """What could not be answered, with its place in the model."""
         diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
-        return [entry(each, self.subject.source_of, shown_path) for each in diagnostics if each is not None]
+        return [entry(each, _source_of(self.target), shown_path) for each in diagnostics if each is not None]
 
     def _tell_faults(self) -> None:
         """The same for people, on standard error."""
@@ -345,31 +285,29 @@ class _Verification:
             if entries:
                 print_text(FORMATS["text"](report), stream=sys.stderr)
 
-    def _tell(self, asked: Mapping[str, Asked]) -> None:
+    def _tell(self) -> None:
         """Write traces and stories."""
-        from as2fm_lsp.verification.counterexample import speaking_against, wanted_verdict  # noqa: PLC0415
-        from as2fm_lsp.verification.traces import write_traces  # noqa: PLC0415
-        from roaml.smc.record import Recorder  # noqa: PLC0415
-        from roaml.smc.story import tell  # noqa: PLC0415
+        from as2fm_lsp.verification.trace_files import write_traces  # noqa: PLC0415
 
         stories: list[Story] = []
         for result in self.results:
-            if result.answer is None:
-                if result.found and (self.options.explain or self.options.traces is not None):
+            traces = result.traces
+            if result.answer is None or traces is None:
+                if result.sampled and (self.options.explain or self.options.traces is not None):
                     complain(f"{result.name}: traces of sampled schedulers are neither explained nor written")
                 continue
-            recorder = Recorder(self.checker, asked[result.name], self.limits.seed, self.limits.max_steps)
             if self.options.traces is not None:
-                write_traces(self.options.traces, self.subject, recorder, result.answer, self.options.traces_limit)
+                recorder = traces.recorder()
+                write_traces(self.options.traces, self.target, recorder, result.answer, self.options.traces_limit)
             if self.options.explain:
-                seen = speaking_against(result)
+                seen = unwanted_trace(result)
                 if seen is None:
-                    what = "fails" if wanted_verdict(result) == FALSE else "holds"
+                    what = "fails" if unwanted_verdict(result) == FALSE else "holds"
                     print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
                 else:
-                    stories.append(tell(recorder, seen.trace, self.subject.clock))
-        for target in self.options.explain:
-            self._write_stories(stories, target)
+                    stories.append(traces.story(seen.trace))
+        for file in self.options.explain:
+            self._write_stories(stories, file)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
         """The stories, one after the other; what several have in common is said once."""
@@ -383,22 +321,22 @@ class _Verification:
             texts.append(story_text(story, self._place, shown_at.get(chain, "") if chain else ""))
             shown_at.setdefault(chain, f"above, at the end of the trace of `{story.property}`")
         text = "\n".join(texts)
-        return text + explained(text, self.subject.model, self._place)
+        return text + explained(text, self.target.model, self._place)
 
-    def _write_stories(self, stories: Sequence[Story], target: str) -> None:
+    def _write_stories(self, stories: Sequence[Story], file: str) -> None:
         from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
 
-        if target.endswith(".html"):
+        if file.endswith(".html"):
             text = as_html(stories, self._place, shown_path(self.options.main))
-        elif target.endswith(".mmd"):
+        elif file.endswith(".mmd"):
             text = "\n".join(as_mermaid(story, self._place) for story in stories)
         else:
             text = self._story_texts(stories)
-        if target == STANDARD_OUTPUT:
+        if file == STANDARD_OUTPUT:
             # Programs read standard output; the story is for people.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
         else:
-            write_file(target, text)
+            write_file(file, text)
 
 
 @contextmanager
@@ -558,16 +496,24 @@ def _limits(options: argparse.Namespace) -> Options:
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:
     """What a model does wrong while it runs: with its place, and the trace that shows it. None without a place."""
-    message = fault.message
-    if fault.trace is not None:
-        message += f" (in trace {fault.trace} of seed {options.seed})"
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
-    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, message)
+    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed))
 
 
-def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError) -> int:
+def _source_of(target: Target) -> Callable[[str], SourceFile]:
+    """The texts of the files that a target was read from."""
+
+    def source_of(path: str) -> SourceFile:
+        source = target.source_of(path)
+        assert source is not None
+        return source
+
+    return source_of
+
+
+def _fault(options: argparse.Namespace, target: Target, fault: FaultError) -> int:
     """The whole model cannot be run."""
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
@@ -575,7 +521,7 @@ def _fault(options: argparse.Namespace, subject: Subject, fault: FaultError) -> 
         if options.format == "json":
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
-    return _errors(options, (diagnostic,), subject.source_of, subject.files)
+    return _errors(options, (diagnostic,), _source_of(target), target.files)
 
 
 def _errors(

@@ -33,7 +33,7 @@ def register(server: Server) -> None:
             session.convert.uri(item.path),
             session.convert.range(source, item.span),
             session.convert.range(source, item.name_span),
-            detail=symbol.kind,
+            detail=symbol.kind.value,
             data=pack(symbol),
         )
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import documentation
-from roaml.diagnostics import Symbol
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
 
 if TYPE_CHECKING:
@@ -60,8 +60,8 @@ def register(server: Server) -> None:
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     def resolve(item: types.CompletionItem) -> types.CompletionItem:
         if isinstance(item.data, list) and len(item.data) == 5:
-            path, *about = item.data
-            text = document(server.session.moment().snapshot(path).analysis, Symbol(*about))
+            path, about = item.data[0], unpack(item.data[1:])
+            text = document(server.session.moment().snapshot(path).analysis, about) if about else ""
             if text:
                 item.documentation = documentation(text, _Client(server).formats)
         return item
@@ -108,8 +108,7 @@ class _Client:
         if item.deprecated and self.tags:
             made.tags = [types.CompletionItemTag.Deprecated]
         if item.about is not None:
-            about = item.about
-            made.data = [path, about.path, about.kind, about.name, about.scope]
+            made.data = [path, *pack(item.about)]
         return made
 
 

@@ -11,7 +11,7 @@ from lsprotocol import types
 from as2fm_lsp.handlers.asked import Asked, asked
 from roaml.ide.folding_range import FoldKind, folds
 from roaml.ide.navigation.document_links import links
-from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.ide.selection_range import selections
 from roaml.text import Span
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
 _FOLDS = {FoldKind.BLOCK: types.FoldingRangeKind.Region, FoldKind.COMMENT: types.FoldingRangeKind.Comment}
 
 _KINDS = {
-    SymbolKind.MACHINE: types.SymbolKind.Class,
-    SymbolKind.DATAMODEL: types.SymbolKind.Namespace,
-    SymbolKind.VARIABLE: types.SymbolKind.Variable,
-    SymbolKind.PORT: types.SymbolKind.Property,
-    SymbolKind.ROS: types.SymbolKind.Interface,
-    SymbolKind.STATE: types.SymbolKind.Object,
-    SymbolKind.TRANSITION: types.SymbolKind.Event,
-    SymbolKind.THREAD: types.SymbolKind.Module,
-    SymbolKind.TREE: types.SymbolKind.Class,
-    SymbolKind.CONTROL: types.SymbolKind.Operator,
-    SymbolKind.LEAF: types.SymbolKind.Function,
-    SymbolKind.SYSTEM: types.SymbolKind.Package,
-    SymbolKind.SECTION: types.SymbolKind.Namespace,
-    SymbolKind.INPUT: types.SymbolKind.File,
-    SymbolKind.STRUCT: types.SymbolKind.Struct,
-    SymbolKind.MEMBER: types.SymbolKind.Field,
-    SymbolKind.PROPERTY: types.SymbolKind.Boolean,
+    DocumentSymbolKind.MACHINE: types.SymbolKind.Class,
+    DocumentSymbolKind.DATAMODEL: types.SymbolKind.Namespace,
+    DocumentSymbolKind.VARIABLE: types.SymbolKind.Variable,
+    DocumentSymbolKind.PORT: types.SymbolKind.Property,
+    DocumentSymbolKind.ROS: types.SymbolKind.Interface,
+    DocumentSymbolKind.STATE: types.SymbolKind.Object,
+    DocumentSymbolKind.TRANSITION: types.SymbolKind.Event,
+    DocumentSymbolKind.THREAD: types.SymbolKind.Module,
+    DocumentSymbolKind.TREE: types.SymbolKind.Class,
+    DocumentSymbolKind.CONTROL: types.SymbolKind.Operator,
+    DocumentSymbolKind.LEAF: types.SymbolKind.Function,
+    DocumentSymbolKind.SYSTEM: types.SymbolKind.Package,
+    DocumentSymbolKind.SECTION: types.SymbolKind.Namespace,
+    DocumentSymbolKind.INPUT: types.SymbolKind.File,
+    DocumentSymbolKind.STRUCT: types.SymbolKind.Struct,
+    DocumentSymbolKind.MEMBER: types.SymbolKind.Field,
+    DocumentSymbolKind.PROPERTY: types.SymbolKind.Boolean,
 }
 
 

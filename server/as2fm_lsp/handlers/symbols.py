@@ -6,34 +6,52 @@ from __future__ import annotations
 from lsprotocol import types
 
 from roaml.diagnostics import Symbol
-from roaml.ide.names.occurrence import HANDLES
-
-_KINDS = {
-    "machine": types.SymbolKind.Class,
-    "plugin": types.SymbolKind.Class,
-    "tree": types.SymbolKind.Module,
-    "tree-node": types.SymbolKind.Object,
-    "state": types.SymbolKind.EnumMember,
-    "variable": types.SymbolKind.Variable,
-    "blackboard": types.SymbolKind.Variable,
-    "port": types.SymbolKind.Property,
-    "struct": types.SymbolKind.Struct,
-    "member": types.SymbolKind.Field,
-    "parameter": types.SymbolKind.Field,
-    "event": types.SymbolKind.Event,
-    **dict.fromkeys(("topic", "service", "action", *HANDLES), types.SymbolKind.Interface),
-}
+from roaml.roles import SymbolKind
 
 
-def symbol_kind(kind: str) -> types.SymbolKind:
-    return _KINDS.get(kind, types.SymbolKind.Object)
+def symbol_kind(kind: SymbolKind) -> types.SymbolKind:
+    match kind:
+        case SymbolKind.MACHINE | SymbolKind.PLUGIN:
+            return types.SymbolKind.Class
+        case SymbolKind.TREE:
+            return types.SymbolKind.Module
+        case SymbolKind.STATE | SymbolKind.ENUMERATION_VALUE:
+            return types.SymbolKind.EnumMember
+        case SymbolKind.VARIABLE | SymbolKind.BLACKBOARD | SymbolKind.EVENT_VARIABLE | SymbolKind.GLOBAL:
+            return types.SymbolKind.Variable
+        case SymbolKind.PORT | SymbolKind.ATTRIBUTE | SymbolKind.JSON:
+            return types.SymbolKind.Property
+        case SymbolKind.STRUCT | SymbolKind.ROS_TYPE | SymbolKind.BASE_TYPE:
+            return types.SymbolKind.Struct
+        case SymbolKind.MEMBER | SymbolKind.PARAMETER | SymbolKind.FIELD:
+            return types.SymbolKind.Field
+        case SymbolKind.EVENT:
+            return types.SymbolKind.Event
+        case SymbolKind.FUNCTION:
+            return types.SymbolKind.Function
+        case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION | SymbolKind.TIMER:
+            return types.SymbolKind.Interface
+        case SymbolKind.PUBLISHER | SymbolKind.SUBSCRIBER:
+            return types.SymbolKind.Interface
+        case SymbolKind.SERVICE_CLIENT | SymbolKind.SERVICE_SERVER:
+            return types.SymbolKind.Interface
+        case SymbolKind.ACTION_CLIENT | SymbolKind.ACTION_SERVER:
+            return types.SymbolKind.Interface
+        case SymbolKind.TREE_NODE | SymbolKind.TREE_INSTANCE | SymbolKind.ELEMENT:
+            return types.SymbolKind.Object
 
 
 def pack(symbol: Symbol) -> list[str]:
     """As a client keeps it for us."""
-    return [symbol.path, symbol.kind, symbol.name, symbol.scope]
+    return [symbol.path, symbol.kind.value, symbol.name, symbol.scope]
 
 
 def unpack(data: object) -> Symbol | None:
     """What `pack` made; None if it is something else."""
-    return Symbol(*map(str, data)) if isinstance(data, (list, tuple)) and len(data) == 4 else None
+    if not isinstance(data, (list, tuple)) or len(data) != 4:
+        return None
+    path, kind, name, scope = map(str, data)
+    return Symbol(path, SymbolKind(kind), name, scope) if kind in _NAMES else None
+
+
+_NAMES = frozenset(kind.value for kind in SymbolKind)

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, TypedDict
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
+from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
-from as2fm_lsp.write import write_file
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names

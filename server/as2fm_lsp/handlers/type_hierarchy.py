@@ -13,6 +13,7 @@ from as2fm_lsp.handlers.symbols import pack, unpack
 from roaml.diagnostics import Symbol
 from roaml.ide.hierarchy.types import TypeItem, holders_of, members_of, types_at
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
@@ -27,7 +28,7 @@ def register(server: Server) -> None:
             source = analysis.source(each.location.path)
             if source is not None:
                 place = session.convert.location(source, each.location)
-                kind = types.SymbolKind.Struct if each.symbol.kind == "struct" else types.SymbolKind.Interface
+                kind = types.SymbolKind.Struct if each.symbol.kind is SymbolKind.STRUCT else types.SymbolKind.Interface
                 data = [asked_in, pack(each.symbol)]
                 name, uri, range_ = each.symbol.name, place.uri, place.range
                 items.append(types.TypeHierarchyItem(name, kind, uri, range_, range_, detail=each.detail, data=data))

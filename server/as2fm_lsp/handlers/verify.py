@@ -23,15 +23,11 @@ from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.handlers.parameters import document_uri, string
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.shown import shown
-from as2fm_lsp.verification import background, stuck
-from as2fm_lsp.verification.choices import under_all_schedulers
-from as2fm_lsp.verification.counterexample import counterexample, speaking_against
-from as2fm_lsp.verification.expectations import Expectation, RangeError, check_range, judge
-from as2fm_lsp.verification.nodes import explained
-from as2fm_lsp.verification.report import Result, one_as_text, row
-from as2fm_lsp.verification.subject import Subject, of_system
-from as2fm_lsp.verification.verified import Known, missed, short
-from as2fm_lsp.verification.wishes import Wishes, wishes
+from as2fm_lsp.verification import background, stuck_report
+from as2fm_lsp.verification.known_results import KnownResult, missed, short
+from as2fm_lsp.verification.node_names import explained
+from as2fm_lsp.verification.report import one_as_text, row
+from as2fm_lsp.verification.settings import VerificationSettings, verification_settings
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.diagrams import highlights
@@ -40,13 +36,17 @@ from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
-from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
-from roaml.smc.model import Checker
+from roaml.smc.goal import STUCK_PROPERTY, Asked
 from roaml.smc.pool import WorkersLostError
-from roaml.smc.run import Answer, Tally, summary
+from roaml.smc.run import Tally, summary
 from roaml.text import Location
+from roaml.verification import stuck
+from roaml.verification.counterexample import counterexample, unwanted_trace
+from roaml.verification.expectations import RangeError, check_range
+from roaml.verification.results import Result, Traces
+from roaml.verification.target import Target
+from roaml.verification.verifier import Verifier, checker_of
 from roaml.views.story import Line
 
 if TYPE_CHECKING:
@@ -82,13 +82,13 @@ def register(server: Server) -> None:
             return None
         path = session.convert.path(str(arguments[0]))
         names = arguments[1] if len(arguments) > 1 else ()
-        wanted = wishes(session.client_settings, arguments[2] if len(arguments) > 2 else None)
-        for problem in wanted.problems:
+        settings = verification_settings(session.client_settings, arguments[2] if len(arguments) > 2 else None)
+        for problem in settings.problems:
             _tell(server, types.MessageType.Warning, problem)
         async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
             try:
                 with server.requests.cancelled_by(bar.token):
-                    run = _Run(server, bar, path, wanted)
+                    run = _Run(server, bar, path, settings)
                     return await run.answer([str(name) for name in names] if isinstance(names, Sequence) else [])
             except Interrupted:
                 if bar.is_cancelled:
@@ -110,34 +110,27 @@ def register(server: Server) -> None:
         return [system for system in found if system["properties"]]
 
     @server.feature(COUNTEREXAMPLE)
-    async def why(params: Any) -> Json | None:
+    async def explain(params: Any) -> Json | None:
         """The shortest trace that speaks against a property; null if none is known."""
         path = session.convert.path(document_uri(params))
         known = server.verified.get(path, string(params, "property"))
-        seen = speaking_against(known.result) if known else None
-        if known is None or seen is None:
+        if known is None or known.result.traces is None:
             return None
-
-        found = await background.in_thread(
-            lambda _: counterexample(
-                known.subject,
-                known.checker,
-                known.asked,
-                known.options,
-                seen,
-                lambda origin: _place_in_words(known.subject, origin),
-            ),
-            server.requests.checkpoint,
+        result, target = known.result, known.result.traces.target
+        why = await background.in_thread(
+            lambda _: counterexample(result, partial(_place_in_words, target)), server.requests.checkpoint
         )
+        if why is None:
+            return None
         analysis = session.moment().snapshot(path).analysis
         return {
             "property": known.result.name,
-            "heading": found.heading,
-            "verdict": found.verdict,
-            "trace": found.trace,
+            "heading": why.heading,
+            "verdict": why.verdict,
+            "trace": why.trace,
             "expected": missed(known.result),
             "stale": server.verified.is_stale(known, analysis, path),
-            "steps": [_step(server, known, path, line) for line in found.lines],
+            "steps": [_step(server, known, path, line) for line in why.lines],
         }
 
 
@@ -169,7 +162,7 @@ def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[ty
             title = " · ".join([f"{TITLE}{where}", *words])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
             speaks = known and (missed(known.result) or known.result.stuck)
-            if known and server.show_counterexample and speaks and speaking_against(known.result):
+            if known and server.show_counterexample and speaks and unwanted_trace(known.result):
                 show = types.Command("Show counterexample", server.show_counterexample, arguments=[uri, each.name])
                 yield types.CodeLens(on.range(each.name_span), show)
 
@@ -189,7 +182,8 @@ def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.I
             mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
-            whole = one_as_text(known.result, partial(_place_in_words, known.subject))
+            place_of = partial(_place_in_words, known.result.traces.target if known.result.traces else None)
+            whole = one_as_text(known.result, place_of)
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
 
 
@@ -198,7 +192,7 @@ def _shows_hints(server: Server) -> bool:
     return bool(document and document.inlay_hint) and shown(server.session.client_settings).results
 
 
-def _words(server: Server, analysis: Analysis, system: str, known: Known | None) -> list[str]:
+def _words(server: Server, analysis: Analysis, system: str, known: KnownResult | None) -> list[str]:
     if known is None:
         return []
     wrong = missed(known.result)
@@ -214,11 +208,11 @@ def _words(server: Server, analysis: Analysis, system: str, known: Known | None)
 class _Run:
     """One call of the command."""
 
-    def __init__(self, server: Server, bar: Progress, path: str, wanted: Wishes) -> None:
+    def __init__(self, server: Server, bar: Progress, path: str, settings: VerificationSettings) -> None:
         self.server = server
         self.bar = bar
         self.path = path
-        self.wanted = wanted
+        self.settings = settings
 
     async def answer(self, names: list[str]) -> Json | None:
         server, path = self.server, self.path
@@ -228,126 +222,103 @@ class _Run:
             system = api.loaded(server.session.moment().snapshot(path), path)
         except api.ModelError as error:
             self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
-            if not self.wanted.is_silent:
+            if not self.settings.is_silent:
                 await show(server, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
             self.say_wrong(str(error))
             return {"results": [], "errors": [{"message": str(error)}]}
         texts = fingerprint(system.analysis, path)
-        subject = server.verified.subject(texts)
-        if subject is None:
+        target = server.verified.target(texts)
+        if target is None:
             await self.bar.step("translating")
-            subject = of_system(system)
-            server.verified.keep_subject(texts, subject)
-        known = [each.name for each in subject.model.properties]
+            target = api.as_target(system)
+            server.verified.keep_target(texts, target)
         rows: list[Json] = []
         results: list[Result] = []
-        checker: Checker | None = None
-        for each in dict.fromkeys(names or known):
+        verifier: Verifier | None = None
+        for property_name in dict.fromkeys(names or [property_.name for property_ in target.model.properties]):
             try:
-                await self.bar.step(each)
+                await self.bar.step(property_name)
                 began = time.monotonic()
-                checker, asked = self.asked(subject, each)
-                answer, choices = await self.traces(checker, asked)
+                verifier, asked = self.asked(target, property_name)
+                result = replace(await self.traces(verifier, asked), seconds=time.monotonic() - began)
             except FaultError as fault:
-                rows.append({"property": each, "error": self.fault(fault, system.analysis)})
-                self.say_wrong(f"{each}: {fault.message}")
+                rows.append({"property": property_name, "error": self.fault(fault, system.analysis)})
+                self.say_wrong(f"{property_name}: {fault.message}")
                 continue
             except (api.PropertyError, RangeError, WorkersLostError) as error:
-                rows.append({"property": each, "error": {"message": str(error)}})
+                rows.append({"property": property_name, "error": {"message": str(error)}})
                 self.say_wrong(str(error))
                 continue
-            verdicts = tuple(
-                under_all_schedulers(judge(expected, answer), answer, choices) for expected in self.expected(asked)
-            )
-            options = self.wanted.options
-            gets_stuck = stuck.stuck_in(subject, checker, asked, answer)
-            took = time.monotonic() - began
-            result = Result(each, answer, verdicts, took, stuck=gets_stuck, choices=choices)
             results.append(result)
-            server.verified.put(path, Known(result, subject, system.analysis, checker, asked, options, texts))
-            rows.append({**row(result), "short": short(result), "counterexample": speaking_against(result) is not None})
+            server.verified.put(path, KnownResult(result, system.analysis, texts))
+            rows.append({**row(result), "short": short(result), "counterexample": unwanted_trace(result) is not None})
             server.refresh.look()
-            if not self.wanted.is_silent:
-                _tell(server, types.MessageType.Info, self.text(result, subject))
-        look = None if checker is None else await self.look(subject, system.analysis, checker, results, texts)
+            if not self.settings.is_silent:
+                _tell(server, types.MessageType.Info, self.text(result, target))
+        look = None if verifier is None else await self.look(verifier, system.analysis, results, texts)
         return {"results": rows, "errors": [], "stuck": look}
 
-    def text(self, result: Result, subject: Subject) -> str:
+    def text(self, result: Result, target: Target) -> str:
         """A result as a message; another message shows who waits for whom."""
         shown = "in a message of its own"
-        return one_as_text(result, partial(_place_in_words, subject), self.wanted.stuck, shown)
+        return one_as_text(result, partial(_place_in_words, target), self.settings.stuck, shown)
 
-    def asked(self, subject: Subject, name: str) -> tuple[Checker, Asked]:
+    def asked(self, target: Target, name: str) -> tuple[Verifier, Asked]:
         """A property, ready to be answered.
 
         Raises:
             PropertyError, FaultError: it cannot be answered.
             RangeError: no value of it can meet what is expected of it.
         """
-        checker = api.checker(subject.model, [name])
-        for why in checker.refused.values():
-            raise why
-        asked = self.with_threshold(checker.asked[0])
-        for expected in self.expected(asked):
-            check_range(expected, asked.question)
-        return checker, asked
+        only_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
+        checker = checker_of(target, [name])
+        verifier = Verifier(target, checker, self.settings.options, self.settings.expectations, only_uniform)
+        asked = verifier.question(name)
+        for expectation in verifier.expected(asked):
+            check_range(expectation, asked.question)
+        return verifier, asked
 
     async def look(
-        self, subject: Subject, analysis: Analysis, checker: Checker, results: Sequence[Result], texts: Texts
+        self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
         """What is known of getting stuck, by traces that are made for it if it was not asked."""
+        target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None
-        known = stuck.Look(None, None, self.wanted.stuck)
-        if not any(result.answer and result.answer.question.is_stuck for result in results):
-            options, asked = self.wanted.options, checker.stuck
+        known = stuck.Look(None, None, level)
+        if not any(result.asks_stuck for result in results):
+            asked = checker.stuck
             await self.bar.step(asked.question.name)
             began = time.monotonic()
             known = await background.in_thread(
-                lambda checked: stuck.look(subject, checker, options, self.wanted.stuck, lambda _, __: checked()),
+                lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
                 self.server.requests.checkpoint,
             )
-            is_free = all(each.name != asked.question.name for each in subject.model.properties)
+            is_free = all(property_.name != asked.question.name for property_ in target.model.properties)
             if known.answer is not None and is_free:
-                result = Result(asked.question.name, known.answer, (), time.monotonic() - began, stuck=known.stuck)
-                made = Known(result, subject, analysis, checker, asked, known.answer.options, texts)
-                self.server.verified.put(self.path, made)
+                traces = Traces(target, checker, asked, known.answer.options)
+                seconds = time.monotonic() - began
+                result = Result(asked.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces)
+                self.server.verified.put(self.path, KnownResult(result, analysis, texts))
             self.server.refresh.look()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
-        place_of = partial(_place_in_words, subject)
-        text = stuck.as_text(known, place_of)
-        text += explained(text, subject.model, place_of)
-        if known.stuck is not None and not self.wanted.is_silent:
+        place_of = partial(_place_in_words, target)
+        text = stuck_report.as_text(known, place_of)
+        text += explained(text, target.model, place_of)
+        if known.stuck is not None and not self.settings.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
             _tell(self.server, kind, text.strip())
-        row = stuck.as_row(known, lambda origin: _place(self.server, analysis, origin))
+        row = stuck_report.as_row(known, lambda origin: _place(self.server, analysis, origin))
         return {**row, "text": text.strip()}
 
-    async def traces(self, checker: Checker, asked: Asked) -> tuple[Answer, Choices | None]:
-        def tell(tally: Tally) -> None:
-            so_far = Result(asked.question.name, summary(asked.question, self.wanted.options, tally), (), 0)
+    async def traces(self, verifier: Verifier, asked: Asked) -> Result:
+        def show_estimate(tally: Tally) -> None:
+            so_far = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
             self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
-        is_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
-        checkpoint = self.server.requests.checkpoint
-        is_uniform = is_uniform or asked.question.is_stuck
-        return await background.answer(checker, asked, self.wanted.options, checkpoint, tell, is_uniform)
-
-    def with_threshold(self, asked: Asked) -> Asked:
-        """The question with the first number that it is compared with."""
-        first = next((each for each in self.wanted.expectations if each.name == asked.question.name), None)
-        if asked.question.threshold is not None or first is None:
-            return asked
-        return replace(asked, question=with_threshold(asked.question, first.threshold))
-
-    def expected(self, asked: Asked) -> Iterator[Expectation]:
-        own = [each for each in self.wanted.expectations if each.name == asked.question.name]
-        threshold = asked.question.threshold
-        if threshold is not None and not any(each.threshold == threshold for each in own):
-            yield Expectation(asked.question.name, threshold, is_own=True)
-        yield from own
+        return await background.answer(verifier, asked, self.server.requests.checkpoint, show_estimate)
 
     def error(self, diagnostic: Diagnostic, result: api.CheckResult) -> Json:
         place = _place(self.server, result.snapshot.analysis, Location(diagnostic.path, diagnostic.span))
@@ -358,7 +329,7 @@ class _Run:
         return {"message": fault.message, "code": fault.code, "trace": fault.trace, **place}
 
     def say_wrong(self, text: str) -> None:
-        if not self.wanted.is_silent:
+        if not self.settings.is_silent:
             _tell(self.server, types.MessageType.Error, text)
 
 
@@ -371,7 +342,7 @@ def _property(server: Server, analysis: Analysis, system: str, each: Verifiable)
     return found
 
 
-def _step(server: Server, known: Known, system: str, line: Line) -> Json:
+def _step(server: Server, known: KnownResult, system: str, line: Line) -> Json:
     origin = line.origin
     nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
     convert = server.session.convert
@@ -387,8 +358,8 @@ def _step(server: Server, known: Known, system: str, line: Line) -> Json:
     }
 
 
-def _place_in_words(subject: Subject, origin: Location) -> str:
-    place = subject.place(origin)
+def _place_in_words(target: Target | None, origin: Location) -> str:
+    place = target.place(origin) if target else None
     return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
 
 

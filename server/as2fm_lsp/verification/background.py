@@ -12,55 +12,46 @@ from dataclasses import replace
 from typing import TypeVar
 
 from roaml.project.memo import Interrupted
-from roaml.smc.choices import Choices
 from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
 from roaml.smc.pool import Pool
-from roaml.smc.run import Answer, Options, Tally
+from roaml.smc.run import Tally
+from roaml.verification.results import Result
+from roaml.verification.verifier import Verifier
 
 T = TypeVar("T")
-PAUSE = 0.2
-"""Seconds between two estimates that are told."""
+ESTIMATE_INTERVAL_S = 0.2
+"""The time between two estimates that are shown."""
 
 
 async def answer(
-    checker: Checker,
-    asked: Asked,
-    options: Options,
-    checkpoint: Callable[[], None],
-    tell: Callable[[Tally], None],
-    is_uniform: bool = False,
-) -> tuple[Answer, Choices | None]:
-    """
+    verifier: Verifier, asked: Asked, checkpoint: Callable[[], None], show: Callable[[Tally], None]
+) -> Result:
+    """The result of a property.
+
     Args:
         checkpoint: called in the thread, several times a second; what it raises ends the work.
-        tell: called on the event loop with what is known so far.
-        is_uniform: whether uniform choices are what is wanted; else it is looked into whether they matter.
+        show: called on the event loop with what is known so far.
 
     Raises:
-        Interrupted: the work is not wanted any more.
+        Interrupted: the result is not needed any more.
         FaultError: a trace went wrong.
         WorkersLostError: the processes die again and again.
     """
     loop = asyncio.get_running_loop()
     latest = Tally()
-    told = time.monotonic()
+    shown_at = time.monotonic()
 
-    def pulse(_: int, __: int, checked: Callable[[], None]) -> None:
-        nonlocal told
-        checked()
-        now = time.monotonic()
-        if latest.traces and now - told > PAUSE:
-            told = now
-            loop.call_soon_threadsafe(tell, replace(latest))
-
-    def work(checked: Callable[[], None]) -> tuple[Answer, Choices | None]:
-        def pulsed(trace: int, steps: int) -> None:
-            pulse(trace, steps, checked)
+    def work(checked: Callable[[], None]) -> Result:
+        def pulse(_: int, __: int) -> None:
+            nonlocal shown_at
+            checked()
+            now = time.monotonic()
+            if latest.traces and now - shown_at > ESTIMATE_INTERVAL_S:
+                shown_at = now
+                loop.call_soon_threadsafe(show, replace(latest))
 
         with Pool(_jobs(), patience=None) as pool:
-            found = checker.answer(asked, options, pool, latest, watch=lambda _: pulsed(0, 0), pulse=pulsed)
-            return found, None if is_uniform else checker.choices(asked, found, pool, pulsed)
+            return verifier.answer(asked, pool, latest, watch=lambda _: pulse(0, 0), pulse=pulse)
 
     return await in_thread(work, checkpoint)
 

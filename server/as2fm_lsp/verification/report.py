@@ -6,89 +6,19 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from as2fm_lsp import junit
 from as2fm_lsp.junit import Case, Outcome
-from as2fm_lsp.verification import choices, ends
-from as2fm_lsp.verification.expectations import Verdict
-from as2fm_lsp.verification.refusal import Refusal
-from as2fm_lsp.verification.stuck import NOT_STUCK, PROBABILITY, WARNING, Look, PlaceOf, Stuck, told
-from as2fm_lsp.verification.stuck import as_text as stuck_text
-from roaml.smc.choices import Choices
+from as2fm_lsp.verification import ends, scheduler_report, stuck_report
+from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.run import Answer, ratio_of
-
-
-@dataclass(frozen=True, slots=True)
-class Exact:
-    """The least and the greatest value over all schedulers, and the number of states."""
-
-    least: float
-    greatest: float
-    states: int
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What a scheduler achieves that was found for the least or the greatest probability.
-
-    Attributes:
-        side: `LEAST` or `GREATEST`.
-        scheduler: its number; `words` describes it.
-        stuck: its traces that got stuck, if any did.
-    """
-
-    side: str
-    answer: Answer
-    scheduler: int
-    words: str
-    stuck: Stuck | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Result:
-    """What came of one property.
-
-    Attributes:
-        answer: by traces with uniform choices; None if only other schedulers or exact values were asked for.
-        found: by traces with schedulers that were looked for.
-        tried: how many these were chosen from.
-        seconds: how long it took.
-        is_interrupted: whether somebody could not wait.
-        choices: what is known of other schedulers than the uniform one; None if that is the one that is wanted.
-        refusal: why there is no answer.
-        stuck: its traces that got stuck, if any did.
-    """
-
-    name: str
-    answer: Answer | None
-    verdicts: tuple[Verdict, ...]
-    seconds: float
-    is_interrupted: bool = False
-    found: tuple[Found, ...] = ()
-    tried: int = 0
-    stuck: Stuck | None = None
-    exact: Exact | None = None
-    choices: Choices | None = None
-    refusal: Refusal | None = None
-
-    @property
-    def asks_stuck(self) -> bool:
-        """Whether it is asked whether traces get stuck."""
-        answers = [self.answer, *(each.answer for each in self.found)]
-        return any(answer is not None and answer.question.is_stuck for answer in answers)
-
-    @property
-    def epsilon(self) -> float:
-        """What `==` allows a value to be away."""
-        answers = [self.answer, *(each.answer for each in self.found)]
-        return next((answer.options.epsilon for answer in answers if answer is not None), 0.0)
-
-    @property
-    def is_met(self) -> bool:
-        """Whether there is an answer, and all is as expected."""
-        return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)
+from roaml.verification.refusal import Refusal
+from roaml.verification.results import Result
+from roaml.verification.schedulers import may_differ
+from roaml.verification.stuck import WARNING, Look, Stuck
+from roaml.views.story import PlaceOf
 
 
 def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
@@ -110,9 +40,9 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
     open_ = [
         (result.answer.question, result.choices)
         for result in results
-        if result.answer is not None and result.choices is not None and choices.may_differ(result.choices)
+        if result.answer is not None and result.choices is not None and may_differ(result.choices)
     ]
-    return "".join(f"{line}\n" for line in (*blocks, *choices.note(open_)))
+    return "".join(f"{line}\n" for line in (*blocks, *scheduler_report.note(open_)))
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
@@ -123,19 +53,19 @@ def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: 
 def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alone: bool) -> str:
     lines = []
     if result.refusal is not None:
-        lines.append(f"{result.name}: not answered: {result.refusal.text}")
+        lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
     if result.exact is not None:
         exact = result.exact
         both = _number(exact.least)
         if exact.least != exact.greatest:
             both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
         lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states, {result.seconds:.1f} s")
-    for each in result.found:
-        lines.append(f"{result.name}: {each.side} probability found {_estimate(each.answer)}")
-        lines.append(f"  by {each.words}")
-        if each.stuck is not None and not each.answer.question.is_stuck:
-            lines += _stuck_lines(each.stuck, place_of, level, shown)
-        lines += _remarks(each.answer)
+    for sampled in result.sampled:
+        lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
+        lines.append(f"  by {sampled.words}")
+        if sampled.stuck is not None and not sampled.answer.question.is_stuck:
+            lines += _stuck_lines(sampled.stuck, place_of, level, shown)
+        lines += _remarks(sampled.answer)
     if result.tried:
         lines.append(f"  {result.tried:,} schedulers were tried, {result.seconds:.1f} s")
     if result.answer is not None:
@@ -145,13 +75,13 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
         if result.stuck is not None and not is_stuck:
             lines += _stuck_lines(result.stuck, place_of, level, shown)
         lines += _remarks(result.answer)
-        if is_alone or not choices.may_differ(result.choices):
-            about = choices.remark(result.answer.question, result.choices)
+        if is_alone or not may_differ(result.choices):
+            about = scheduler_report.remark(result.answer.question, result.choices)
             lines += [f"  {about}"] if about else []
         if not result.is_interrupted and not result.answer.is_complete:
             lines.append("  the interval is wider than asked for (--epsilon)")
     if result.is_interrupted:
-        what = "this is what was known by then" if result.answer or result.found else "nothing was known by then"
+        what = "this is what was known by then" if result.answer or result.sampled else "nothing was known by then"
         lines.append(f"  interrupted; {what}" if lines else f"{result.name}: interrupted; {what}")
     for verdict in result.verdicts:
         doubt = verdict.doubt(result.epsilon)
@@ -160,8 +90,20 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
     return "\n".join(lines)
 
 
+def _refusal_text(refusal: Refusal) -> str:
+    place = refusal.place
+    where = "" if place is None else f"{place.path}:{place.line}:{place.column}: "
+    return f"{where}{refusal.message} [{refusal.code}]"
+
+
+def _refusal_row(refusal: Refusal) -> dict[str, Any]:
+    place = refusal.place
+    where = {} if place is None else {"file": place.path, "line": place.line, "column": place.column}
+    return {**where, "code": refusal.code, "message": refusal.message}
+
+
 def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> list[str]:
-    return [f"  {line}" for line in told(stuck, place_of, level, shown)]
+    return [f"  {line}" for line in stuck_report.told(stuck, place_of, level, shown)]
 
 
 def _estimate(answer: Answer) -> str:
@@ -216,23 +158,23 @@ def as_json(
 
 def row(result: Result) -> dict[str, Any]:
     """A result as a value for JSON."""
-    found: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+    values: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
     if result.refusal is not None:
-        found["error"] = result.refusal.row()
+        values["error"] = _refusal_row(result.refusal)
     if result.answer is not None:
-        found.update(_answer(result.answer))
-        found.update(choices.rows(result.choices))
+        values.update(_answer(result.answer))
+        values.update(scheduler_report.rows(result.choices))
     if about := warning(result):
-        found["warning"] = about
-    for each in result.found:
-        found[each.side] = {**_answer(each.answer), "scheduler": each.scheduler, "by": each.words}
+        values["warning"] = about
+    for sampled in result.sampled:
+        values[sampled.side] = {**_answer(sampled.answer), "scheduler": sampled.scheduler, "by": sampled.words}
     if result.tried:
-        found["schedulers"] = {"wanted": "lss", "tried": result.tried}
+        values["schedulers"] = {"wanted": "lss", "tried": result.tried}
     if result.exact is not None:
         exact = result.exact
-        found["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
-    found["interrupted"] = result.is_interrupted
-    found["expectations"] = [
+        values["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
+    values["interrupted"] = result.is_interrupted
+    values["expectations"] = [
         {
             "expected": verdict.expectation.text,
             "met": verdict.is_met,
@@ -242,7 +184,7 @@ def row(result: Result) -> dict[str, Any]:
         }
         for verdict in result.verdicts
     ]
-    return found
+    return values
 
 
 def warning(result: Result) -> str:
@@ -251,7 +193,7 @@ def warning(result: Result) -> str:
     if result.stuck is not None and not result.asks_stuck:
         parts.append(result.stuck.warning)
     if result.answer is not None:
-        parts.append(choices.warning(result.answer.question, result.choices))
+        parts.append(scheduler_report.warning(result.answer.question, result.choices))
     return "; ".join(filter(None, parts))
 
 
@@ -291,7 +233,9 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Loo
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if look is not None:
         outcome = Outcome.PASSED if look.is_met else Outcome.FAILED
-        cases.append(Case(title, NOT_STUCK, outcome, stuck_text(look, place_of), "" if look.is_met else "stuck"))
+        cases.append(
+            Case(title, NOT_STUCK, outcome, stuck_report.as_text(look, place_of), "" if look.is_met else "stuck")
+        )
     return junit.render("verify", cases)
 
 

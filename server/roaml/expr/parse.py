@@ -36,6 +36,7 @@ from roaml.expr.tree import (
     Unary,
     placed,
 )
+from roaml.expr.words import PREFIXES, STATEMENTS
 from roaml.text import Decoded, Span, TextEdit
 
 MAX_DEPTH = 150
@@ -102,16 +103,8 @@ _WORD_OPERATORS = {"and": Operator.AND, "or": Operator.OR}
 _STEPS = ("++", "--")
 _QUOTES = {'"': "&quot;", "'": "&apos;"}
 _POSTFIX = frozenset((".", "[", "(", *_STEPS))
-_PREFIX_WORDS = frozenset(("typeof", "void", "delete", "await", "yield"))
-_STATEMENT_WORDS = frozenset(
-    re.findall(
-        r"\w+",
-        "new function class let var const if else for while do switch case default break continue return throw try "
-        "catch finally with debugger import export enum extends super",
-    )
-)
 _LITERALS = {"true": True, "false": False}
-_WORDS = _PREFIX_WORDS | _STATEMENT_WORDS | _LITERALS.keys() | {"this"}
+_WORDS = PREFIXES | STATEMENTS | _LITERALS.keys() | {"this"}
 _CLOSERS = frozenset((")", "]", "}"))
 _OPENERS = frozenset(("(", "[", "{"))
 _PRIMARY = (Call, Index, Member, Name, Number)
@@ -344,7 +337,7 @@ class _Parser:
         text, first = token.text, self.at - 1
         if text in _LITERALS:
             return Boolean(span, _LITERALS[text])
-        if text in _STATEMENT_WORDS:
+        if text in STATEMENTS:
             self.report(span, f"`{text}` is not supported: an expression is a single value", UNSUPPORTED)
             self.at = len(self.tokens)
             return ErrorExpr(span)
@@ -352,7 +345,7 @@ class _Parser:
             self.report(span, "`this` is not supported; use the name of the variable", UNSUPPORTED)
             return ErrorExpr(span)
         following = self.peek()
-        if text in _PREFIX_WORDS:
+        if text in PREFIXES:
             self.report(span, f"`{text}` is not supported in expressions", UNSUPPORTED)
             parts = (self.expression(UNARY_PRECEDENCE),) if following is not None else ()
             return ErrorExpr(self.since(first), parts)

@@ -20,6 +20,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 
@@ -46,35 +47,35 @@ def lenses(analysis: Analysis, path: str) -> tuple[Lens, ...]:
     if kind is FileKind.MACHINE and machine is not None:
         found = _machine(analysis, path, machine)
     elif kind is FileKind.TREE:
-        found = _defined(analysis, path, "tree")
+        found = _defined(analysis, path, SymbolKind.TREE)
     elif kind in (FileKind.STRUCTS, FileKind.JSON_STRUCTS):
-        found = _defined(analysis, path, "struct")
+        found = _defined(analysis, path, SymbolKind.STRUCT)
     return tuple(sorted(dict.fromkeys(found), key=lambda each: each.span))
 
 
 def _machine(analysis: Analysis, path: str, machine: Machine) -> Iterator[Lens]:
     owner = _owner(analysis, path)
     if machine.name is not None and (machine.ports or _is_plugin(analysis, path)):
-        yield Lens(machine.name.span, Symbol(path, "machine", machine.name.value))
+        yield Lens(machine.name.span, Symbol(path, SymbolKind.MACHINE, machine.name.value))
     for port in machine.ports:
         if port.key is not None:
-            yield Lens(port.key.span, Symbol(path, "port", port.key.value))
+            yield Lens(port.key.span, Symbol(path, SymbolKind.PORT, port.key.value))
     for declaration in machine.declarations:
         if declaration.handle is not None:
             symbol = Symbol(path, declaration.kind, declaration.handle.value)
             yield Lens(declaration.element.name_span, symbol)
     seen: set[Symbol] = set()
     for each in uses(analysis, path, owner if owner != path else None).all:
-        if each.symbol.kind == "event" and each.symbol not in seen:
+        if each.symbol.kind is SymbolKind.EVENT and each.symbol not in seen:
             seen.add(each.symbol)
             yield Lens(each.span, each.symbol)
 
 
-def _defined(analysis: Analysis, path: str, kind: str) -> Iterator[Lens]:
+def _defined(analysis: Analysis, path: str, kind: SymbolKind) -> Iterator[Lens]:
     """Definitions of one kind."""
     owner = _owner(analysis, path)
     for each in uses(analysis, path, owner if owner != path else None).all:
-        if each.defines and each.symbol.kind == kind:
+        if each.defines and each.symbol.kind is kind:
             yield Lens(each.span, each.symbol)
 
 
@@ -108,13 +109,13 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     found = _within(analysis, thing(analysis, (symbol,)).uses, system)
     in_trees = [use for use in found if analysis.tree(use.path) is not None]
     match symbol.kind:
-        case "event":
+        case SymbolKind.EVENT:
             return _event(analysis, found)
-        case "machine":
+        case SymbolKind.MACHINE:
             return Counted(f"{_count(in_trees, 'use')} in trees", _locations(in_trees))
-        case "port":
+        case SymbolKind.PORT:
             return Counted(f"set {_times(in_trees)} in trees", _locations(in_trees))
-        case "tree":
+        case SymbolKind.TREE:
             places = [use for use in in_trees if not use.occurrence.defines]
             executed = "executed · " if is_main(analysis, symbol) else ""
             return Counted(f"{executed}{_count(places, 'use')}", _locations(places))
@@ -136,9 +137,9 @@ def _event(analysis: Analysis, found: Iterable[Use]) -> Counted:
 
 
 _SIDES = {
-    "topic": ("publisher", "subscriber"),
-    "service": ("server", "client"),
-    "action": ("server", "client"),
+    SymbolKind.TOPIC: ("publisher", "subscriber"),
+    SymbolKind.SERVICE: ("server", "client"),
+    SymbolKind.ACTION: ("server", "client"),
 }
 
 
@@ -153,14 +154,13 @@ def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     places = [use for interface in interfaces for use in _within(analysis, thing(analysis, (interface,)).uses, system)]
     title = " / ".join(dict.fromkeys(shown))
     if len(interfaces) > 1:
-        title = f"{len(interfaces)} {interfaces[0].kind}s: {title}"
+        title = f"{len(interfaces)} {interfaces[0].kind.value}s: {title}"
     in_models = (use for use in places if analysis.machine(use.path) or analysis.tree(use.path))
     return Counted(title, _locations((*in_models, *own)))
 
 
 def _sides(system: System, interface: Symbol) -> str:
-    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[interface.kind]
-    channel = channels.get(interface.name)
+    channel = system.channels(interface.kind).get(interface.name)
     source, user = _SIDES[interface.kind]
     sources, users = (channel.sources, channel.users) if channel else ([], [])
     if is_clock(system, interface):

@@ -40,10 +40,10 @@ from roaml.model.system import Automaton, System
 from roaml.model.tree import TreeNode, nodes
 from roaml.model.value_types import TypedValue, Use, find_handle, port_type
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
-INSTANCE = "tree-instance"
 """The kind of a symbol that stands for a node of an executed tree: `path` is the system, `name` the number."""
 
 _MOST = 3
@@ -145,14 +145,14 @@ _LEADS = ("", "→", "=", ":")
 
 def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
     """What a hint says about `symbol`, for those who ask."""
-    if symbol.kind != INSTANCE:
+    if symbol.kind is not SymbolKind.TREE_INSTANCE:
         return Explanation(describe(analysis, symbol), definition_of(analysis, symbol))
     system = analysis.system(symbol.path)
     node = system.by_instance.get(int(symbol.name)) if system and symbol.name.isdecimal() else None
     if system is None or node is None:
         return Explanation("", None)
-    machine = Symbol(node.path, "machine", node.outline.name)
-    plugin = machine if node.path else Symbol("", "plugin", node.outline.name)
+    machine = Symbol(node.path, SymbolKind.MACHINE, node.outline.name)
+    plugin = machine if node.path else Symbol("", SymbolKind.PLUGIN, node.outline.name)
     text = describe(analysis, plugin)
     about = describe_system.node(system, node)
     return Explanation(f"{about}\n\n{text}", definition_of(analysis, plugin))
@@ -182,7 +182,7 @@ class _Machine:
         self.values: dict[Element, TypedValue] = {
             value.element: value for value in self.typed.values if value.use in (Use.PARAMETER, Use.FIELD)
         }
-        self.interfaces: dict[tuple[str, str], dict[Symbol, str]] = {}
+        self.interfaces: dict[tuple[SymbolKind, str], dict[Symbol, str]] = {}
         if self.linked is not None:
             for automaton in self.linked.automata_of(path):
                 self.take(self.linked, automaton)
@@ -265,7 +265,7 @@ class _Machine:
     def type_part(self, type_: Type) -> Part:
         inner, _ = unwrap(type_)
         is_ours = isinstance(inner, Struct) and inner.what == "struct"
-        return Part(str(type_), Symbol(self.owner, "struct", str(inner)) if is_ours else None)
+        return Part(str(type_), Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_ours else None)
 
     def port_read(self, read: PortRead) -> Iterator[InlayHint]:
         if read.key is not None:
@@ -288,9 +288,9 @@ class _Machine:
         declaration = find_handle(self.machine, user)
         if user.handle is None or declaration is None or is_implicit(declaration):
             return
-        if declaration.kind == "timer":
+        if declaration.kind is SymbolKind.TIMER:
             if isinstance(declaration.rate, Name):
-                symbol = Symbol(self.path, "timer", user.handle.value)
+                symbol = Symbol(self.path, SymbolKind.TIMER, user.handle.value)
                 text = f"{declaration.rate.value} Hz"
                 yield InlayHint(_behind(user.handle), HintKind.TOPICS, (Part(" "), Part(text, symbol)))
             return
@@ -322,7 +322,10 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
     parts: list[Part] = []
     numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
     for (system, number), _ in list(numbers.items())[:_MOST]:
-        parts += [Part(", " if parts else " "), Part(f"bt_{number}", Symbol(system, INSTANCE, str(number)))]
+        parts += [
+            Part(", " if parts else " "),
+            Part(f"bt_{number}", Symbol(system, SymbolKind.TREE_INSTANCE, str(number))),
+        ]
     if len(numbers) > _MOST:
         parts.append(Part(", …"))
     if parts:
@@ -332,7 +335,7 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
         shown = dict.fromkeys(each.type for each in types if each is not None and each.type)
         owners = [a for a in types.values() if a.path]
         if shown and port.attribute.has_value:
-            symbol = Symbol(owners[0].path, "port", port.key.value) if owners else None
+            symbol = Symbol(owners[0].path, SymbolKind.PORT, port.key.value) if owners else None
             yield InlayHint(_behind(port.value), HintKind.PORTS, (Part(" : "), Part(" or ".join(shown), symbol)))
 
 
@@ -354,5 +357,5 @@ def _properties(analysis: Analysis, path: str, within: Span, system: System) -> 
                 continue
             node = node_of(system, identifier)
             if node is not None and node.instance is not None:
-                symbol = Symbol(system.path, INSTANCE, str(node.instance.number))
+                symbol = Symbol(system.path, SymbolKind.TREE_INSTANCE, str(node.instance.number))
                 yield InlayHint(span.end + 1, HintKind.NODES, (Part(" "), Part(node.instance.name, symbol)))

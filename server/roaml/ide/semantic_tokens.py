@@ -23,6 +23,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.syntax import name_of
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Attribute
 
@@ -128,7 +129,7 @@ def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:
         return _NODES.get(type_.node, TokenKind.STRUCTURE_TAG) if type_ else TokenKind.LEAF_TAG
     if type_ is None:
         return None
-    if any(attribute.defines == "state" for attribute in type_.attributes.values()):
+    if any(attribute.defines is SymbolKind.STATE for attribute in type_.attributes.values()):
         return TokenKind.STATE_TAG
     if element.name.startswith("ros_"):
         return TokenKind.ROS_TAG
@@ -146,17 +147,20 @@ _NODES = {
 }
 
 _SYMBOLS = {
-    "state": TokenKind.STATE,
-    "event": TokenKind.EVENT,
-    "port": TokenKind.PORT,
-    "variable": TokenKind.VARIABLE,
-    "plugin": TokenKind.PLUGIN,
-    "tree": TokenKind.TREE,
-    "machine": TokenKind.TREE,
-    "struct": TokenKind.TYPE,
-    **dict.fromkeys(("field", "member", "parameter"), TokenKind.MEMBER),
-    **dict.fromkeys(("publisher", "subscriber", "timer"), TokenKind.HANDLE),
-    **dict.fromkeys(("service-client", "service-server", "action-client", "action-server"), TokenKind.HANDLE),
+    SymbolKind.STATE: TokenKind.STATE,
+    SymbolKind.EVENT: TokenKind.EVENT,
+    SymbolKind.PORT: TokenKind.PORT,
+    SymbolKind.VARIABLE: TokenKind.VARIABLE,
+    SymbolKind.PLUGIN: TokenKind.PLUGIN,
+    SymbolKind.TREE: TokenKind.TREE,
+    SymbolKind.MACHINE: TokenKind.TREE,
+    SymbolKind.STRUCT: TokenKind.TYPE,
+    **dict.fromkeys((SymbolKind.FIELD, SymbolKind.MEMBER, SymbolKind.PARAMETER), TokenKind.MEMBER),
+    **dict.fromkeys((SymbolKind.PUBLISHER, SymbolKind.SUBSCRIBER, SymbolKind.TIMER), TokenKind.HANDLE),
+    **dict.fromkeys(
+        (SymbolKind.SERVICE_CLIENT, SymbolKind.SERVICE_SERVER, SymbolKind.ACTION_CLIENT, SymbolKind.ACTION_SERVER),
+        TokenKind.HANDLE,
+    ),
 }
 _VALUES = {
     "type": TokenKind.TYPE,
@@ -175,8 +179,8 @@ def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> 
     if file.grammar is BEHAVIOR_TREE and blackboard_variable(name.value) is not None:
         yield Token(name.span, TokenKind.VARIABLE)
     elif known is not None:
-        symbol = known.defines or next(iter(known.refers), "")
-        kind = _SYMBOLS.get(symbol) or _VALUES.get(known.value)
+        symbol = known.defines or next(iter(known.refers), None)
+        kind = (_SYMBOLS.get(symbol) if symbol else None) or _VALUES.get(known.value)
         if kind is not None:
             yield Token(name.span, kind, _modifiers(declaration=bool(known.defines)))
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.ide.navigation.document_symbol import SymbolKind
+from roaml.ide.navigation.document_symbol import DocumentSymbolKind
 from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -37,7 +37,7 @@ def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
 def _in_file(analysis: Analysis, path: str) -> Iterator[Verifiable]:
     understood = {each.name for each in analysis.properties(path)[0]}
     for symbol in document_symbols(analysis, path):
-        if symbol.kind is SymbolKind.PROPERTY and symbol.name in understood:
+        if symbol.kind is DocumentSymbolKind.PROPERTY and symbol.name in understood:
             yield Verifiable(symbol.name, symbol.detail, path, symbol.span, symbol.name_span)
 
 

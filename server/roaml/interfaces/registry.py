@@ -8,7 +8,6 @@
 
 from __future__ import annotations
 
-import difflib
 import enum
 import re
 from collections.abc import Callable, Iterable, Iterator
@@ -19,6 +18,7 @@ from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.parse import parse
 from roaml.interfaces.search import SearchPath
 from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
+from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile
 
 _MAX_CLOSE = 3
@@ -59,7 +59,7 @@ class NotFound:
     def message(self) -> str:
         """The error and the correction, as a sentence."""
         kind = KIND_NAMES[self.kind]
-        hint = f"; did you mean {_or(self.close)}?" if self.close else ""
+        hint = did_you_mean(self.close, _MAX_CLOSE)
         package, _, name = self.wanted.partition("/")
         match self.reason:
             case Reason.MALFORMED_NAME:
@@ -161,13 +161,13 @@ class Registry:
         wanted = f"{package}/{name}"
         looked_in = self.search_path.looked_in()
         if package not in packages:
-            similar = _close(package, packages)
+            similar = close_names(package, packages)
             close = _first([f"{p}/{name}" for p in similar if name in packages[p][kind]], self._named(kind, name))
             if not close:
-                close = tuple(f"{p}/{n}" for p in similar for n in _close(name, packages[p][kind])[:1])
+                close = tuple(f"{p}/{n}" for p in similar for n in close_names(name, packages[p][kind])[:1])
             return NotFound(Reason.UNKNOWN_PACKAGE, kind, wanted, close, None, looked_in)
         other_kind = next((other for other in KINDS if name in packages[package][other]), None)
-        similar_names = [f"{package}/{n}" for n in _close(name, packages[package][kind])]
+        similar_names = [f"{package}/{n}" for n in close_names(name, packages[package][kind])]
         close = _first(self._named(kind, name), similar_names)
         return NotFound(Reason.UNKNOWN_TYPE, kind, wanted, close, other_kind, looked_in)
 
@@ -180,7 +180,7 @@ class Registry:
             packages = self.search_path.packages()
             package, name = words[0], words[-1]
             if package in packages:
-                close = tuple(f"{package}/{n}" for n in _close(name, packages[package][kind]))
+                close = tuple(f"{package}/{n}" for n in close_names(name, packages[package][kind]))
             close = close or _first(self._named(kind, name))
         return NotFound(Reason.MALFORMED_NAME, kind, wanted, close, None, self.search_path.looked_in())
 
@@ -200,20 +200,9 @@ def _is_type_name(package: str, name: str) -> bool:
     return bool(PACKAGE_NAME.fullmatch(package) and TYPE_NAME.fullmatch(name))
 
 
-def _close(wanted: str, names: Iterable[str]) -> list[str]:
-    """The names similar to `wanted`, the nearest first."""
-    by_lower = {name.lower(): name for name in names}
-    matches = difflib.get_close_matches(wanted[:_LONGEST_NAME].lower(), by_lower, _MAX_CLOSE)
-    return [by_lower[match] for match in matches]
-
-
 def _first(*groups: Iterable[str]) -> tuple[str, ...]:
     """The first few names of the groups together, without duplicates."""
     return tuple(dict.fromkeys(name for group in groups for name in group))[:_MAX_CLOSE]
-
-
-def _or(names: tuple[str, ...]) -> str:
-    return " or ".join(f"`{name}`" for name in names)
 
 
 def _a(kind: Kind) -> str:

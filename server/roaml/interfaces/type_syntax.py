@@ -6,33 +6,20 @@ Any text gives a type: errors are reported, and the readable part is kept.
 
 from __future__ import annotations
 
-import difflib
 import re
 
 from roaml.diagnostics import Severity
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.report import Report, shorten
-from roaml.interfaces.types import PRIMITIVES, STRINGS, ArrayKind, FieldType
+from roaml.interfaces.types import FOREIGN_TYPES, PRIMITIVES, STRINGS, ArrayKind, FieldType
+from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
 
 _TOKEN = re.compile(r"[^ \t#<\[]*(?:[ \t]*<=?[ \t]*[^ \t#\[]*)?(?:[ \t]*\[(?:[^\]#]{0,30}\]|[^ \t\]#]*))*[^ \t#]*")
 _LIMIT = re.compile(r"[0-9]{1,10}")
 _GREATEST_LIMIT = 2**32 - 1  # lengths are sent as uint32
 
-_OTHER_SPELLINGS = {
-    "boolean": "bool",
-    "double": "float64",
-    "float": "float32",
-    "int": "int32",
-    "integer": "int32",
-    "long": "int64",
-    "octet": "byte",
-    "real": "float64",
-    "short": "int16",
-    "str": "string",
-    "uint": "uint32",
-    "unsigned": "uint32",
-}
+_FOREIGN_TYPES = {**FOREIGN_TYPES, "octet": "byte"}
 _ROS_1_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
 _HEADER = "std_msgs/Header"
 
@@ -128,9 +115,9 @@ def _unknown(written: str, span: Span, report: Report) -> None:
     if not written:
         report.add(span, "a type is missing; a field is written `type name`")
         return
-    close = difflib.get_close_matches(written.lower(), sorted(PRIMITIVES), 1) if len(written) <= 40 else []
-    right = _OTHER_SPELLINGS.get(written.lower()) or (close[0] if close else None)
-    if right:
-        report.add(span, f"there is no type `{written}`; did you mean `{right}`?", instead=right)
+    foreign = _FOREIGN_TYPES.get(written.lower())
+    close = (foreign,) if foreign else close_names(written, sorted(PRIMITIVES), 1)
+    if close:
+        report.add(span, f"there is no type `{written}`{did_you_mean(close)}", instead=close[0])
     else:
         report.add(span, f"there is no type `{shorten(written)}`; a message type is written `Name` or `package/Name`")

@@ -42,6 +42,12 @@ FLOATS = frozenset({"float32", "float64"})
 STRINGS = frozenset({"string", "wstring"})
 PRIMITIVES = frozenset({"bool", *INTEGER_RANGES, *FLOATS, *STRINGS})
 
+FOREIGN_TYPES: Mapping[str, str] = {
+    "boolean": "bool", "double": "float64", "float": "float32", "int": "int32", "integer": "int32", "long": "int64",
+    "number": "float64", "real": "float64", "short": "int16", "str": "string", "uint": "uint32", "unsigned": "uint32",
+}  # fmt: skip
+"""Names of types in other languages, with the names that they have in ROS 2."""
+
 Scalar: TypeAlias = bool | int | float | str
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
 """A constant or default: a tuple for an array."""

@@ -11,8 +11,8 @@ from dataclasses import replace
 from roaml.jani.expressions import Boolean, Expression, Integer, Real
 from roaml.jani.model import Constant, Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
-from roaml.jani.suggest import nearest
 from roaml.jani.types import BOOL, INT, REAL, BasicType, BoundedType
+from roaml.suggest import nearest_name
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
 _REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
@@ -42,7 +42,7 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
     known = {constant.name: constant for constant in model.constants}
     for name in given:
         if name not in known:
-            close = nearest(name, known)
+            close = nearest_name(name, known)
             hint = f"did you mean {close}?" if close else f"the model has: {', '.join(known) or 'none'}"
             raise ValueError(f"there is no constant {name}; {hint}")
         if known[name].value is not None:

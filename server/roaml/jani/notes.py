@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.jani.suggest import nearest
 from roaml.json_syntax import quote
+from roaml.suggest import did_you_mean, nearest_name
 from roaml.text import Span, TextEdit
 
 SYNTAX = "jani-syntax"
@@ -60,7 +60,7 @@ class Notes:
         message = f"{owner} has no {what} `{name[:80]}`" if owner else f"there is no {what} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()
         if guess := self._guess(f"{owner} {what}", name, known):
-            message += f"; did you mean `{guess}`?"
+            message += did_you_mean((guess,))
         if guess and fix:
             fixes = (Fix(f"Change to `{guess}`", (TextEdit(span, quote(guess)[1:-1]),)),)
         self.add(Finding(code, span, message, severity, fixes))
@@ -70,5 +70,5 @@ class Notes:
         if key not in self._guesses:
             if len(self._guesses) >= _MAX_GUESSES or len(name) > _LONGEST_GUESSED:
                 return None
-            self._guesses[key] = nearest(name, known)
+            self._guesses[key] = nearest_name(name, known)
         return self._guesses[key]

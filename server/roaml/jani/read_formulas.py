@@ -72,6 +72,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
 )
 from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.suggest import did_you_mean
 from roaml.text import Span, TextEdit
 
 E = TypeVar("E", bound=enum.Enum)
@@ -154,7 +155,7 @@ class FormulaReader(Source):
             self.notes.unknown("operator", op.value, op.content_span, _FORMS, code=SYNTAX)
         else:
             fix = Fix(f"Change to `{meant}`", (TextEdit(op.content_span, meant),))
-            message = f"there is no operator `{op.value}`; did you mean `{meant}`?"
+            message = f"there is no operator `{op.value}`{did_you_mean((meant,))}"
             self.notes.add(Finding(SYNTAX, op.content_span, message, None, (fix,)))
 
     # ---------------------------------------------------------------- members

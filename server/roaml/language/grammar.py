@@ -17,11 +17,11 @@ from typing import Any
 from lxml import etree
 
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
+from roaml.roles import SymbolKind
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
-
-UNBOUNDED = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,22 +72,22 @@ class AttributeType:
     """An attribute of an element.
 
     Attributes:
-        defines: the kind of symbol that the value declares, or "".
-        refers: the kinds of symbols that the value may refer to.
+        defines: kind of symbol that the value names first, if any.
+        refers: kinds of symbols that the value may name.
         value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
             child-index, script), or "".
-        value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
-        ignored: `None` if the attribute has an effect; otherwise whether tools should not report that it has none.
+        value_type: the type wanted of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
+        ignored: None, or whether a tool should keep quiet about the attribute having no effect.
         use: the successor, if the attribute is deprecated.
-        port: the port of a tree node that the attribute sets, if any.
+        port: what port of a tree node the attribute is, if any.
     """
 
     name: str
     documentation: str
     required: bool = False
     simple: SimpleType = SimpleType()
-    defines: str = ""
-    refers: tuple[str, ...] = ()
+    defines: SymbolKind | None = None
+    refers: tuple[SymbolKind, ...] = ()
     value: str = ""
     value_type: str = ""
     ignored: bool | None = None
@@ -139,7 +139,7 @@ class ElementType:
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
-    refers: tuple[str, ...] = ()
+    refers: tuple[SymbolKind, ...] = ()
     value: str = ""
     value_type: str = ""
     sends: str = ""
@@ -287,7 +287,7 @@ class _Reader:
             shape.any_is_opaque,
             shape.any_attribute,
             shape.text,
-            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            refers=_symbols(roles.get("refers")),
             value=value.get("is", ""),
             value_type=value.get("type", ""),
             sends=roles.get("sends", {}).get("part", ""),
@@ -349,8 +349,8 @@ class _Reader:
             _documentation(node),
             node.get("use") == "required",
             self.simple(node),
-            defines=roles.get("defines", {}).get("symbol", ""),
-            refers=tuple(roles.get("refers", {}).get("symbol", "").split()),
+            defines=next(iter(_symbols(roles.get("defines"))), None),
+            refers=_symbols(roles.get("refers")),
             value=value.get("is", ""),
             value_type=value.get("type", value.get("kind", "")),
             ignored=None if ignored is None else ignored.get("quietly") == "true",
@@ -399,6 +399,10 @@ def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:
     for role in node.findall(f"{_XS}annotation/{_XS}appinfo/*"):
         if role.tag.startswith(_R):
             yield _local(role), dict(role.attrib)
+
+
+def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:
+    return tuple(map(SymbolKind, role["symbol"].split())) if role else ()
 
 
 def _times(node: Any, outer: Occurrence) -> Occurrence:

@@ -18,6 +18,7 @@ from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import PortRead
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings, find_handle, port_type
+from roaml.roles import SymbolKind
 from roaml.text import Decoded, Location, Span
 
 
@@ -74,7 +75,7 @@ class Context:
         return self.use_of(declaration)
 
     def use_of(self, declaration: Declaration) -> InterfaceUse:
-        declared = [d for d in self.machine.declarations if d.kind != "timer"]
+        declared = [d for d in self.machine.declarations if d.kind is not SymbolKind.TIMER]
         return self.automaton.outline.interfaces[declared.index(declaration)]
 
     def channel(self, user: Handler | Communicate) -> Channel:

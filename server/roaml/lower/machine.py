@@ -24,6 +24,7 @@ from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.model.value_types import STATUSES
+from roaml.roles import SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, Send, State, Target, Transition
 
@@ -39,7 +40,7 @@ def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart,
             (
                 use
                 for use in automaton.outline.interfaces
-                if thread.server and use.kind == "action-server" and use.handle == thread.server.value
+                if thread.server and use.kind is SymbolKind.ACTION_SERVER and use.handle == thread.server.value
             ),
             None,
         )

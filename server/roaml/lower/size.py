@@ -41,6 +41,7 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings
+from roaml.roles import SymbolKind
 
 _EDGE = 4
 """What an edge counts besides its expressions: it has a destination, an action and two locations."""
@@ -84,7 +85,7 @@ def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
                 if count == 1:
                     single += copies
                     continue
-                symbol = Symbol(automaton.path, "data", name, chart.scope) if automaton.path else None
+                symbol = Symbol(automaton.path, SymbolKind.VARIABLE, name, chart.scope) if automaton.path else None
                 words = f"the variable `{name}` of `{automaton.outline.name}`"
                 yield Share(copies * count, words, automaton.path, symbol)
             if single:
@@ -153,7 +154,7 @@ def _parts(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
 
 
 def _machine_symbol(automaton: Automaton) -> Symbol | None:
-    return Symbol(automaton.path, "machine", automaton.outline.name) if automaton.path else None
+    return Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name) if automaton.path else None
 
 
 class _Query(NamedTuple):

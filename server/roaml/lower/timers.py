@@ -27,6 +27,7 @@ from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
 from roaml.model.translated import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
+from roaml.roles import SymbolKind
 from roaml.scxml.model import (
     Assign,
     Branch,
@@ -86,7 +87,7 @@ def _declared(
 ) -> Iterator[tuple[str, str, Fraction, bool, Location]]:
     """(user, handle, rate in Hz, whether anything waits for it, place) for each timer of a machine."""
     for declaration in machine.declarations:
-        if declaration.kind == "timer":
+        if declaration.kind is SymbolKind.TIMER:
             assert declaration.handle is not None
             handle = declaration.handle.value
             origin = Location(automaton.path, declaration.element.span)

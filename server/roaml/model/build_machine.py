@@ -41,6 +41,7 @@ from roaml.model.syntax import (
     type_of,
     value_of,
 )
+from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element
 
@@ -151,7 +152,7 @@ class _Builder:
     def declaration(self, element: Element) -> Declaration:
         type_ = HL_SCXML.elements[element.name]
         kind = next(a.defines for a in type_.attributes.values() if a.defines)
-        if kind == "timer":
+        if kind is SymbolKind.TIMER:
             rate = text_or_port(self.document, element, "rate_hz")
             return Declaration(element, kind, name_of(element.get("name")), None, None, rate)
         attribute = next(name for name in INTERFACE_ATTRIBUTES if name in type_.attributes)

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
-from roaml.model.spelling import close_names
 from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes, port_key
+from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
 

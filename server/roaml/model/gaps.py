@@ -18,9 +18,11 @@ from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import misfits
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
-from roaml.model.spelling import close_names, meant
+from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, Use, find_handle
+from roaml.roles import SymbolKind
+from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
@@ -121,11 +123,11 @@ class _Search:
 
     # ---------------------------------------------------- elements out of place
 
-    def _kind_of(self, element: Element, parent: ElementType) -> str:
-        """The kind of declaration that a misfit may be, or ""."""
+    def _kind_of(self, element: Element, parent: ElementType) -> SymbolKind | None:
+        """The kind of declaration that a misfit may be, if any."""
         type_ = HL_SCXML.find(element.name)
         types = [type_] if type_ is not None else self._resembling(element, parent)
-        return next((kind for each in types if (kind := _kind(each))), "")
+        return next((kind for each in types if (kind := _kind(each))), None)
 
     def _unread(self, top: Element, parent: ElementType) -> Iterator[Gap]:
         """What a misfit and all in it may say."""
@@ -174,14 +176,14 @@ class _Search:
             handle = meant(element, "name", type_.attributes)
             for kind in name.refers:
                 if kind in INTERFACE_KINDS:
-                    yield from self._over(f"{kind} {part}", kind, handle)
+                    yield from self._over(f"{kind.value} {part}", kind, handle)
         elif "key" in type_.attributes:
             key = meant(element, "key", type_.attributes)
             yield Gap(PORT, key.value if key else None)
         elif type_.sends.startswith("bt-") or type_.receives.startswith("bt-") or "child" in type_.sends:
             yield Gap(TREE)
 
-    def _over(self, act: str, kind: str, handle: Name | None) -> Iterator[Gap]:
+    def _over(self, act: str, kind: SymbolKind, handle: Name | None) -> Iterator[Gap]:
         """What is done with the declaration called `handle`, or with one that is meant by it."""
         right = [d for d in self.machine.declarations if d.kind == kind and d.handle is not None]
         named = [d for d in right if handle and d.handle and d.handle.value == handle.value]
@@ -197,14 +199,14 @@ class _Search:
             for declaration in named:
                 if declaration.handle is declaration.interface and isinstance(declaration.interface, Name):
                     # The topic, service or action is the handle, and may be misspelled where it is declared.
-                    yield Gap(kind, handle.value)
-                    yield Gap(OTHER_SIDE[kind], declaration.interface.value)
+                    yield Gap(kind.value, handle.value)
+                    yield Gap(OTHER_SIDE[kind].value, declaration.interface.value)
         if not named:
             other = [d for d in self.machine.declarations if d.handle and d.handle.value == handle.value]
             named = [d for d in other if isinstance(d.interface, (Name, PortRead)) and d.kind in INTERFACE_KINDS]
         yield from (_about(act, declaration) for declaration in named)
         if not named:
-            yield Gap(kind)  # the declaration is missing
+            yield Gap(kind.value)  # the declaration is missing
 
     def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
         """A field or parameter that is said in an unknown way: `<feild name="…">` in an element that sends."""
@@ -226,7 +228,7 @@ class _Search:
         if isinstance(declaration.interface, PortRead):
             key = declaration.interface.key
             if key is None or all(port.key is None or port.key.value != key.value for port in self.machine.ports):
-                yield PlacedGap(Gap(declaration.kind), declaration.interface.span)
+                yield PlacedGap(Gap(declaration.kind.value), declaration.interface.span)
         elif declaration.interface is None or not is_interface_name(declaration.interface.value):
             yield PlacedGap(_declared(element, type_, declaration.kind), element.name_span)
         unknown = declaration.type is None or not self.has_type(
@@ -235,7 +237,7 @@ class _Search:
         if unknown:
             span = declaration.type.span if declaration.type else element.name_span
             for part in _PARTS[declaration.kind]:
-                yield PlacedGap(_about(f"{declaration.kind} {part} field", declaration), span)
+                yield PlacedGap(_about(f"{declaration.kind.value} {part} field", declaration), span)
 
     def _statements(self) -> Iterator[PlacedGap]:
         owners: dict[Element, Communicate] = {}
@@ -265,7 +267,7 @@ class _Search:
     def _fields(self, statement: Communicate) -> Iterator[Gap]:
         declaration = find_handle(self.machine, statement)
         for kind in statement.type.attributes["name"].refers:
-            act = f"{kind} {statement.type.sends} field"
+            act = f"{kind.value} {statement.type.sends} field"
             yield _about(act, declaration) if declaration is not None else Gap(act)
 
     def _user(self, user: Communicate | Handler, part: str) -> Iterator[PlacedGap]:
@@ -278,10 +280,10 @@ class _Search:
         handle = user.handle or meant(user.element, "name", user.type.attributes)
         span = user.handle.span if user.handle else user.element.name_span
         for kind in kinds:
-            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind} {part}", kind, handle))
+            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind.value} {part}", kind, handle))
             if declaration is not None and declaration.kind in INTERFACE_KINDS:
                 # The declaration may be what is wrong.
-                yield PlacedGap(_about(kind, declaration), span)
+                yield PlacedGap(_about(kind.value, declaration), span)
 
     def _handlers(self) -> Iterator[PlacedGap]:
         for chart in self.machine.charts:
@@ -309,30 +311,30 @@ class _Search:
                     yield PlacedGap(Gap(PORT), statement.element.name_span)
 
 
-OTHER_SIDE: Mapping[str, str] = {
-    "publisher": "subscriber",
-    "subscriber": "publisher",
-    "service-client": "service-server",
-    "service-server": "service-client",
-    "action-client": "action-server",
-    "action-server": "action-client",
+OTHER_SIDE: Mapping[SymbolKind, SymbolKind] = {
+    SymbolKind.PUBLISHER: SymbolKind.SUBSCRIBER,
+    SymbolKind.SUBSCRIBER: SymbolKind.PUBLISHER,
+    SymbolKind.SERVICE_CLIENT: SymbolKind.SERVICE_SERVER,
+    SymbolKind.SERVICE_SERVER: SymbolKind.SERVICE_CLIENT,
+    SymbolKind.ACTION_CLIENT: SymbolKind.ACTION_SERVER,
+    SymbolKind.ACTION_SERVER: SymbolKind.ACTION_CLIENT,
 }
 """The kind of declaration that each kind speaks to."""
 
-_PARTS: Mapping[str, tuple[str, ...]] = {
-    "publisher": ("message",),
-    "subscriber": (),
-    "service-client": ("request", "response"),
-    "service-server": ("request", "response"),
-    "action-client": ("goal", "feedback", "result"),
-    "action-server": ("goal", "feedback", "result"),
+_PARTS: Mapping[SymbolKind, tuple[str, ...]] = {
+    SymbolKind.PUBLISHER: ("message",),
+    SymbolKind.SUBSCRIBER: (),
+    SymbolKind.SERVICE_CLIENT: ("request", "response"),
+    SymbolKind.SERVICE_SERVER: ("request", "response"),
+    SymbolKind.ACTION_CLIENT: ("goal", "feedback", "result"),
+    SymbolKind.ACTION_SERVER: ("goal", "feedback", "result"),
 }
 """The parts of an interface with fields in the translation, which the other side may name."""
 
 
-def _kind(type_: ElementType) -> str:
-    """The kind of ROS interface that an element declares, or ""."""
-    return next((a.defines for a in type_.attributes.values() if a.defines in INTERFACE_KINDS), "")
+def _kind(type_: ElementType) -> SymbolKind | None:
+    """The kind of ROS interface that an element declares, if any."""
+    return next((a.defines for a in type_.attributes.values() if a.defines in INTERFACE_KINDS), None)
 
 
 def reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
@@ -356,15 +358,15 @@ def _about(act: str, declaration: Declaration) -> Gap:
     return Gap(act, name if name and is_interface_name(name) else None)
 
 
-def _declared(element: Element, type_: ElementType, kind: str) -> Gap:
+def _declared(element: Element, type_: ElementType, kind: SymbolKind) -> Gap:
     """A declaration that is not read, or whose name is not."""
     for attribute in INTERFACE_ATTRIBUTES:
         if attribute in type_.attributes:
             name = meant(element, attribute, type_.attributes)
             if name is not None:
-                return Gap(kind, name.value if is_interface_name(name.value) else None)
+                return Gap(kind.value, name.value if is_interface_name(name.value) else None)
             child = element.find(attribute)
             read = port_read(child) if child is not None else None
             if read is not None and read.key is not None:
-                return Gap(kind, None, read.key.value)
-    return Gap(kind)
+                return Gap(kind.value, None, read.key.value)
+    return Gap(kind.value)

@@ -18,6 +18,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import INTERFACE_KINDS
+from roaml.roles import SymbolKind
 
 FIELD_PREFIX = "ros_fields__"
 
@@ -72,7 +73,7 @@ _Event = tuple[str, Symbol | None, _Params]
 def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
     for event in system.events.values():
         for automaton, sent in event.senders:
-            symbol = Symbol(automaton.path, "event", event.name)
+            symbol = Symbol(automaton.path, SymbolKind.EVENT, event.name)
             yield event.name, symbol, [(p.name.replace(".", "__"), p.type) for p in sent.params]
     for topic in system.topics.values():
         for endpoint in topic.sources:
@@ -163,7 +164,7 @@ def _tree(system: System) -> Iterator[_Event]:
         if instance is None:
             continue
         node = f"bt_{instance.number}"
-        symbol = Symbol(automaton.path, "machine", automaton.outline.name) if automaton.path else None
+        symbol = Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name) if automaton.path else None
         parent = None if instance.parent is None else system.by_instance.get(instance.parent)
         plugin = automaton.outline.plugin
         if parent is None or _calls(parent, instance.number):

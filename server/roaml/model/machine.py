@@ -16,6 +16,7 @@ from typing import TypeAlias
 
 from roaml.language import ElementType
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -56,7 +57,7 @@ class Declaration:
     """
 
     element: Element
-    kind: str
+    kind: SymbolKind
     handle: Name | None
     interface: Name | PortRead | None
     type: Name | None

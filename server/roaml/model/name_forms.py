@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import re
 
+from roaml.expr.words import CONTEXTUAL, RESERVED
 from roaml.model.value_types import STATUSES
 
 VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
 EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
-RESERVED = re.compile(
-    r"(await|break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|finally|for"
-    r"|function|if|import|in|instanceof|let|new|null|return|super|switch|this|throw|try|typeof|var|void|while|with"
-    r"|yield)\Z"
-)
-"""Words of ECMAScript that cannot name anything in an expression."""
+
+
+def is_reserved(name: str) -> bool:
+    """Whether `name` cannot name a variable or member, as it is a reserved word of ECMAScript."""
+    return name in RESERVED or name in CONTEXTUAL
 
 
 def variable_problem(name: str) -> str:
@@ -23,7 +23,7 @@ def variable_problem(name: str) -> str:
         return f"`{name}` is the answer of a tree node and cannot name a variable"
     if name in ("length", "Math", "true", "false"):
         return f"`{name}` has a meaning of its own and cannot name a variable"
-    if RESERVED.match(name):
+    if is_reserved(name):
         return f"`{name}` is a word of ECMAScript and cannot name a variable"
     if not VARIABLE.match(name):
         return f"`{name}` cannot name a variable: it begins with a letter and holds letters, digits and `_`"

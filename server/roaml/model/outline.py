@@ -32,6 +32,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, Use, find_handle
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -66,7 +67,7 @@ class InterfaceUse:
         awaited: of a subscriber, that the machine can come into a state in which it waits for this topic alone.
     """
 
-    kind: str
+    kind: SymbolKind
     handle: str
     name: str
     port: str
@@ -270,10 +271,11 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 (part, tuple(SentField(name, type_) for name, type_ in known.items()))
                 for part, known in fields[declaration.element].items()
             ),
-            declaration.kind == "subscriber" and any(_awaits(machine, chart, declaration) for chart in machine.charts),
+            declaration.kind is SymbolKind.SUBSCRIBER
+            and any(_awaits(machine, chart, declaration) for chart in machine.charts),
         )
         for declaration in machine.declarations
-        if declaration.kind != "timer"
+        if declaration.kind is not SymbolKind.TIMER
     )
 
 
@@ -305,7 +307,7 @@ def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
             )
             for chart in machine.charts
         )
-        for name in {d.handle.value for d in machine.declarations if d.kind == "timer" and d.handle}
+        for name in {d.handle.value for d in machine.declarations if d.kind is SymbolKind.TIMER and d.handle}
     }
     return tuple(
         TimerOutline(
@@ -315,7 +317,7 @@ def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
             users[declaration.handle.value],
         )
         for declaration in machine.declarations
-        if declaration.kind == "timer" and declaration.handle
+        if declaration.kind is SymbolKind.TIMER and declaration.handle
     )
 
 

@@ -41,9 +41,10 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.spelling import close_names
 from roaml.model.system_file import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.roles import SymbolKind
+from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
 CLOCK_TYPE = "builtin_interfaces/Time"
@@ -268,7 +269,7 @@ class System:
         """What a node of the tree may say whose port should name a topic, service or action, and does not."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
-        return {*bound, (use.kind, None)}
+        return {*bound, (use.kind.value, None)}
 
     def facts_of_unknown(self, instance: Instance) -> set[Fact]:
         """What a node of the tree may say that has no plugin: what the plugin does that is probably meant."""
@@ -291,7 +292,7 @@ class System:
         """What a node of the tree may say, of whichever plugin."""
         if not self.plugins_known:
             return {(ANYTHING, None)}
-        found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), ("publisher", CLOCK_TOPIC)}
+        found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
         for path, outline in self.plugins:
             found |= set(_said(Automaton(outline.name, path, outline)))
             found |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
@@ -345,26 +346,37 @@ class System:
     @cached_property
     def topics(self) -> Mapping[str, Channel]:
         """By sanitised name."""
-        return self._channels("publisher", "subscriber", sanitise)
+        return self._channels(SymbolKind.PUBLISHER, SymbolKind.SUBSCRIBER, sanitise)
 
     @cached_property
     def services(self) -> Mapping[str, Channel]:
         """By name as written (docs/spec/ros.md#services)."""
-        return self._channels("service-server", "service-client", str)
+        return self._channels(SymbolKind.SERVICE_SERVER, SymbolKind.SERVICE_CLIENT, str)
 
     @cached_property
     def actions(self) -> Mapping[str, Channel]:
         """By name as written."""
-        return self._channels("action-server", "action-client", str)
+        return self._channels(SymbolKind.ACTION_SERVER, SymbolKind.ACTION_CLIENT, str)
 
-    def _channels(self, source: str, user: str, key: Callable[[str], str]) -> Mapping[str, Channel]:
+    def channels(self, kind: SymbolKind) -> Mapping[str, Channel]:
+        """The topics, services or actions, as `kind` says."""
+        match kind:
+            case SymbolKind.TOPIC:
+                return self.topics
+            case SymbolKind.SERVICE:
+                return self.services
+            case SymbolKind.ACTION:
+                return self.actions
+        raise ValueError(f"{kind} is not a kind of channel")
+
+    def _channels(self, source: SymbolKind, user: SymbolKind, key: Callable[[str], str]) -> Mapping[str, Channel]:
         found: dict[str, Channel] = {}
         for automaton in self.automata:
             for use in automaton.outline.interfaces:
                 name = automaton.interface_name(use) if use.kind in (source, user) else None
                 if name is not None:
                     channel = found.setdefault(key(name), Channel(key(name)))
-                    (channel.sources if use.kind == source else channel.users).append(Endpoint(automaton, use))
+                    (channel.sources if use.kind is source else channel.users).append(Endpoint(automaton, use))
         return found
 
     def channel(self, automaton: Automaton, use: InterfaceUse) -> Channel | None:
@@ -373,9 +385,9 @@ class System:
         if name is None:
             return None
         match use.kind:
-            case "publisher" | "subscriber":
+            case SymbolKind.PUBLISHER | SymbolKind.SUBSCRIBER:
                 return self.topics.get(sanitise(name))
-            case "service-client" | "service-server":
+            case SymbolKind.SERVICE_CLIENT | SymbolKind.SERVICE_SERVER:
                 return self.services.get(name)
         return self.actions.get(name)
 
@@ -438,18 +450,18 @@ class System:
 
 # ------------------------------------------------------------- what is not read
 
-_TOPIC_KINDS = ("publisher", "subscriber")
+_OF_TOPICS = (SymbolKind.PUBLISHER.value, SymbolKind.SUBSCRIBER.value)
 
 
 def _fact(act: str, name: str | None) -> Fact:
-    is_topic = name is not None and act.partition(" ")[0] in _TOPIC_KINDS
+    is_topic = name is not None and act.partition(" ")[0] in _OF_TOPICS
     return act, sanitise(name) if name is not None and is_topic else name
 
 
 def _said(automaton: Automaton) -> Iterator[Fact]:
     """What an automaton says that may take part in the system."""
     for use in automaton.outline.interfaces:
-        yield _fact(use.kind, automaton.interface_name(use))
+        yield _fact(use.kind.value, automaton.interface_name(use))
     yield from ((SENDS, sent.event) for sent in automaton.outline.sent)
     yield from ((RECEIVES, received.event) for received in automaton.outline.received)
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
-from roaml.model.spelling import close_names, meant
+from roaml.model.spelling import meant
 from roaml.model.syntax import Name, name_of
+from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
 

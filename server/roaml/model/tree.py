@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
 from roaml.xml_syntax import Attribute, Document, Element
@@ -16,12 +17,6 @@ SUBTREES = ("SubTree", "SubTreePlus")
 
 _REFERENCE = re.compile(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
 _VARIABLE = re.compile(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
-RESERVED = re.compile(
-    r"@?(?:break|case|catch|class|const|continue|debugger|default|delete|do|else|enum|export|extends|false|finally|for"
-    r"|function|if|import|in|instanceof|new|null|return|super|switch|this|throw|true|try|typeof|var|void|while|with)\Z"
-)
-"""What ECMAScript does not take for a name."""
-
 _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 
@@ -207,7 +202,12 @@ def blackboard_variable(value: str) -> str | None:
 
 def is_variable_name(name: str) -> bool:
     """Whether `name` can be a blackboard variable; a leading `@` refers to the main tree's blackboard."""
-    return bool(_VARIABLE.match(name)) and not RESERVED.match(name)
+    return bool(_VARIABLE.match(name)) and not is_reserved_variable(name)
+
+
+def is_reserved_variable(name: str) -> bool:
+    """Whether ECMAScript reserves the name of a blackboard variable."""
+    return name.removeprefix("@") in RESERVED
 
 
 def looks_like_reference(value: str) -> bool:

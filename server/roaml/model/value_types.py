@@ -35,6 +35,7 @@ from roaml.model.machine import (
 )
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -206,14 +207,24 @@ def _event_data(handler: Handler, environment: Environment) -> Type:
 SECTIONS = {"thread-start": "goal"}
 """Parts of the protocol that carry another part's fields."""
 
-INTERFACE_KINDS: Mapping[str, Kind] = {
-    "publisher": "msg",
-    "subscriber": "msg",
-    "service-client": "srv",
-    "service-server": "srv",
-    "action-client": "action",
-    "action-server": "action",
+INTERFACE_KINDS: Mapping[SymbolKind, Kind] = {
+    SymbolKind.PUBLISHER: "msg",
+    SymbolKind.SUBSCRIBER: "msg",
+    SymbolKind.SERVICE_CLIENT: "srv",
+    SymbolKind.SERVICE_SERVER: "srv",
+    SymbolKind.ACTION_CLIENT: "action",
+    SymbolKind.ACTION_SERVER: "action",
 }
+
+CHANNEL_KINDS: Mapping[SymbolKind, SymbolKind] = {
+    SymbolKind.PUBLISHER: SymbolKind.TOPIC,
+    SymbolKind.SUBSCRIBER: SymbolKind.TOPIC,
+    SymbolKind.SERVICE_CLIENT: SymbolKind.SERVICE,
+    SymbolKind.SERVICE_SERVER: SymbolKind.SERVICE,
+    SymbolKind.ACTION_CLIENT: SymbolKind.ACTION,
+    SymbolKind.ACTION_SERVER: SymbolKind.ACTION,
+}
+"""What a declaration of each kind names."""
 
 
 def find_handle(machine: Machine, user: Handler | Communicate) -> Declaration | None:
@@ -233,7 +244,11 @@ def interface_part(part: str, declaration: Declaration | None, environment: Envi
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     section = SECTIONS.get(part, part)
     own = dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
-    if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and isinstance(own, Struct):
+    if (
+        declaration.kind is SymbolKind.SUBSCRIBER
+        and isinstance(declaration.interface, Name)
+        and isinstance(own, Struct)
+    ):
         return _with_published(own, environment.published(declaration.interface.value))
     return own
 

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+from roaml.interfaces import types as interfaces
 from roaml.language import HL_SCXML
+from roaml.roles import SymbolKind
 
 DECLARING_ELEMENTS = {
-    "publisher": "ros_topic_publisher",
-    "subscriber": "ros_topic_subscriber",
-    "service-client": "ros_service_client",
-    "service-server": "ros_service_server",
-    "action-client": "ros_action_client",
-    "action-server": "ros_action_server",
-    "timer": "ros_time_rate",
+    SymbolKind.PUBLISHER: "ros_topic_publisher",
+    SymbolKind.SUBSCRIBER: "ros_topic_subscriber",
+    SymbolKind.SERVICE_CLIENT: "ros_service_client",
+    SymbolKind.SERVICE_SERVER: "ros_service_server",
+    SymbolKind.ACTION_CLIENT: "ros_action_client",
+    SymbolKind.ACTION_SERVER: "ros_action_server",
+    SymbolKind.TIMER: "ros_time_rate",
 }
 """The element that declares a handle, by the kind of the handle."""
 
@@ -35,9 +37,7 @@ DEFAULT_TYPES = {"int": "int32", "real": "float64", "bool": "bool", "string": "s
 """The type of a declaration for a value, by the kind of the value."""
 
 FOREIGN_TYPES = {
-    "int": "int32", "integer": "int32", "uint": "uint32", "long": "int64", "short": "int16", "byte": "uint8",
-    "char": "uint8", "float": "float32", "double": "float64", "real": "float64", "number": "float64",
-    "boolean": "bool", "str": "string", "String": "string", "integer8": "int8", "integer16": "int16",
-    "integer32": "int32", "integer64": "int64",
+    **interfaces.FOREIGN_TYPES, "byte": "uint8", "char": "uint8", "String": "string",
+    "integer8": "int8", "integer16": "int16", "integer32": "int32", "integer64": "int64",
 }  # fmt: skip
 """Names of types in other languages, with the names that they have here."""

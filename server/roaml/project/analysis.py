@@ -36,7 +36,6 @@ from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
-from roaml.model.spelling import close_names
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
@@ -54,6 +53,8 @@ from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, 
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files, resolve
 from roaml.project.memo import Memo
+from roaml.roles import SymbolKind
+from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
 from roaml.xml_syntax import parse as parse_xml
@@ -503,7 +504,7 @@ class Analysis:
             return
         found = self.outline(meant, system, self.structs(system), {})
         yield from found.gaps
-        yield from (Gap(use.kind, use.name or None) for use in found.interfaces)
+        yield from (Gap(use.kind.value, use.name or None) for use in found.interfaces)
         yield from (Gap(SENDS, sent.event) for sent in found.sent)
         yield from (Gap(RECEIVES, received.event) for received in found.received)
 
@@ -616,7 +617,7 @@ class Analysis:
                 machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
                 for declaration in machine.declarations if machine else ():
                     topic, type_ = declaration.interface, declaration.type
-                    if declaration.kind == "publisher" and isinstance(topic, Name) and type_ is not None:
+                    if declaration.kind is SymbolKind.PUBLISHER and isinstance(topic, Name) and type_ is not None:
                         found.setdefault(sanitise(topic.value), {})[type_.value] = None
             self._published_types[system] = {topic: tuple(types) for topic, types in found.items()}
         return self._published_types[system]
@@ -627,7 +628,11 @@ class Analysis:
             return {}
         found: dict[str, tuple[InterfaceType, ...]] = {}
         for declaration in machine.declarations:
-            if declaration.kind == "subscriber" and isinstance(declaration.interface, Name) and declaration.type:
+            if (
+                declaration.kind is SymbolKind.SUBSCRIBER
+                and isinstance(declaration.interface, Name)
+                and declaration.type
+            ):
                 topic = sanitise(declaration.interface.value)
                 types = self._published(system).get(topic, ())
                 if others := self._messages(t for t in types if t != declaration.type.value):

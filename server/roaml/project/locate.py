@@ -7,6 +7,7 @@ from roaml.diagnostics import Symbol
 from roaml.model.machine import Send
 from roaml.model.syntax import Name
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location
 
 
@@ -17,24 +18,24 @@ def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
 
 
 def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
-    if symbol.kind == "tree":
+    if symbol.kind is SymbolKind.TREE:
         tree = analysis.tree(symbol.path)
         return next((t.id for t in tree.trees if t.id and t.id.value == symbol.name), None) if tree else None
     machine = analysis.machine(symbol.path)
     if machine is None:
         return None
     match symbol.kind:
-        case "machine":
+        case SymbolKind.MACHINE:
             return machine.name
-        case "port":
+        case SymbolKind.PORT:
             return next((p.key for p in machine.ports if p.key and p.key.value == symbol.name), None)
-        case "state":
+        case SymbolKind.STATE:
             states = (s for c in machine.charts if c.scope == symbol.scope for s in c.states)
             return next((s.id for s in states if s.id and s.id.value == symbol.name), None)
-        case "data":
+        case SymbolKind.VARIABLE:
             data = [d for c in machine.charts if c.scope == symbol.scope for d in c.data]
             return next((d.id for d in data if d.id and d.id.value == symbol.name), None)
-        case "event":
+        case SymbolKind.EVENT:
             sends = [s for c in machine.charts for s in c.statements if isinstance(s, Send)]
             return next((s.event for s in sends if s.event and s.event.value == symbol.name), None)
     for declaration in machine.declarations:

@@ -25,12 +25,13 @@ from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
-from roaml.model.spelling import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import Automaton, System
 from roaml.model.system_file import ListedFile, SystemFile
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
+from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
+from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.xml_syntax import Document
 
@@ -161,14 +162,6 @@ class Rule:
         tags: tuple[Tag, ...] = (),
     ) -> Finding:
         return Finding(self.code, span, message, severity, fixes, tuple(related), tags)
-
-
-# --------------------------------------------------------------- did you mean?
-
-
-def did_you_mean(close: tuple[str, ...]) -> str:
-    """`; did you mean …?`, or "" without names."""
-    return f"; did you mean `{close[0]}`?" if close else ""
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:

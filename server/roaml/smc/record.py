@@ -9,6 +9,7 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.jani.model import Destination, Edge
 from roaml.smc.batch import Problem
+from roaml.smc.compile import Legend
 from roaml.smc.end import End
 from roaml.smc.goal import Asked
 from roaml.smc.kernel import Kernel
@@ -66,6 +67,66 @@ class Recording:
     problem: Problem | None = None
 
 
+class StepReader:
+    """Reads off a kernel what the step that it has taken last was.
+
+    Attributes:
+        variables: those of the model, then those of each instance.
+    """
+
+    def __init__(self, kernel: Kernel, legend: Legend) -> None:
+        self._kernel = kernel
+        self.legend = legend
+        layout = legend.layout
+        self.variables: list[tuple[Variable, Storage]] = [(Variable(-1, s.name), s) for s in layout.shared]
+        for number, instance in enumerate(layout.instances):
+            self.variables += [(Variable(number, s.name), s) for s in instance.own]
+        self._owner_of_int: dict[int, int] = {}
+        self._owner_of_real: dict[int, int] = {}
+        for position, (_, storage) in enumerate(self.variables):
+            size = 1
+            for length in storage.shape:
+                size *= length
+            owner = self._owner_of_real if storage.kind == REAL else self._owner_of_int
+            owner.update((register, position) for register in range(storage.base, storage.base + size))
+        self.start()
+
+    def start(self) -> None:
+        """Take the present state for the one before the next step."""
+        self._places = [self._kernel.location(i) for i in range(len(self.legend.layout.instances))]
+        self._ints, self._reals = self._kernel.snapshot()
+
+    def read(self, number: int) -> TraceStep:
+        """The step from the state before to the present one, which is the one before the next step then."""
+        places, ints, reals = self._places, self._ints, self._reals
+        self.start()
+        _, action = self.legend.vectors[self._kernel.vector]
+        parts = tuple(self._part(instance, way, places) for instance, way in self._kernel.taken())
+        return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
+
+    def values(self, storages: Sequence[Storage]) -> list[Plain]:
+        """Their values in the present state."""
+        ints, reals = self._kernel.snapshot()
+        return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
+
+    def _part(self, instance: int, way: int, places: list[int]) -> Part:
+        edge, destination = self.legend.ways[way]
+        _, source = self.legend.locations[places[instance]]
+        return Part(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
+
+    def _changes(
+        self, ints: list[int], reals: list[float], ints_after: list[int], reals_after: list[float]
+    ) -> tuple[Change, ...]:
+        changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
+        changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
+        found = []
+        for position in sorted(changed):
+            variable, storage = self.variables[position]
+            before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
+            found.append(Change(variable, _value(storage, before), _value(storage, after)))
+        return tuple(found)
+
+
 class Recorder:
     """Walks single traces of a question."""
 
@@ -78,18 +139,7 @@ class Recorder:
         self.max_steps = max_steps
         self.scheduler = scheduler
         self._kernel = Kernel(compiled.program, compiled.goal)
-        layout = self.legend.layout
-        self.variables: list[tuple[Variable, Storage]] = [(Variable(-1, s.name), s) for s in layout.shared]
-        for number, instance in enumerate(layout.instances):
-            self.variables += [(Variable(number, s.name), s) for s in instance.own]
-        self._owner_of_int: dict[int, int] = {}
-        self._owner_of_real: dict[int, int] = {}
-        for position, (_, storage) in enumerate(self.variables):
-            size = 1
-            for length in storage.shape:
-                size *= length
-            owner = self._owner_of_real if storage.kind == REAL else self._owner_of_int
-            owner.update((register, position) for register in range(storage.base, storage.base + size))
+        self._steps = StepReader(self._kernel, checker.legend)
 
     @property
     def shared(self) -> list[Storage]:
@@ -98,8 +148,7 @@ class Recorder:
 
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
         """Their values in the state that is reached."""
-        ints, reals = self._kernel.snapshot()
-        return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
+        return self._steps.values(storages)
 
     def initial(self, storages: Sequence[Storage]) -> list[Plain]:
         """Their values at first."""
@@ -118,21 +167,15 @@ class Recorder:
         """The steps of a trace; `values` tells what holds after each."""
         kernel, done = self._kernel, 0
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
-        ints, reals = kernel.snapshot()
+        self._steps.start()
         while verdict == UNKNOWN and done < self.max_steps:
-            places = [kernel.location(i) for i in range(len(self.legend.layout.instances))]
             verdict = kernel.advance(done + 1)
             if verdict == FAULTY:
                 break
             if kernel.outcome()[0] == done:
                 break
             done += 1
-            ints_after, reals_after = kernel.snapshot()
-            changes = self._changes(ints, reals, ints_after, reals_after)
-            ints, reals = ints_after, reals_after
-            _, action = self.legend.vectors[kernel.vector]
-            parts = tuple(self._part(instance, way, places) for instance, way in kernel.taken())
-            yield TraceStep(done, action, parts, changes)
+            yield self._steps.read(done)
         self._finish(recording, verdict)
 
     def _finish(self, recording: Recording, verdict: int) -> None:
@@ -160,23 +203,6 @@ class Recorder:
             found |= read_by(assignment, layout.names.functions)
         own = {storage.name for storage in layout.own}
         return {Variable(part.instance if name in own else -1, name) for name in found}
-
-    def _part(self, instance: int, way: int, places: list[int]) -> Part:
-        edge, destination = self.legend.ways[way]
-        _, source = self.legend.locations[places[instance]]
-        return Part(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
-
-    def _changes(
-        self, ints: list[int], reals: list[float], ints_after: list[int], reals_after: list[float]
-    ) -> tuple[Change, ...]:
-        changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
-        changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
-        found = []
-        for position in sorted(changed):
-            variable, storage = self.variables[position]
-            before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
-            found.append(Change(variable, _value(storage, before), _value(storage, after)))
-        return tuple(found)
 
 
 def _value(storage: Storage, cells: Sequence[int] | Sequence[float]) -> Plain:

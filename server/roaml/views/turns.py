@@ -15,12 +15,12 @@ from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.globals import FIELD_PREFIX
 from roaml.model.system import builtin_plugins
 from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.value_types import STATUSES
 from roaml.smc.record import Change, Part, Plain, TraceStep
 from roaml.smc.story import Story
+from roaml.views.events import EventReader
 
 _NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _CALL = re.compile(r"bt_\d+_(tick|halt)")
@@ -166,43 +166,22 @@ class _Reader:
     """
 
     def __init__(self, story: Story) -> None:
-        actions = [{edge.action or "" for edge in automaton.edges} for automaton in story.automata]
         self._story = story
-        self._automata = {automaton.name for automaton in story.automata}
         self._relevant = frozenset(story.relevant)
-        self._events = {event for found in actions for action in found if (event := sent_by(action))}
-        self._hearing = [any(map(received_by, found)) for found in actions]
-        self._values = dict(story.start)
-        self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
-        self._of_events = {name for name in self._values if self._is_of_event(name)}
+        self._events = EventReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._messages: dict[str, Message] = {}
         self._current: dict[int, Turn] = {}
         self.turns: list[Turn] = []
 
-    def _is_of_event(self, name: str) -> bool:
-        """Whether a variable of the model carries an event; what is a parameter of it is noted."""
-        if name.endswith(_VALID):
-            return name.removesuffix(_VALID) in self._events
-        at = name.rfind("__")
-        while at > 0:
-            if name[:at] in self._events:
-                if not is_length(name):
-                    self._parameters[name[:at]].append(name)
-                return True
-            at = name.rfind("__", 0, at)
-        return False
-
     def read(self, index: int) -> None:
         step = self._story.steps[index]
-        for change in step.changes:
-            if change.variable.instance < 0:
-                self._values[change.variable.name] = change.after
-        actors = [part for part in step.parts if part.automaton not in self._events]
+        self._events.read(step)
+        actors = self._events.actors(step)
         heard = self._heard(step)
         for part in actors:
             turn = self._current.get(part.instance)
-            if turn is None or heard is not None or not self._hearing[part.instance]:
+            if turn is None or heard is not None or not self._events.hearing[part.instance]:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
                 self._current[part.instance] = turn
@@ -217,30 +196,21 @@ class _Reader:
             self._send(event, self._current[actors[0].instance] if actors else None)
 
     def _send(self, event: str, sender: Turn | None) -> None:
-        values = {_parameter(event, name): self._values[name] for name in self._parameters.get(event, ())}
-        self._messages[event] = Message(event, self._name(event), values, sender)
+        self._messages[event] = Message(event, self._events.name(event), self._events.parameters(event), sender)
         if sender is not None:
             sender.messages.append(self._messages[event])
 
     def _heard(self, step: TraceStep) -> Message | None:
         event = received_by(step.action or "")
-        return self._messages.get(event, Message(event, self._name(event), {})) if event else None
-
-    def _name(self, event: str) -> str:
-        name, _, client = event.partition("_client_")
-        return name if client in self._automata else event
+        return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
 
     def _changes(self, step: TraceStep, part: Part, *, is_last: bool) -> Iterator[Change]:
         """Those of its own variables, and of the model's that carry no event; the latter are told once."""
         for change in step.changes:
             instance, name = change.variable
-            is_lasting = instance < 0 and is_last and name not in self._of_events
+            is_lasting = instance < 0 and is_last and not self._events.carries_event(name)
             if (instance == part.instance or is_lasting) and not is_length(name):
                 yield change
-
-
-def _parameter(event: str, variable: str) -> str:
-    return variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX)
 
 
 def is_inner(automaton: Automaton) -> bool:

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import codecs
 import re
-from difflib import SequenceMatcher
 
 from roaml.diagnostics import Finding, Fix, Related
+from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit, span_of
 from roaml.xml_syntax.escapes import FORBIDDEN, PREDEFINED, REFERENCE, is_character, unescape
 from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_name
@@ -61,7 +61,6 @@ _XML_DECLARATION = re.compile(
     (?:{_SPACE}+encoding{_SPACE}*={_SPACE}*(["'])(?P<encoding>[A-Za-z][A-Za-z0-9._-]*)\2)?
     (?:{_SPACE}+standalone{_SPACE}*={_SPACE}*(["'])(?:yes|no)\4)?{_SPACE}*""".replace("\n    ", "")
 )
-_LONGEST_SIMILAR_NAME = 100
 
 
 def parse(text: str) -> Document:
@@ -632,8 +631,7 @@ def resemble(name: str, wanted: str) -> bool:
     """Whether the end tag `name` was probably meant to close `wanted`."""
     if name.rpartition(":")[2] == wanted.rpartition(":")[2]:
         return True
-    short = max(len(name), len(wanted)) <= _LONGEST_SIMILAR_NAME
-    return short and SequenceMatcher(None, name, wanted).ratio() > 0.6
+    return are_similar(name, wanted)
 
 
 def shown(name: str) -> str:

@@ -15,6 +15,7 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
+from roaml.roles import SymbolKind
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
@@ -63,7 +64,7 @@ def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> It
     if document is None or state is None or state.id is None or not state.element.complete:
         return
     for client in machine.declarations:
-        if client.kind != "action-client" or client.handle is None or not _sends_goals(machine, client):
+        if client.kind is not SymbolKind.ACTION_CLIENT or client.handle is None or not _sends_goals(machine, client):
             continue
         known_handlers = [
             h for h in state.handlers if h.trigger == "result" and h.handle and h.handle.value == client.handle.value

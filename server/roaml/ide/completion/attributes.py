@@ -14,6 +14,7 @@ from roaml.ide.names.frames import names_in
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType
 from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.roles import SymbolKind
 
 
 def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bare: bool) -> Iterator[Item]:
@@ -48,7 +49,7 @@ def _plugin_type() -> ElementType:
 
 
 def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare: bool) -> Item:
-    about = Symbol(subject.key, "attribute", attribute.name, request.file.grammar.schema)
+    about = Symbol(subject.key, SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
     insert = ""
     if bare:
         values = likely(request, subject, attribute)

@@ -11,6 +11,7 @@ from roaml.ide.describe import describe
 from roaml.ide.describe import language as describe_language
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 _GRAMMARS: Mapping[str, Grammar] = {each.schema: each for each in (HL_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE)}
 
@@ -25,27 +26,27 @@ def document(analysis: Analysis, about: Symbol) -> str:
     """
     grammar = _GRAMMARS.get(about.scope)
     match about.kind:
-        case "element" if grammar is not None:
+        case SymbolKind.ELEMENT if grammar is not None:
             type_ = _element(grammar, about.path, about.name)
             return describe_language.element(type_) if type_ else ""
-        case "attribute" if grammar is not None:
+        case SymbolKind.ATTRIBUTE if grammar is not None:
             type_ = _element(grammar, *about.path.split("/", 1))
             attribute = type_.attributes.get(about.name) if type_ else None
             return describe_language.attribute(attribute) if attribute else ""
-        case "choice" if grammar is not None:
+        case SymbolKind.ENUMERATION_VALUE if grammar is not None:
             parent, element, name = about.path.split("/", 2)
             type_ = _element(grammar, parent, element)
             attribute = type_.attributes.get(name) if type_ else None
             choices = attribute.simple.choices if attribute else ()
             return next((describe_language.choice(each) for each in choices if each.value == about.name), "")
-        case "function":
+        case SymbolKind.FUNCTION:
             found = FUNCTIONS.get(about.name)
             return describe_language.function(found) if found else ""
-        case "event-variable":
+        case SymbolKind.EVENT_VARIABLE:
             return describe_language.EVENT_VARIABLES.get(about.name, "")
-        case "base-type":
+        case SymbolKind.BASE_TYPE:
             return describe_language.base_type(about.name)
-        case "json":
+        case SymbolKind.JSON:
             return about.scope
     return describe(analysis, about)
 

@@ -18,6 +18,7 @@ from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 _MOST_CHOICES = 20
@@ -119,7 +120,7 @@ def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
     insert = snippet(request, type_, parents) if bare else ""
     rank = Rank.LATE if type_.ignored or type_.use or _has_no_handle(request, type_) else Rank.USUAL
     above = parents[-1].element.name if parents else ""
-    about = Symbol(above, "element", type_.name, request.file.grammar.schema)
+    about = Symbol(above, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
     return Item(type_.name, ItemKind.ELEMENT, insert, about=about, rank=rank, deprecated=bool(type_.use))
 
 
@@ -138,14 +139,14 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
     """Plugins of the system, nodes of BehaviorTree.CPP and subtrees."""
     grammar = request.file.grammar
     for name, (path, outline) in plugins(request).items():
-        about = Symbol(path, "machine", name)
+        about = Symbol(path, SymbolKind.MACHINE, name)
         has_children = outline.plugin.children > 0 or outline.plugin.any_child
         insert = _plugin(request, name, grammar, has_children=has_children) if bare else ""
         yield Item(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
     for name in request.trees.trees if bare else ():
         around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
         if name and (around is None or around.value != name):
-            about = Symbol(request.trees.owner, "tree", name)
+            about = Symbol(request.trees.owner, SymbolKind.TREE, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
             yield Item(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
     for type_ in grammar.elements.values():
@@ -160,7 +161,7 @@ def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
         insert = _plugin(request, type_.name, request.file.grammar, has_children=bool(type_.any_child)) if bare else ""
     rank = Rank.USUAL if type_.translated and not type_.use else Rank.LAST
     detail = type_.node if type_.translated else f"{type_.node}, cannot be translated"
-    about = Symbol(parents[-1].element.name, "element", type_.name, request.file.grammar.schema)
+    about = Symbol(parents[-1].element.name, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
     return Item(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
 
 

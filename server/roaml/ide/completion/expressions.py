@@ -21,6 +21,7 @@ from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.value_types import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
+from roaml.roles import SymbolKind
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
 
@@ -108,7 +109,13 @@ def in_expression(request: Request, subject: Subject, part: str, start: int) -> 
     wanted = _wanted(request, subject, part)
     items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
     items += [
-        Item(name, ItemKind.VARIABLE, detail=str(type_), about=Symbol("", "event-variable", name), rank=Rank.LIKELY)
+        Item(
+            name,
+            ItemKind.VARIABLE,
+            detail=str(type_),
+            about=Symbol("", SymbolKind.EVENT_VARIABLE, name),
+            rank=Rank.LIKELY,
+        )
         for name, type_ in events.items()
         if name not in STATUSES
     ]
@@ -194,9 +201,9 @@ def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Itera
     if not isinstance(inner, Struct):
         return
     for name, member in inner.members:
-        about = Symbol("", "field", name, inner.name)
+        about = Symbol("", SymbolKind.FIELD, name, inner.name)
         if inner.what == "struct":
-            about = Symbol(request.system_path or request.path, "member", name, inner.name)
+            about = Symbol(request.system_path or request.path, SymbolKind.MEMBER, name, inner.name)
         yield Item(name, ItemKind.MEMBER, detail=str(wrap(member, bounds)), about=about)
 
 
@@ -208,7 +215,7 @@ def _function(function: Function, prefix: str, rank: Rank) -> Item:
     snippet.text(")")
     detail = f"({', '.join(function.parameters)}) → {function.result}"
     label = f"{prefix}{function.name}"
-    return Item(label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", "function", function.name), rank)
+    return Item(label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", SymbolKind.FUNCTION, function.name), rank)
 
 
 # ----------------------------------------------------------------- wanted types

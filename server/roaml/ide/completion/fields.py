@@ -14,6 +14,7 @@ from roaml.language import ElementType
 from roaml.model.machine import Communicate, Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -28,7 +29,7 @@ def field_names(request: Request, subject: Subject) -> Iterator[Item]:
     required = set(_required(request, declaration, statement.type))
     for path, (type_, owner) in _fields(request, statement).items():
         if path not in given:
-            about = Symbol("", "field", path.rpartition(".")[2], owner)
+            about = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner)
             rank = Rank.LIKELY if path in required else Rank.LATE
             yield Item(path, ItemKind.MEMBER, detail=str(type_), about=about, rank=rank)
 
@@ -47,7 +48,7 @@ def fields_to_add(request: Request, element: Element) -> Iterator[Item]:
         detail = ", ".join(missing)
         yield Item("all missing fields", ItemKind.SKELETON, insert, detail, None, Rank.BEST, "field all missing")
     for path in missing:
-        about = Symbol("", "field", path.rpartition(".")[2], known[path][1])
+        about = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], known[path][1])
         insert = str(_field(Snippet(), path, known[path][0]))
         yield Item(f"field {path}", ItemKind.SKELETON, insert, str(known[path][0]), about, Rank.LIKELY)
 

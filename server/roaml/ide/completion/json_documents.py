@@ -14,6 +14,7 @@ from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Memb
 from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Schema
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCTS}
@@ -117,7 +118,7 @@ def _keys(place: _Place) -> Iterator[Item]:
         if key.name not in given:
             insert = escaped(f'"{key.name}"') if not place.bare else _with_value(place.grammar, key.name, key.schema)
             rank = Rank.LIKELY if key.required else Rank.LATE if key.name == "comment" else Rank.USUAL
-            about = Symbol(place.grammar.name, "json", key.name, place.grammar.text(key.schema))
+            about = Symbol(place.grammar.name, SymbolKind.JSON, key.name, place.grammar.text(key.schema))
             detail = "required" if key.required else ""
             yield Item(key.name, ItemKind.ATTRIBUTE, insert, detail, about, rank, f'"{key.name}"')
 
@@ -167,7 +168,7 @@ def _names(analysis: Analysis, path: str) -> Iterator[Item]:
     """The variables of the translated systems."""
     for system in systems_of(analysis, path):
         for name, variable in (analysis.globals(system) if system else {}).items():
-            about = Symbol(system or "", "global", name)
+            about = Symbol(system or "", SymbolKind.GLOBAL, name)
             rank = Rank.LIKELY if name.endswith(".valid") else Rank.USUAL
             detail = str(variable.type)
             yield Item(name, ItemKind.VARIABLE, _quoted(name), detail, about, rank, f'"{name}"')
@@ -185,7 +186,7 @@ def _operators(grammar: JsonGrammar, kind: str) -> Iterator[Item]:
                 made.text(f', "{key}": ')
                 made = made.text('"').stop(choices).text('"') if choices else made.stop()
         made.text("}")
-        about = Symbol(grammar.name, "json", operator, grammar.text(described))
+        about = Symbol(grammar.name, SymbolKind.JSON, operator, grammar.text(described))
         rank = Rank.LATE if operator in _SELDOM else Rank.USUAL
         detail = grammar.title(described)
         yield Item(f"{{{operator}}}", ItemKind.SKELETON, str(made), detail, about, rank, f"{{{operator}")

@@ -15,11 +15,12 @@ from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
+from roaml.roles import SymbolKind
 
 _SHOWN = 3
 
 
-def referred(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
+def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[Item]:
     """The things of a kind of symbol that `subject` may name."""
     if kind in HANDLES:
         yield from _handles(request, kind)
@@ -27,21 +28,21 @@ def referred(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
         yield from _PROVIDERS[kind](request, subject)
 
 
-def undefined(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
+def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[Item]:
     """Names for a new thing: those that are used as if it were there already."""
-    if kind == "event":
+    if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
-    elif kind == "parameter":
+    elif kind is SymbolKind.PARAMETER:
         yield from parameter_names(request, subject)
-    elif kind == "machine":
+    elif kind is SymbolKind.MACHINE:
         yield from _machine_names(request)
-    elif kind == "port":
+    elif kind is SymbolKind.PORT:
         yield from _missing_ports(request)
     else:
         defined: set[Symbol] = set()
         used: dict[Symbol, None] = {}
         for each in uses(request.analysis, request.path, request.system_path).all:
-            if each.symbol.kind == kind:
+            if each.symbol.kind is kind:
                 if each.defines:
                     defined.add(each.symbol)
                 else:
@@ -51,7 +52,7 @@ def undefined(request: Request, kind: str, subject: Subject) -> Iterator[Item]:
                 yield Item(symbol.name, _KINDS.get(kind, ItemKind.VALUE), detail="used, not defined", rank=Rank.BEST)
 
 
-_KINDS = {"state": ItemKind.STATE, "variable": ItemKind.VARIABLE, "port": ItemKind.PORT}
+_KINDS = {SymbolKind.STATE: ItemKind.STATE, SymbolKind.VARIABLE: ItemKind.VARIABLE, SymbolKind.PORT: ItemKind.PORT}
 
 
 # ------------------------------------------------------------------- machines
@@ -60,19 +61,19 @@ _KINDS = {"state": ItemKind.STATE, "variable": ItemKind.VARIABLE, "port": ItemKi
 def _states(request: Request, subject: Subject) -> Iterator[Item]:
     for state in request.chart.states if request.chart else ():
         if state.id is not None:
-            about = Symbol(request.path, "state", state.id.value, request.chart.scope if request.chart else "")
+            about = Symbol(request.path, SymbolKind.STATE, state.id.value, request.chart.scope if request.chart else "")
             yield Item(state.id.value, ItemKind.STATE, about=about)
 
 
-def _handles(request: Request, kind: str) -> Iterator[Item]:
+def _handles(request: Request, kind: SymbolKind) -> Iterator[Item]:
     for declaration in request.machine.declarations if request.machine else ():
-        if declaration.kind == kind and declaration.handle is not None:
+        if declaration.kind is kind and declaration.handle is not None:
             about = Symbol(request.path, kind, declaration.handle.value)
             yield Item(declaration.handle.value, ItemKind.HANDLE, detail=_declared(declaration), about=about)
 
 
 def _declared(declaration: Declaration) -> str:
-    if declaration.kind == "timer":
+    if declaration.kind is SymbolKind.TIMER:
         return f"{declaration.rate.value} Hz" if isinstance(declaration.rate, Name) else ""
     name = declaration.interface.value if isinstance(declaration.interface, Name) else ""
     return " : ".join(filter(None, (name, declaration.type.value if declaration.type else "")))
@@ -85,14 +86,19 @@ def _ports(request: Request, subject: Subject) -> Iterator[Item]:
         path, outline = plugins(request).get(id_.value if id_ else "", ("", None))
         for declared in outline.ports if outline else ():
             if subject.type.name == f"{declared.direction}put_port":
-                about = Symbol(path, "port", declared.key)
+                about = Symbol(path, SymbolKind.PORT, declared.key)
                 yield Item(declared.key, ItemKind.PORT, detail=declared.type, about=about)
         return
     wanted = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
     for port in request.machine.ports:
         if port.key is not None and wanted in (None, port.direction):
             detail = port.type.text if port.type else ""
-            yield Item(port.key.value, ItemKind.PORT, detail=detail, about=Symbol(request.path, "port", port.key.value))
+            yield Item(
+                port.key.value,
+                ItemKind.PORT,
+                detail=detail,
+                about=Symbol(request.path, SymbolKind.PORT, port.key.value),
+            )
 
 
 def _machine_names(request: Request) -> Iterator[Item]:
@@ -154,18 +160,18 @@ def _events_to_send(request: Request) -> Iterator[Item]:
 
 def _event(owner: str, name: str, detail: str, *, sound: bool) -> Item:
     rank = Rank.USUAL if sound else Rank.LATE
-    return Item(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, "event", name), rank=rank)
+    return Item(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, SymbolKind.EVENT, name), rank=rank)
 
 
 # ----------------------------------------------------------- ROS and the tree
 
 
-def channels(request: Request, kind: str, type_: str = "") -> Iterator[Item]:
+def channels(request: Request, kind: SymbolKind, type_: str = "") -> Iterator[Item]:
     """The topics, services or actions of the workspace; those of ROS type `type_` first, the file's own system before
     others."""
     seen = set()
     for system in request.all_systems:
-        for name, channel in _channels(system, kind).items():
+        for name, channel in system.channels(kind).items():
             written = next((e.use.name for e in channel.endpoints if e.use.name), channel.name)
             if not written or written in seen:
                 continue
@@ -178,15 +184,11 @@ def channels(request: Request, kind: str, type_: str = "") -> Iterator[Item]:
             yield Item(written, ItemKind.INTERFACE, detail=detail, about=Symbol(system.path, kind, name), rank=rank)
 
 
-def _channels(system: System, kind: str) -> Mapping[str, Channel]:
-    return {"topic": system.topics, "service": system.services, "action": system.actions}[kind]
-
-
 def _machines(channel: Channel) -> dict[str, None]:
     return dict.fromkeys(endpoint.automaton.name for endpoint in channel.endpoints)
 
 
-def _of_kind(kind: str) -> Callable[[Request, Subject], Iterator[Item]]:
+def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[Item]]:
     def provide(request: Request, subject: Subject) -> Iterator[Item]:
         element = subject.element
         if subject.type.text and subject.parents:
@@ -209,7 +211,7 @@ def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
 
 def _plugin_names(request: Request, subject: Subject) -> Iterator[Item]:
     for name, (path, outline) in plugins(request).items():
-        about = Symbol(path, "machine", name)
+        about = Symbol(path, SymbolKind.MACHINE, name)
         yield Item(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
     wanted = subject.type.name.lower()
     for name in builtin_plugins():
@@ -219,7 +221,7 @@ def _plugin_names(request: Request, subject: Subject) -> Iterator[Item]:
                 name,
                 ItemKind.PLUGIN,
                 detail="BehaviorTree.CPP",
-                about=Symbol("", "element", name, request.file.grammar.schema),
+                about=Symbol("", SymbolKind.ELEMENT, name, request.file.grammar.schema),
             )
 
 
@@ -234,7 +236,7 @@ def _tree_names(request: Request, subject: Subject) -> Iterator[Item]:
     for name, (path, _) in request.trees.trees.items():
         if name:
             file = path.replace("\\", "/").rpartition("/")[2]
-            yield Item(name, ItemKind.PLUGIN, detail=file, about=Symbol(request.trees.owner, "tree", name))
+            yield Item(name, ItemKind.PLUGIN, detail=file, about=Symbol(request.trees.owner, SymbolKind.TREE, name))
 
 
 def _some(names: Iterable[str]) -> str:
@@ -243,13 +245,13 @@ def _some(names: Iterable[str]) -> str:
     return ", ".join(listed[:_SHOWN]) + more
 
 
-_PROVIDERS: Mapping[str, Callable[[Request, Subject], Iterator[Item]]] = {
-    "state": _states,
-    "port": _ports,
-    "event": _events_received,
-    "topic": _of_kind("topic"),
-    "service": _of_kind("service"),
-    "action": _of_kind("action"),
-    "plugin": _plugin_names,
-    "tree": _tree_names,
+_PROVIDERS: Mapping[SymbolKind, Callable[[Request, Subject], Iterator[Item]]] = {
+    SymbolKind.STATE: _states,
+    SymbolKind.PORT: _ports,
+    SymbolKind.EVENT: _events_received,
+    SymbolKind.TOPIC: _of_kind(SymbolKind.TOPIC),
+    SymbolKind.SERVICE: _of_kind(SymbolKind.SERVICE),
+    SymbolKind.ACTION: _of_kind(SymbolKind.ACTION),
+    SymbolKind.PLUGIN: _plugin_names,
+    SymbolKind.TREE: _tree_names,
 }

@@ -9,6 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.model.machine import Send
+from roaml.roles import SymbolKind
 
 
 def parameter_names(request: Request, subject: Subject) -> Iterator[Item]:
@@ -51,7 +52,7 @@ def _missing(request: Request, send: Send, subject: Subject) -> Iterator[Item]:
         reads = dict.fromkeys(name for _, received in event.receivers for name in sorted(received.reads))
         for name in dict.fromkeys((*reads, *types)):
             if name not in given:
-                about = Symbol(system.path, "parameter", name, event.name)
+                about = Symbol(system.path, SymbolKind.PARAMETER, name, event.name)
                 detail = str(types[name]) if name in types else "read by a receiver"
                 rank = Rank.BEST if name in reads else Rank.USUAL
                 yield Item(name, ItemKind.MEMBER, detail=detail, about=about, rank=rank)

@@ -11,12 +11,12 @@ from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import channels, plugins
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.frames import names_in
-from roaml.ide.names.in_machine import INTERFACE_SYMBOLS
 from roaml.language import ElementType
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
-from roaml.model.value_types import INTERFACE_KINDS
+from roaml.model.value_types import CHANNEL_KINDS
+from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -43,7 +43,7 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
         found = []
         for attribute in type_.ports:
             assert attribute.port is not None
-            about = Symbol(f"/{type_.name}", "attribute", attribute.name, request.file.grammar.schema)
+            about = Symbol(f"/{type_.name}", SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
             port = attribute.port
             found.append(Port(attribute.name, port.type, port.direction, port.required, port.default, about))
         return tuple(found)
@@ -58,7 +58,7 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
             port.direction,
             port.key not in defaults,
             defaults[port.key].value.value if port.key in defaults else "",
-            Symbol(path, "port", port.key),
+            Symbol(path, SymbolKind.PORT, port.key),
         )
         for port in outline.ports
         if port.key != CHILDREN_COUNT
@@ -140,8 +140,8 @@ def _constants(request: Request, name: str, port: Port) -> Iterator[Item]:
 def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[Item]:
     """If the port names a topic, service or action: those of the workspace."""
     for use in outline.interfaces if outline else ():
-        if use.port == key and use.kind in INTERFACE_KINDS:
-            yield from channels(request, INTERFACE_SYMBOLS[INTERFACE_KINDS[use.kind]], use.type)
+        if use.port == key and use.kind in CHANNEL_KINDS:
+            yield from channels(request, CHANNEL_KINDS[use.kind], use.type)
 
 
 def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:

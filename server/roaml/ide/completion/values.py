@@ -19,6 +19,7 @@ from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import type_of
 from roaml.model.value_types import STATUSES
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 _EXPRESSIONS = ("expression", "location")
@@ -39,10 +40,12 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
 def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[Item]:
     """What the whole value of an attribute may be."""
     for choice in attribute.simple.choices:
-        about = Symbol(f"{subject.key}/{attribute.name}", "choice", choice.value, request.file.grammar.schema)
+        about = Symbol(
+            f"{subject.key}/{attribute.name}", SymbolKind.ENUMERATION_VALUE, choice.value, request.file.grammar.schema
+        )
         yield Item(choice.value, ItemKind.VALUE, about=about, deprecated=bool(choice.use))
     for kind in attribute.refers:
-        if kind == "field":
+        if kind is SymbolKind.FIELD:
             yield from field_names(request, subject)
         else:
             yield from referred(request, kind, subject)
@@ -86,7 +89,7 @@ def _of_value(request: Request, subject: Subject, name: str, value: str, value_t
 def types(request: Request) -> Iterator[Item]:
     """Base types and the structs of the system."""
     for name in BASE_TYPES:
-        yield Item(name, ItemKind.TYPE, about=Symbol("", "base-type", name))
+        yield Item(name, ItemKind.TYPE, about=Symbol("", SymbolKind.BASE_TYPE, name))
     structs = request.analysis.structs(request.system_path).types
     names = [name for system in request.systems for name in system.structs] or list(structs)
     if request.analysis.kind(request.path) is FileKind.STRUCTS:
@@ -94,7 +97,7 @@ def types(request: Request) -> Iterator[Item]:
         names += [each.outline.name for each in declared if each.outline is not None]
     for name in dict.fromkeys(names):
         owner = request.system_path or request.path
-        yield Item(name, ItemKind.TYPE, detail="struct", about=Symbol(owner, "struct", name), rank=Rank.LIKELY)
+        yield Item(name, ItemKind.TYPE, detail="struct", about=Symbol(owner, SymbolKind.STRUCT, name), rank=Rank.LIKELY)
 
 
 def ros_types(request: Request, kind: str) -> Iterator[Item]:
@@ -108,7 +111,7 @@ def ros_types(request: Request, kind: str) -> Iterator[Item]:
         for name in kinds[ros_kind]:
             label = f"{package}/{name}"
             rank = Rank.LIKELY if label in used else Rank.USUAL
-            yield Item(label, ItemKind.TYPE, about=Symbol("", "ros-type", label, kind), rank=rank)
+            yield Item(label, ItemKind.TYPE, about=Symbol("", SymbolKind.ROS_TYPE, label, kind), rank=rank)
 
 
 def _constants(request: Request, subject: Subject) -> Iterator[Item]:

@@ -11,8 +11,8 @@ from roaml.diagnostics import Symbol
 from roaml.ide.describe import machine as describe_machine
 from roaml.ide.describe import ros as describe_ros
 from roaml.ide.describe import system as describe_system
-from roaml.ide.names.occurrence import HANDLES
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 
 def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
@@ -23,36 +23,45 @@ def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
         written: how it is spelled where it is asked about, if that matters (a topic may begin with a slash).
     """
     match symbol.kind:
-        case "variable":
+        case SymbolKind.VARIABLE:
             return describe_machine.variable(analysis, symbol)
-        case "state":
+        case SymbolKind.STATE:
             return describe_machine.state(analysis, symbol)
-        case "port":
+        case SymbolKind.PORT:
             return describe_machine.port(analysis, symbol)
-        case "machine":
+        case SymbolKind.MACHINE:
             return describe_machine.machine(analysis, symbol)
-        case "event":
+        case SymbolKind.EVENT:
             return describe_system.event(analysis, symbol)
-        case "parameter":
+        case SymbolKind.PARAMETER:
             return describe_system.parameter(analysis, symbol)
-        case "topic" | "service" | "action":
+        case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             return describe_system.interface(analysis, symbol, written)
-        case "blackboard":
+        case SymbolKind.BLACKBOARD:
             return describe_system.blackboard(analysis, symbol)
-        case "plugin":
+        case SymbolKind.PLUGIN:
             return describe_system.plugin(symbol)
-        case "tree":
+        case SymbolKind.TREE:
             return describe_system.tree(analysis, symbol)
-        case "tree-node":
+        case SymbolKind.TREE_NODE:
             return describe_system.tree_node(analysis, symbol)
-        case "struct":
+        case SymbolKind.STRUCT:
             return describe_system.struct(analysis, symbol)
-        case "member":
+        case SymbolKind.MEMBER:
             return describe_system.member(analysis, symbol)
-        case "ros-type":
+        case SymbolKind.ROS_TYPE:
             return describe_ros.ros_type(analysis.registry, symbol.scope, symbol.name)  # type: ignore[arg-type]
-        case "field":
+        case SymbolKind.FIELD:
             return describe_ros.field(analysis.registry, symbol.scope, symbol.name)
-        case kind if kind in HANDLES:
+        case SymbolKind.PUBLISHER | SymbolKind.SUBSCRIBER | SymbolKind.TIMER:
             return describe_machine.handle(analysis, symbol)
-    return ""
+        case SymbolKind.SERVICE_CLIENT | SymbolKind.SERVICE_SERVER:
+            return describe_machine.handle(analysis, symbol)
+        case SymbolKind.ACTION_CLIENT | SymbolKind.ACTION_SERVER:
+            return describe_machine.handle(analysis, symbol)
+        case SymbolKind.ELEMENT | SymbolKind.ATTRIBUTE | SymbolKind.ENUMERATION_VALUE | SymbolKind.JSON:
+            return ""  # parts of the languages: `roaml.ide.completion.document`
+        case SymbolKind.BASE_TYPE | SymbolKind.EVENT_VARIABLE | SymbolKind.FUNCTION:
+            return ""
+        case SymbolKind.GLOBAL | SymbolKind.TREE_INSTANCE:
+            return ""

@@ -24,6 +24,7 @@ from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import Automaton, System, sanitise
 from roaml.model.value_types import TypedMachine, Use
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
@@ -46,10 +47,10 @@ _OCCASIONS = {
 }
 
 _KINDS = {
-    "service-client": "service client",
-    "service-server": "service server",
-    "action-client": "action client",
-    "action-server": "action server",
+    SymbolKind.SERVICE_CLIENT: "service client",
+    SymbolKind.SERVICE_SERVER: "service server",
+    SymbolKind.ACTION_CLIENT: "action client",
+    SymbolKind.ACTION_SERVER: "action server",
 }
 
 
@@ -69,7 +70,9 @@ def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
 
 
 def _action(automaton: Automaton, handle: str) -> str:
-    found = (use for use in automaton.outline.interfaces if (use.kind, use.handle) == ("action-server", handle))
+    found = (
+        use for use in automaton.outline.interfaces if (use.kind, use.handle) == (SymbolKind.ACTION_SERVER, handle)
+    )
     return next((automaton.interface_name(use) or "" for use in found), "")
 
 
@@ -281,7 +284,7 @@ def handle(analysis: Analysis, symbol: Symbol) -> str:
     found = declaration(analysis, symbol)
     if found is None:
         return ""
-    kind = _KINDS.get(symbol.kind, symbol.kind)
+    kind = _KINDS.get(symbol.kind, symbol.kind.value)
     head = f"{kind} {symbol.name}" + (f" : {found.type.value}" if found.type else "")
     return paragraphs(code(head), _remark(analysis, symbol.path, found.element), *_connections(analysis, symbol, found))
 
@@ -294,7 +297,7 @@ def declaration(analysis: Analysis, symbol: Symbol) -> Declaration | None:
 
 
 def _connections(analysis: Analysis, symbol: Symbol, found: Declaration) -> Iterator[str]:
-    if found.kind == "timer":
+    if found.kind is SymbolKind.TIMER:
         yield rate(found.rate.value) if isinstance(found.rate, Name) else _from_port(found.rate, "rate")
         return
     yield _from_port(found.interface, "name")
@@ -311,7 +314,7 @@ def _connections(analysis: Analysis, symbol: Symbol, found: Declaration) -> Iter
                     )
     yield from done
     if not done and isinstance(found.interface, Name):
-        yield f"{_sentence(interface_symbol('', found.kind, '').kind)} {name(found.interface.value)}"
+        yield f"{_sentence(interface_symbol('', found.kind, '').kind.value)} {name(found.interface.value)}"
 
 
 def _from_port(value: Name | PortRead | None, what: str) -> str:
@@ -401,12 +404,12 @@ def machine(analysis: Analysis, symbol: Symbol) -> str:
 
 
 _TALK = {
-    "publisher": "Publishes",
-    "subscriber": "Listens to",
-    "service-server": "Serves",
-    "service-client": "Calls",
-    "action-server": "Offers",
-    "action-client": "Pursues",
+    SymbolKind.PUBLISHER: "Publishes",
+    SymbolKind.SUBSCRIBER: "Listens to",
+    SymbolKind.SERVICE_SERVER: "Serves",
+    SymbolKind.SERVICE_CLIENT: "Calls",
+    SymbolKind.ACTION_SERVER: "Offers",
+    SymbolKind.ACTION_CLIENT: "Pursues",
 }
 
 

@@ -21,6 +21,7 @@ from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpo
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:
@@ -95,9 +96,9 @@ def parameter(analysis: Analysis, symbol: Symbol) -> str:
 # -------------------------------------------------------------------- interfaces
 
 _VERBS = {
-    "topic": ("published by", "heard by"),
-    "service": ("served by", "called by"),
-    "action": ("offered by", "pursued by"),
+    SymbolKind.TOPIC: ("published by", "heard by"),
+    SymbolKind.SERVICE: ("served by", "called by"),
+    SymbolKind.ACTION: ("offered by", "pursued by"),
 }
 
 
@@ -107,21 +108,20 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
     found = find_channel(system, symbol) if system else None
     shown = written or symbol.name
     if system is None or found is None:
-        return code(f"{symbol.kind} {shown}")
+        return code(f"{symbol.kind.value} {shown}")
     types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in found.endpoints))
-    return paragraphs(code(f"{symbol.kind} {shown} : {types}"), _sides(analysis, symbol, found, system))
+    return paragraphs(code(f"{symbol.kind.value} {shown} : {types}"), _sides(analysis, symbol, found, system))
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
     """The same in fewer words, for those who take part."""
     found = find_channel(system, symbol)
-    head = f"{_sentence(symbol.kind)} {name(written)}"
+    head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if found is None else lines(head, _sides(analysis, symbol, found, system))
 
 
 def find_channel(system: System, symbol: Symbol) -> Channel | None:
-    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[symbol.kind]
-    return channels.get(symbol.name)
+    return system.channels(symbol.kind).get(symbol.name)
 
 
 def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -> str:
@@ -136,7 +136,7 @@ def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -
 
 def is_clock(system: System, symbol: Symbol) -> bool:
     """Whether a topic is that of the simulated time, which the translation publishes."""
-    return symbol.kind == "topic" and symbol.name == CLOCK_TOPIC and system.has_timer
+    return symbol.kind is SymbolKind.TOPIC and symbol.name == CLOCK_TOPIC and system.has_timer
 
 
 def _ends(endpoints: Iterable[Endpoint]) -> str:
@@ -144,10 +144,10 @@ def _ends(endpoints: Iterable[Endpoint]) -> str:
 
 
 def _plain_events(symbol: Symbol, found: Channel) -> str:
-    if symbol.kind == "topic":
+    if symbol.kind is SymbolKind.TOPIC:
         return f"In plain SCXML event {name(f'topic_{symbol.name}_msg')}"
     called = sanitise(symbol.name)
-    if symbol.kind == "action":
+    if symbol.kind is SymbolKind.ACTION:
         return f"In plain SCXML events {name(f'action_{called}_…')}"
     there = ("req_client_…", "request") if found.users else ()
     back = ("response", "response_client_…") if found.sources else ()
@@ -224,7 +224,7 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
 def _use(analysis: Analysis, symbol: Symbol) -> str:
     if is_main(analysis, symbol):
         return "The tree that is executed"
-    uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind == "tree"]
+    uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind is SymbolKind.TREE]
     count = sum(not use.occurrence.defines and analysis.tree(use.path) is not None for use in uses)
     return f"Named {count} times" if count > 1 else "Named once" if count else "Never named"
 

@@ -11,15 +11,16 @@ from collections.abc import Iterator, Mapping
 from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
 from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location
 
-_ROLES: Mapping[str, EdgeKind] = {
-    "publisher": EdgeKind.PUBLISHES,
-    "subscriber": EdgeKind.SUBSCRIBES,
-    "service-server": EdgeKind.SERVES,
-    "service-client": EdgeKind.CALLS,
-    "action-server": EdgeKind.SERVES,
-    "action-client": EdgeKind.CALLS,
+_ROLES: Mapping[SymbolKind, EdgeKind] = {
+    SymbolKind.PUBLISHER: EdgeKind.PUBLISHES,
+    SymbolKind.SUBSCRIBER: EdgeKind.SUBSCRIBES,
+    SymbolKind.SERVICE_SERVER: EdgeKind.SERVES,
+    SymbolKind.SERVICE_CLIENT: EdgeKind.CALLS,
+    SymbolKind.ACTION_SERVER: EdgeKind.SERVES,
+    SymbolKind.ACTION_CLIENT: EdgeKind.CALLS,
 }
 _TO_CHANNEL = (EdgeKind.PUBLISHES, EdgeKind.CALLS)
 

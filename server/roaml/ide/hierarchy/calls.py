@@ -19,11 +19,12 @@ from roaml.model.outline import InterfaceUse
 from roaml.model.system import Automaton, System
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
-_SENDING = frozenset(("publisher", "service-client", "action-client"))
-_INTERFACES = ("topic", "service", "action")
-_CALLABLE = ("event", *_INTERFACES, "machine", "tree")
+_SENDING = frozenset((SymbolKind.PUBLISHER, SymbolKind.SERVICE_CLIENT, SymbolKind.ACTION_CLIENT))
+_INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
+_CALLABLE = (SymbolKind.EVENT, *_INTERFACES, SymbolKind.MACHINE, SymbolKind.TREE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
 
 def _is_message(symbol: Symbol) -> bool:
     """Whether what is called goes on to call by itself: its places are those of its name."""
-    return symbol.kind == "event" or symbol.kind in _INTERFACES
+    return symbol.kind is SymbolKind.EVENT or symbol.kind in _INTERFACES
 
 
 _Edge = tuple[Symbol, Span]
@@ -107,19 +108,19 @@ def _whole(analysis: Analysis, use: Use) -> Span:
 
 def _edges(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
     match symbol.kind:
-        case "event":
+        case SymbolKind.EVENT:
             yield from _of_event(analysis, symbol, into=into)
-        case "topic" | "service" | "action":
+        case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             yield from _of_interface(analysis, symbol, into=into)
-        case "machine":
+        case SymbolKind.MACHINE:
             yield from _of_machine(analysis, symbol, into=into)
-        case "tree":
+        case SymbolKind.TREE:
             yield from _of_tree(analysis, symbol, into=into)
 
 
 def _machine(analysis: Analysis, path: str) -> Symbol | None:
     machine = analysis.machine(path)
-    return Symbol(path, "machine", machine.name.value) if machine and machine.name else None
+    return Symbol(path, SymbolKind.MACHINE, machine.name.value) if machine and machine.name else None
 
 
 # ------------------------------------------------------------- events, interfaces
@@ -182,7 +183,7 @@ def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_
     wanted = Access.READ if into else Access.WRITE
     for system in systems_of(analysis, symbol.path):
         for each in uses(analysis, symbol.path, system).all:
-            if each.symbol.kind == "event" and each.access is wanted:
+            if each.symbol.kind is SymbolKind.EVENT and each.access is wanted:
                 yield each.symbol, each.span
     for linked in _systems(analysis, symbol.path):
         for automaton in linked.automata_of(symbol.path):
@@ -211,7 +212,7 @@ def _tree_around(analysis: Analysis, symbol: Symbol, use: Use) -> Symbol | None:
             if tree.id and node.plugin and node.element.open_span.contains(use.occurrence.span.start):
                 inside = node.plugin.value == use.occurrence.symbol.name and use.occurrence.symbol.kind == symbol.kind
                 if inside and node.element.open_span.start < use.occurrence.span.start:
-                    return Symbol(owner, "tree", tree.id.value)
+                    return Symbol(owner, SymbolKind.TREE, tree.id.value)
     return None
 
 
@@ -232,5 +233,5 @@ def _in_tree(analysis: Analysis, place: Location) -> Iterator[_Edge]:
         for system in systems_of(analysis, place.path):
             for each in uses(analysis, place.path, system).all:
                 inside = tree.element.content_span.start <= each.span.start < tree.element.content_span.end
-                if inside and each.symbol.kind in ("machine", "tree"):
+                if inside and each.symbol.kind in (SymbolKind.MACHINE, SymbolKind.TREE):
                     yield each.symbol, each.span

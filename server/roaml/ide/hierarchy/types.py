@@ -18,6 +18,7 @@ from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import KIND_NAMES, Definition, Kind
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location
 
 
@@ -46,7 +47,7 @@ def members_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
 
 def holders_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
     """The types that have a field or member of a type."""
-    candidates = _structs(analysis, symbol.path) if symbol.kind == "struct" else _used(analysis)
+    candidates = _structs(analysis, symbol.path) if symbol.kind is SymbolKind.STRUCT else _used(analysis)
     found = ((each, name) for each in candidates for name, inner in _inside(analysis, each) if inner == symbol)
     return _items(analysis, found)
 
@@ -63,7 +64,7 @@ def _item(analysis: Analysis, symbol: Symbol, fields: tuple[str, ...]) -> TypeIt
     place = definition_of(analysis, symbol)
     if place is None or analysis.source(place.path) is None:
         return None
-    what = "struct" if symbol.kind == "struct" else KIND_NAMES[_kind(symbol)]
+    what = "struct" if symbol.kind is SymbolKind.STRUCT else KIND_NAMES[_kind(symbol)]
     return TypeItem(symbol, ", ".join(fields) or what, place)
 
 
@@ -72,28 +73,28 @@ def _kind(symbol: Symbol) -> Kind:
 
 
 def _message(name: str) -> Symbol:
-    return Symbol("", "ros-type", name, "msg")
+    return Symbol("", SymbolKind.ROS_TYPE, name, "msg")
 
 
 def _types_of(analysis: Analysis, path: str, symbol: Symbol) -> Iterator[Symbol]:
     match symbol.kind:
-        case "ros-type" | "struct":
+        case SymbolKind.ROS_TYPE | SymbolKind.STRUCT:
             yield symbol
-        case "variable" | "member":
+        case SymbolKind.VARIABLE | SymbolKind.MEMBER:
             for system in systems_of(analysis, path):
-                if symbol.kind == "variable":
+                if symbol.kind is SymbolKind.VARIABLE:
                     type_ = analysis.typed_in(symbol.path, system).variables.get(symbol.scope, {}).get(symbol.name)
                 else:
                     owner = analysis.structs(system).types.get(symbol.scope)
                     type_ = owner.member(symbol.name) if isinstance(owner, Struct) else None
                 inner = unwrap(type_)[0] if type_ is not None else None
                 if isinstance(inner, Struct) and inner.what == "struct":
-                    yield Symbol(system or path, "struct", inner.name)
-        case "field":
+                    yield Symbol(system or path, SymbolKind.STRUCT, inner.name)
+        case SymbolKind.FIELD:
             name, _, section = symbol.scope.partition(" ")
             kinds = {"request": "srv", "response": "srv", "": "msg", "goal": "action"}
             for inner_name, inner_symbol in _inside(
-                analysis, Symbol("", "ros-type", name, kinds.get(section, "action"))
+                analysis, Symbol("", SymbolKind.ROS_TYPE, name, kinds.get(section, "action"))
             ):
                 if inner_name == symbol.name:
                     yield inner_symbol
@@ -101,12 +102,12 @@ def _types_of(analysis: Analysis, path: str, symbol: Symbol) -> Iterator[Symbol]
 
 def _inside(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Symbol]]:
     """The fields or members of a type that are messages or structs."""
-    if symbol.kind == "struct":
+    if symbol.kind is SymbolKind.STRUCT:
         struct = analysis.structs(symbol.path).types.get(symbol.name) if symbol.path in analysis.system_paths else None
         for name, type_ in struct.members if isinstance(struct, Struct) else ():
             inner, _ = unwrap(type_)
             if isinstance(inner, Struct):
-                yield name, Symbol(symbol.path, "struct", inner.name)
+                yield name, Symbol(symbol.path, SymbolKind.STRUCT, inner.name)
         return
     definition = analysis.registry.resolve(_kind(symbol), symbol.name)
     for section in () if isinstance(definition, NotFound) else definition.sections:
@@ -117,7 +118,7 @@ def _inside(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Symbol]]:
 
 def _structs(analysis: Analysis, system: str) -> list[Symbol]:
     types = analysis.structs(system).types if system in analysis.system_paths else {}
-    return [Symbol(system, "struct", name) for name in types]
+    return [Symbol(system, SymbolKind.STRUCT, name) for name in types]
 
 
 def _used(analysis: Analysis) -> list[Symbol]:
@@ -129,7 +130,7 @@ def _used(analysis: Analysis) -> list[Symbol]:
             kind = INTERFACE_KINDS.get(each.kind)
             definition = analysis.registry.resolve(kind, each.type.value) if kind and each.type else None
             if isinstance(definition, Definition):
-                found[Symbol("", "ros-type", definition.full_name, definition.kind)] = None
+                found[Symbol("", SymbolKind.ROS_TYPE, definition.full_name, definition.kind)] = None
     todo = list(found)
     while todo:
         for _, inner in _inside(analysis, todo.pop()):

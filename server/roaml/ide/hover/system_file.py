@@ -15,6 +15,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.system_file import NANOSECONDS
 from roaml.project.analysis import Analysis
 from roaml.project.files import resolve
+from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, Element
 
@@ -37,7 +38,7 @@ def content(analysis: Analysis, system: str, path: str) -> str:
     machine, tree = analysis.machine(path), analysis.tree(path)
     match analysis.kind(path):
         case FileKind.MACHINE if machine and machine.name:
-            return describe(analysis, Symbol(path, "machine", machine.name.value))
+            return describe(analysis, Symbol(path, SymbolKind.MACHINE, machine.name.value))
         case FileKind.TREE if tree:
             trees = names(each.id.value for each in tree.trees if each.id)
             return lines(f"Behavior trees {trees}" if trees else "Behavior tree", file(path))

@@ -18,6 +18,7 @@ from roaml.model.expand import ROOT_NUMBER, extent, main_tree, tree_file_outline
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
 
@@ -139,7 +140,7 @@ class Trees:
             if self.main is not None:
                 path, tree = self.main[0], self.main[1].id.value if self.main[1].id else ""
         path, tree = self._root((path, tree, name))[:2]
-        return Symbol(path, "blackboard", name, tree)
+        return Symbol(path, SymbolKind.BLACKBOARD, name, tree)
 
     def _root(self, key: tuple[str, str, str]) -> tuple[str, str, str]:
         while (above := self._shared.get(key, key)) != key:
@@ -284,7 +285,7 @@ class _Walk:
         if node.name is not None:
             source, written = tree_node(*frame.key, position, node.name.value), node.name.value
         else:
-            source, written = Symbol(self.trees.owner, "tree", node.plugin.value), node.plugin.value
+            source, written = Symbol(self.trees.owner, SymbolKind.TREE, node.plugin.value), node.plugin.value
         word = re.sub(r"\W", "_", written, flags=re.ASCII)
         lead = "" if word[:1].isalpha() or word[:1] == "_" else "_"
         above, suffix = "".join(piece[0] for piece in frame.prefix), ""

@@ -42,20 +42,28 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
 from roaml.model.system import sanitise
-from roaml.model.value_types import INTERFACE_KINDS, STATUSES, Environment, bindings, find_handle, interface_part
+from roaml.model.value_types import (
+    CHANNEL_KINDS,
+    INTERFACE_KINDS,
+    STATUSES,
+    Environment,
+    bindings,
+    find_handle,
+    interface_part,
+)
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
-INTERFACE_SYMBOLS = {"msg": "topic", "srv": "service", "action": "action"}
 """Kind of ROS type -> what a declaration of such a type names."""
 
 _EVENT_VARIABLES = frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
 _WORD = re.compile(r"\S+")
 
 
-def interface_symbol(owner: str, kind: str, name: str) -> Symbol:
+def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
     """The topic, service or action that a declaration of `kind` calls `name`. Topics are known by sanitised name."""
-    what = INTERFACE_SYMBOLS[INTERFACE_KINDS[kind]]
-    return Symbol(owner, what, sanitise(name) if what == "topic" else name)
+    what = CHANNEL_KINDS[kind]
+    return Symbol(owner, what, sanitise(name) if what is SymbolKind.TOPIC else name)
 
 
 def is_implicit(declaration: Declaration) -> bool:
@@ -94,13 +102,13 @@ class _Machine:
     def all(self) -> Iterator[Occurrence]:
         machine = self.machine
         if machine.name:
-            yield Occurrence(machine.name.span, Symbol(self.path, "machine", machine.name.value), defines=True)
+            yield Occurrence(machine.name.span, Symbol(self.path, SymbolKind.MACHINE, machine.name.value), defines=True)
         for port in machine.ports:
             yield from self.port(port.key, Access.TEXT, defines=True)
         for declaration in machine.declarations:
             yield from self.declaration(declaration)
         for thread in machine.threads:
-            servers = [d for d in machine.declarations if d.kind == "action-server"]
+            servers = [d for d in machine.declarations if d.kind is SymbolKind.ACTION_SERVER]
             yield from self.handle(thread.server, _named(servers, thread.server))
         for chart in machine.charts:
             yield from self.chart(chart)
@@ -121,12 +129,12 @@ class _Machine:
             kind: Kind = INTERFACE_KINDS[declaration.kind]
             names = split_type_name(declaration.type.value, kind)
             if names is not None:
-                yield Occurrence(declaration.type.span, Symbol("", "ros-type", "/".join(names), kind))
+                yield Occurrence(declaration.type.span, Symbol("", SymbolKind.ROS_TYPE, "/".join(names), kind))
 
     def interface(self, name: Name, declaration: Declaration, *, defines: bool = False) -> Iterator[Occurrence]:
         symbol = interface_symbol(self.owner, declaration.kind, name.value)
-        is_source = declaration.kind in ("publisher", "service-server", "action-server")
-        span = without_slash(name) if symbol.kind == "topic" else name.span
+        is_source = declaration.kind in (SymbolKind.PUBLISHER, SymbolKind.SERVICE_SERVER, SymbolKind.ACTION_SERVER)
+        span = without_slash(name) if symbol.kind is SymbolKind.TOPIC else name.span
         yield Occurrence(span, symbol, defines and is_source)
 
     def handle(
@@ -143,7 +151,7 @@ class _Machine:
 
     def port(self, key: Name | None, access: Access, *, defines: bool = False) -> Iterator[Occurrence]:
         if key is not None:
-            yield Occurrence(key.span, Symbol(self.path, "port", key.value), defines, access)
+            yield Occurrence(key.span, Symbol(self.path, SymbolKind.PORT, key.value), defines, access)
 
     # ---------------------------------------------------------------- charts
 
@@ -162,7 +170,7 @@ class _Machine:
 
     def state(self, chart: Chart, name: Name | None, *, defines: bool = False) -> Iterator[Occurrence]:
         if name is not None:
-            yield Occurrence(name.span, Symbol(self.path, "state", name.value, chart.scope), defines)
+            yield Occurrence(name.span, Symbol(self.path, SymbolKind.STATE, name.value, chart.scope), defines)
 
     def data(self, chart: Chart, data: Data) -> Iterator[Occurrence]:
         if data.id is not None:
@@ -193,7 +201,7 @@ class _Machine:
                 type_ = wanted.member(member.key)
                 if type_ is not None and lead >= 0:
                     start = member.key_span.start + lead
-                    symbol = Symbol(self.owner, "member", member.key, wanted.name)
+                    symbol = Symbol(self.owner, SymbolKind.MEMBER, member.key, wanted.name)
                     yield Occurrence(Span(start, start + len(member.key)), symbol, access=Access.WRITE)
                     yield from self.keys(member.value, type_)
 
@@ -213,7 +221,7 @@ class _Machine:
             return
         for word in _WORD.finditer(written.value):
             span = Span(written.span.start + word.start(), written.span.start + word.end())
-            yield Occurrence(span, Symbol(self.owner, "event", word[0]), access=Access.READ)
+            yield Occurrence(span, Symbol(self.owner, SymbolKind.EVENT, word[0]), access=Access.READ)
 
     # ------------------------------------------------------------ statements
 
@@ -244,7 +252,7 @@ class _Machine:
 
     def send(self, scope: _Scope, send: Send) -> Iterator[Occurrence]:
         if send.event is not None:
-            symbol = Symbol(self.owner, "event", send.event.value)
+            symbol = Symbol(self.owner, SymbolKind.EVENT, send.event.value)
             yield Occurrence(send.event.span, symbol, defines=True, access=Access.WRITE)
         for param in send.params:
             if param.name is not None and send.event is not None:
@@ -273,7 +281,7 @@ class _Machine:
             if not isinstance(inner, Struct) or member is None:
                 return
             span = Span(at, at + len(name))
-            yield Occurrence(span, Symbol("", "field", name, inner.name), access=Access.WRITE)
+            yield Occurrence(span, Symbol("", SymbolKind.FIELD, name, inner.name), access=Access.WRITE)
             at, owner = span.end + 1, member
 
     def word(self, scope: _Scope, name: Name | None) -> Iterator[Occurrence]:
@@ -325,9 +333,11 @@ class _Scope:
         if not isinstance(inner, Struct) or inner.member(node.name) is None:
             return
         if inner.what == "struct":
-            yield Occurrence(node.name_span, Symbol(self.machine.owner, "member", node.name, inner.name), access=access)
+            yield Occurrence(
+                node.name_span, Symbol(self.machine.owner, SymbolKind.MEMBER, node.name, inner.name), access=access
+            )
         elif inner.name:
-            yield Occurrence(node.name_span, Symbol("", "field", node.name, inner.name), access=Access.READ)
+            yield Occurrence(node.name_span, Symbol("", SymbolKind.FIELD, node.name, inner.name), access=Access.READ)
 
     def type_of(self, expr: Expr) -> Type:
         """The type of a chain of members and indexes; unknown for anything else."""
@@ -347,7 +357,7 @@ class _Scope:
 def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:
     """The struct in a type."""
     if type_ is not None and type_.name is not None and type_.name.base not in BASE_TYPES:
-        yield Occurrence(base_span(type_.span, type_.name.base), Symbol(owner, "struct", type_.name.base))
+        yield Occurrence(base_span(type_.span, type_.name.base), Symbol(owner, SymbolKind.STRUCT, type_.name.base))
 
 
 def _base(expr: Expr) -> Expr:

@@ -19,6 +19,7 @@ from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
 from roaml.model.system import Automaton, Channel, System, safe_name, sanitise
 from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import INTERFACE_KINDS
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 # The events of a service or action -> the part of the interface that they carry.
@@ -85,17 +86,17 @@ _Event = tuple[tuple[Piece, ...], Type]
 
 def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[_Event]:
     for event in system.events:
-        yield ((event, Symbol(system.path, "event", event), Form.AS_IS),), UNKNOWN
+        yield ((event, Symbol(system.path, SymbolKind.EVENT, event), Form.AS_IS),), UNKNOWN
     for topic, channel in system.topics.items():
-        symbol = interface_symbol(system.path, "publisher", topic)
+        symbol = interface_symbol(system.path, SymbolKind.PUBLISHER, topic)
         name: tuple[Piece, ...] = (_plain("topic_"), (topic, symbol, Form.SANITISED), _plain("_msg"))
         yield name, _part(channel, "message", interface)
     for service in system.services.values():
-        symbol = interface_symbol(system.path, "service-server", service.name)
+        symbol = interface_symbol(system.path, SymbolKind.SERVICE_SERVER, service.name)
         head = (_plain("srv_"), (sanitise(service.name), symbol, Form.SANITISED))
         yield from _protocol(head, service, _SERVICE, _SERVICE_CLIENT, trees, interface)
     for action in system.actions.values():
-        symbol = interface_symbol(system.path, "action-server", action.name)
+        symbol = interface_symbol(system.path, SymbolKind.ACTION_SERVER, action.name)
         head = (_plain("action_"), (sanitise(action.name), symbol, Form.SANITISED))
         yield from _protocol(head, action, _ACTION, _ACTION_CLIENT, trees, interface)
     for pieces in trees.full_names.values():
@@ -129,7 +130,7 @@ def _protocol(
 
 def _automaton(automaton: Automaton, trees: Trees) -> tuple[Piece, ...]:
     """The name of an automaton as a part of an event name."""
-    machine = Symbol(automaton.path, "machine", automaton.outline.name)
+    machine = Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name)
     instance = automaton.instance
     if instance is None:
         return ((safe_name(automaton.name), machine, Form.SAFE),)
@@ -177,7 +178,7 @@ def _members(rest: str, type_: Type, owner: str) -> Iterator[Piece]:
         for name, member in inner.members:
             if rest == f"__{name}" or rest.startswith((f"__{name}__", f"__{name}.")):
                 yield _plain("__")
-                kind = "member" if inner.what == "struct" else "field"
+                kind = SymbolKind.MEMBER if inner.what == "struct" else SymbolKind.FIELD
                 yield name, Symbol(owner, kind, name, inner.name), Form.AS_IS
                 yield from _members(rest[2 + len(name) :], member, owner)
                 return

@@ -11,6 +11,7 @@ from roaml.ide.names.occurrence import Occurrence
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 from roaml.model.structs import StructDeclaration
 from roaml.model.syntax import Name
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 
@@ -18,10 +19,10 @@ def in_xml(declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Oc
     for struct in declarations:
         if struct.name is None:
             continue
-        yield Occurrence(struct.name.span, Symbol(owner, "struct", struct.name.value), defines=True)
+        yield Occurrence(struct.name.span, Symbol(owner, SymbolKind.STRUCT, struct.name.value), defines=True)
         for member in struct.members:
             if member.name is not None:
-                symbol = Symbol(owner, "member", member.name.value, struct.name.value)
+                symbol = Symbol(owner, SymbolKind.MEMBER, member.name.value, struct.name.value)
                 yield Occurrence(member.name.span, symbol, defines=True)
             yield from type_use(owner, member.type)
 
@@ -36,19 +37,19 @@ def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaratio
         names.add(struct.name.value)
         span = _span(text, struct.name)
         if span is not None:
-            found[Occurrence(span, Symbol(owner, "struct", struct.name.value), defines=True)] = None
+            found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, struct.name.value), defines=True)] = None
         for member in struct.members:
             span = _span(text, member.name)
             if member.name is None or span is None:
                 continue
-            symbol = Symbol(owner, "member", member.name.value, struct.name.value)
+            symbol = Symbol(owner, SymbolKind.MEMBER, member.name.value, struct.name.value)
             found[Occurrence(span, symbol, defines=True)] = None
             inner = member.type.name if member.type else None
             if inner is not None and inner.base == member.name.value and not _refers(text, member.type):
-                found[Occurrence(span, Symbol(owner, "struct", inner.base), defines=True)] = None
+                found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, inner.base), defines=True)] = None
     for name, span in _definitions(value):
         if name in names and text[span.start : span.end] == name:
-            found[Occurrence(span, Symbol(owner, "struct", name), defines=True)] = None
+            found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, name), defines=True)] = None
     yield from found
 
 

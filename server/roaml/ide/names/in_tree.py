@@ -14,6 +14,7 @@ from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import System
 from roaml.model.tree import SUBTREES, NodeModel, PortSetting, TreeNode, blackboard_variable, nodes
+from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
 
@@ -48,7 +49,7 @@ class _Tree:
 
     def tree_name(self, name: Name | None, *, defines: bool = False) -> Iterator[Occurrence]:
         if name is not None:
-            yield Occurrence(name.span, Symbol(self.owner, "tree", name.value), defines)
+            yield Occurrence(name.span, Symbol(self.owner, SymbolKind.TREE, name.value), defines)
 
     # ----------------------------------------------------------------- nodes
 
@@ -74,7 +75,7 @@ class _Tree:
 
     def port(self, path: str, port: PortSetting) -> Iterator[Occurrence]:
         if path:
-            yield Occurrence(port.key.span, Symbol(path, "port", port.key.value))
+            yield Occurrence(port.key.span, Symbol(path, SymbolKind.PORT, port.key.value))
 
     def tag(self, element: Element, symbol: Symbol) -> Iterator[Occurrence]:
         """The name of an element in its start tag and in its end tag."""
@@ -89,8 +90,8 @@ class _Tree:
         """The machine of that name; of a plugin that nobody declares, the name alone."""
         path, outline = self.system.plugin(name) if self.system else ("", None)
         if path:
-            return Symbol(path, "machine", name)
-        return Symbol(self.owner if outline is None else "", "plugin", name)
+            return Symbol(path, SymbolKind.MACHINE, name)
+        return Symbol(self.owner if outline is None else "", SymbolKind.PLUGIN, name)
 
     def reference(self, value: Name, inside: str, access: Access) -> Iterator[Occurrence]:
         """The variable in `{…}`."""
@@ -125,7 +126,7 @@ class _Tree:
         path, _ = self.plugin(model.id)
         for port in model.ports:
             if port.name is not None and path:
-                yield Occurrence(port.name.span, Symbol(path, "port", port.name.value))
+                yield Occurrence(port.name.span, Symbol(path, SymbolKind.PORT, port.name.value))
 
     def defaults(self) -> Iterator[Occurrence]:
         """Variables in the defaults of ports: each is one of every tree that leaves the port unset."""
@@ -162,7 +163,7 @@ class _Tree:
                     if setting is not None and setting.path == self.path:
                         name = _stripped(setting.value)
                         symbol = interface_symbol(self.owner, use.kind, name.value)
-                        span = without_slash(name) if symbol.kind == "topic" else name.span
+                        span = without_slash(name) if symbol.kind is SymbolKind.TOPIC else name.span
                         if span.end > span.start:
                             found[Occurrence(span, symbol)] = None
         yield from found

@@ -15,9 +15,10 @@ from roaml.diagnostics import Symbol
 from roaml.ide.names.occurrence import HANDLES, Occurrence
 from roaml.ide.names.occurrences import Uses, uses
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
-_IN_ONE_FILE = frozenset(("state", "variable", *HANDLES))
+_IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
 """Kinds of symbols that only their own file can name."""
 
 
@@ -48,7 +49,7 @@ class Thing:
         return tuple(dict.fromkeys(use.location for use in self.uses if use.occurrence.defines))
 
     @property
-    def kinds(self) -> frozenset[str]:
+    def kinds(self) -> frozenset[SymbolKind]:
         return frozenset(symbol.kind for symbol in self.symbols)
 
 

@@ -21,17 +21,18 @@ from typing import NamedTuple
 from roaml.diagnostics import Symbol
 from roaml.language import HL_SCXML
 from roaml.model.syntax import Name
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 HANDLES = frozenset(
     attribute.defines
     for name in HL_SCXML.groups["Declaration"]
     for attribute in HL_SCXML.elements[name].attributes.values()
-    if attribute.defines and attribute.defines != "port"
+    if attribute.defines and attribute.defines is not SymbolKind.PORT
 )
 """The kinds of symbols that declarations of ROS interfaces and timers define."""
 
-NOT_OURS = frozenset(("field", "ros-type"))
+NOT_OURS = frozenset((SymbolKind.FIELD, SymbolKind.ROS_TYPE))
 """Kinds of symbols that ROS definitions define."""
 
 
@@ -64,16 +65,16 @@ class Occurrence(NamedTuple):
 
 
 def variable(path: str, name: str, scope: str) -> Symbol:
-    return Symbol(path, "variable", name, scope)
+    return Symbol(path, SymbolKind.VARIABLE, name, scope)
 
 
 def parameter(owner: str, event: str, name: str) -> Symbol:
-    return Symbol(owner, "parameter", name, event)
+    return Symbol(owner, SymbolKind.PARAMETER, name, event)
 
 
 def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
     """A node that has a name of its own; `position` as in `roaml.model.expand.Source`."""
-    return Symbol(path, "tree-node", name, f"{tree}:{position}")
+    return Symbol(path, SymbolKind.TREE_NODE, name, f"{tree}:{position}")
 
 
 def base_span(span: Span, base: str) -> Span:

@@ -16,9 +16,10 @@ from roaml.model.system import System
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.project.files import resolve
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
-INTERFACES = ("topic", "service", "action")
+INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, .
 def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """The file of a tree node's plugin, the handlers of an event; else the definition."""
     found = thing_at(analysis, path, offset)
-    if found is not None and "event" in found.kinds:
+    if found is not None and SymbolKind.EVENT in found.kinds:
         return tuple(
             use.location
             for use in found.uses
@@ -94,7 +95,7 @@ def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
 def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
     """The machines that nodes of BehaviorTree.CPP are translated as: they say exactly what these do."""
     for symbol in symbols:
-        file = node_file(symbol.name) if symbol.kind == "plugin" and not symbol.path else None
+        file = node_file(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
         if file is not None:
             yield Location(file, Span(0, 0))
 
@@ -124,23 +125,23 @@ def type_definition(analysis: Analysis, path: str, offset: int) -> tuple[Locatio
 def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) -> Iterator[Location]:
     linked = analysis.system(system) if system else None
     match symbol.kind:
-        case "variable":
+        case SymbolKind.VARIABLE:
             types = analysis.typed_in(symbol.path, system).variables.get(symbol.scope, {})
             yield from _of_type(analysis, system or path, types.get(symbol.name))
-        case "member":
+        case SymbolKind.MEMBER:
             struct = analysis.structs(system).types.get(symbol.scope)
             if isinstance(struct, Struct):
                 yield from _of_type(analysis, system or path, struct.member(symbol.name))
-        case "parameter":
+        case SymbolKind.PARAMETER:
             data = linked.event_data.get(symbol.scope) if linked else None
             yield from _of_type(analysis, system or path, data.member(symbol.name) if data else None)
-        case "struct":
+        case SymbolKind.STRUCT:
             yield from thing(analysis, (symbol,)).definitions
-        case "field":
+        case SymbolKind.FIELD:
             place = type_of_field(analysis, symbol)
             if place is not None:
                 yield place
-        case "ros-type":
+        case SymbolKind.ROS_TYPE:
             yield from _ros(analysis, (symbol,))
         case kind if kind in HANDLES:
             yield from _of_handle(analysis, symbol)
@@ -153,7 +154,7 @@ def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) 
 def _of_type(analysis: Analysis, owner: str, type_: Type | None) -> Iterator[Location]:
     inner = unwrap(type_)[0] if type_ is not None else None
     if isinstance(inner, Struct) and inner.what == "struct":
-        yield from thing(analysis, (Symbol(owner, "struct", inner.name),)).definitions
+        yield from thing(analysis, (Symbol(owner, SymbolKind.STRUCT, inner.name),)).definitions
 
 
 def _of_handle(analysis: Analysis, symbol: Symbol) -> Iterator[Location]:
@@ -166,8 +167,7 @@ def _of_handle(analysis: Analysis, symbol: Symbol) -> Iterator[Location]:
 
 
 def _of_interface(analysis: Analysis, system: System, symbol: Symbol) -> Iterator[Location]:
-    channels = {"topic": system.topics, "service": system.services, "action": system.actions}[symbol.kind]
-    channel = channels.get(symbol.name)
+    channel = system.channels(symbol.kind).get(symbol.name)
     for endpoint in channel.endpoints if channel else ():
         place = locate_type(analysis, INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
         if place is not None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from roaml.text import Span
 
 
-class SymbolKind(enum.Enum):
+class DocumentSymbolKind(enum.Enum):
     MACHINE = "machine"
     DATAMODEL = "datamodel"
     VARIABLE = "variable"
@@ -35,7 +35,7 @@ class DocumentSymbol:
 
     name: str
     detail: str
-    kind: SymbolKind
+    kind: DocumentSymbolKind
     span: Span
     name_span: Span
     children: tuple[DocumentSymbol, ...] = ()

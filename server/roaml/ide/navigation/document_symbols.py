@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.ide.json_tree import members
-from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.ide.navigation.jani_symbols import jani_symbols
 from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
@@ -42,7 +42,11 @@ def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...
 
 
 def _symbol(
-    element: Element, name: Name | None, kind: SymbolKind, detail: str = "", children: Iterable[DocumentSymbol] = ()
+    element: Element,
+    name: Name | None,
+    kind: DocumentSymbolKind,
+    detail: str = "",
+    children: Iterable[DocumentSymbol] = (),
 ) -> DocumentSymbol:
     inside = sorted(children, key=lambda child: child.span)
     span = name.span if name and _is_inside(name.span, element.span) else element.name_span
@@ -63,7 +67,7 @@ def _machine(machine: Machine) -> DocumentSymbol:
         *(_thread(thread) for thread in machine.threads),
         *_chart(machine.chart),
     ]
-    return _symbol(machine.element, machine.name, SymbolKind.MACHINE, children=children)
+    return _symbol(machine.element, machine.name, DocumentSymbolKind.MACHINE, children=children)
 
 
 def _chart(chart: Chart) -> Iterator[DocumentSymbol]:
@@ -72,7 +76,7 @@ def _chart(chart: Chart) -> Iterator[DocumentSymbol]:
     if datamodel is not None:
         inside = [each for each in data if _is_inside(each.span, datamodel.span)]
         name = Name("datamodel", datamodel.name_span)
-        yield _symbol(datamodel, name, SymbolKind.DATAMODEL, children=inside)
+        yield _symbol(datamodel, name, DocumentSymbolKind.DATAMODEL, children=inside)
         data = [each for each in data if each not in inside]
     yield from data
     for state in chart.states:
@@ -80,26 +84,28 @@ def _chart(chart: Chart) -> Iterator[DocumentSymbol]:
 
 
 def _data(data: Data) -> DocumentSymbol:
-    return _symbol(data.element, data.id, SymbolKind.VARIABLE, data.type.text if data.type else "")
+    return _symbol(data.element, data.id, DocumentSymbolKind.VARIABLE, data.type.text if data.type else "")
 
 
 def _port(port: Port) -> DocumentSymbol:
     type_ = f" {port.type.text}" if port.type else ""
-    return _symbol(port.element, port.key, SymbolKind.PORT, f"{port.direction}{type_}")
+    return _symbol(port.element, port.key, DocumentSymbolKind.PORT, f"{port.direction}{type_}")
 
 
 def _declaration(declaration: Declaration) -> DocumentSymbol:
     interface = declaration.interface
     shown = "from a port" if isinstance(interface, PortRead) else interface.value if interface else ""
-    return _symbol(declaration.element, declaration.handle, SymbolKind.ROS, f"{declaration.kind} {shown}".rstrip())
+    return _symbol(
+        declaration.element, declaration.handle, DocumentSymbolKind.ROS, f"{declaration.kind.value} {shown}".rstrip()
+    )
 
 
 def _thread(thread: Thread) -> DocumentSymbol:
-    return _symbol(thread.element, thread.server, SymbolKind.THREAD, "action thread", _chart(thread.chart))
+    return _symbol(thread.element, thread.server, DocumentSymbolKind.THREAD, "action thread", _chart(thread.chart))
 
 
 def _state(state: State) -> DocumentSymbol:
-    return _symbol(state.element, state.id, SymbolKind.STATE, "", map(_handler, state.handlers))
+    return _symbol(state.element, state.id, DocumentSymbolKind.STATE, "", map(_handler, state.handlers))
 
 
 def _handler(handler: Handler) -> DocumentSymbol:
@@ -113,7 +119,7 @@ def _handler(handler: Handler) -> DocumentSymbol:
     cond = f"[{' '.join(handler.cond.text.split())}]" if handler.cond else ""
     detail = " ".join(part for part in (cond, f"→ {targets}" if targets else "") if part)
     place = handler.event.span if handler.event else element.name_span
-    return _symbol(element, Name(name or "transition", place), SymbolKind.TRANSITION, detail)
+    return _symbol(element, Name(name or "transition", place), DocumentSymbolKind.TRANSITION, detail)
 
 
 # --------------------------------------------------------------- other languages
@@ -121,14 +127,14 @@ def _handler(handler: Handler) -> DocumentSymbol:
 
 def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
     for tree in file.trees:
-        yield _symbol(tree.element, tree.id, SymbolKind.TREE, children=map(_node, tree.roots))
+        yield _symbol(tree.element, tree.id, DocumentSymbolKind.TREE, children=map(_node, tree.roots))
 
 
 def _node(node: TreeNode) -> DocumentSymbol:
     """Called by its name; what it is an instance of stands behind that."""
     plugin = node.plugin.value if node.plugin else node.element.name
     name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
-    kind = SymbolKind.CONTROL if node.children else SymbolKind.LEAF
+    kind = DocumentSymbolKind.CONTROL if node.children else DocumentSymbolKind.LEAF
     return _symbol(node.element, name, kind, detail, map(_node, node.children))
 
 
@@ -136,14 +142,14 @@ def _system(file: SystemFile) -> DocumentSymbol:
     sections = []
     for element in file.element.elements:
         inputs = [
-            _symbol(entry.element, entry.src, SymbolKind.INPUT, entry.type.value if entry.type else "")
+            _symbol(entry.element, entry.src, DocumentSymbolKind.INPUT, entry.type.value if entry.type else "")
             for entry in file.inputs
             if _is_inside(entry.element.span, element.span)
         ]
         name = Name(element.name, element.name_span)
-        sections.append(_symbol(element, name, SymbolKind.SECTION, children=inputs))
+        sections.append(_symbol(element, name, DocumentSymbolKind.SECTION, children=inputs))
     name = Name(file.element.name, file.element.name_span)
-    return _symbol(file.element, name, SymbolKind.SYSTEM, children=sections)
+    return _symbol(file.element, name, DocumentSymbolKind.SYSTEM, children=sections)
 
 
 def _struct(struct: StructDeclaration) -> DocumentSymbol:
@@ -151,7 +157,7 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
         DocumentSymbol(
             member.name.value,
             member.type.text if member.type else "",
-            SymbolKind.MEMBER,
+            DocumentSymbolKind.MEMBER,
             member.span,
             member.name.span,
         )
@@ -159,7 +165,7 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
         if member.name
     )
     name = struct.name or Name("<struct>", struct.span)
-    return DocumentSymbol(name.value, "", SymbolKind.STRUCT, struct.span, name.span, children)
+    return DocumentSymbol(name.value, "", DocumentSymbolKind.STRUCT, struct.span, name.span, children)
 
 
 def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
@@ -171,4 +177,4 @@ def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
         name, comment = named.get("name"), named.get("comment")
         if isinstance(name, JsonString) and name.value:
             detail = comment.value if isinstance(comment, JsonString) else ""
-            yield DocumentSymbol(name.value, detail, SymbolKind.PROPERTY, each.span, name.content_span)
+            yield DocumentSymbol(name.value, detail, DocumentSymbolKind.PROPERTY, each.span, name.content_span)

@@ -7,12 +7,13 @@ from roaml.diagnostics import Symbol
 from roaml.ide.describe.ros import section_of
 from roaml.interfaces.registry import NotFound
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 
 def locate_ros(analysis: Analysis, symbol: Symbol) -> Location | None:
     """Where a type or a field is defined; None if its file is not found."""
-    if symbol.kind == "ros-type":
+    if symbol.kind is SymbolKind.ROS_TYPE:
         return locate_type(analysis, symbol.scope, symbol.name)
     definition, section = section_of(analysis.registry, symbol.scope)
     field = definition.section(section).field(symbol.name) if definition else None

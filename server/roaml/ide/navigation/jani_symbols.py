@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from roaml.ide.describe.property_file import formula
 from roaml.ide.json_tree import members
-from roaml.ide.navigation.document_symbol import DocumentSymbol, SymbolKind
+from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 
 _LONGEST = 80
@@ -22,10 +22,12 @@ def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
         if make is not None and isinstance(section.value, JsonArray) and section.value.items:
             children = tuple(found for item in section.value.items if (found := make(item)) is not None)
             detail = str(len(section.value.items))
-            yield DocumentSymbol(section.key, detail, SymbolKind.SECTION, section.span, section.key_span, children)
+            yield DocumentSymbol(
+                section.key, detail, DocumentSymbolKind.SECTION, section.span, section.key_span, children
+            )
 
 
-def _named(item: JsonValue, kind: SymbolKind, detail: str, *children: DocumentSymbol) -> DocumentSymbol | None:
+def _named(item: JsonValue, kind: DocumentSymbolKind, detail: str, *children: DocumentSymbol) -> DocumentSymbol | None:
     name = members(item).get("name")
     if not isinstance(name, JsonString) or not name.value:
         return None
@@ -33,7 +35,7 @@ def _named(item: JsonValue, kind: SymbolKind, detail: str, *children: DocumentSy
 
 
 def _variable(item: JsonValue) -> DocumentSymbol | None:
-    return _named(item, SymbolKind.VARIABLE, _type(members(item).get("type")))
+    return _named(item, DocumentSymbolKind.VARIABLE, _type(members(item).get("type")))
 
 
 def _type(value: JsonValue | None) -> str:
@@ -52,22 +54,25 @@ def _type(value: JsonValue | None) -> str:
 
 
 def _action(item: JsonValue) -> DocumentSymbol | None:
-    return _named(item, SymbolKind.TRANSITION, "")
+    return _named(item, DocumentSymbolKind.TRANSITION, "")
 
 
 def _property(item: JsonValue) -> DocumentSymbol | None:
     expression = members(item).get("expression")
-    return _named(item, SymbolKind.PROPERTY, _short(formula(expression)) if expression is not None else "")
+    return _named(item, DocumentSymbolKind.PROPERTY, _short(formula(expression)) if expression is not None else "")
 
 
 def _automaton(item: JsonValue) -> DocumentSymbol | None:
     parts = members(item)
     children = [
-        *(_named(each, SymbolKind.VARIABLE, _type(members(each).get("type"))) for each in _items(parts, "variables")),
-        *(_named(each, SymbolKind.STATE, "") for each in _items(parts, "locations")),
+        *(
+            _named(each, DocumentSymbolKind.VARIABLE, _type(members(each).get("type")))
+            for each in _items(parts, "variables")
+        ),
+        *(_named(each, DocumentSymbolKind.STATE, "") for each in _items(parts, "locations")),
         *(_edge(each) for each in _items(parts, "edges")),
     ]
-    return _named(item, SymbolKind.MACHINE, "", *(child for child in children if child is not None))
+    return _named(item, DocumentSymbolKind.MACHINE, "", *(child for child in children if child is not None))
 
 
 def _edge(item: JsonValue) -> DocumentSymbol | None:
@@ -84,7 +89,7 @@ def _edge(item: JsonValue) -> DocumentSymbol | None:
         detail = f"{detail} [{_short(formula(guard))}]"
     name = action.value if isinstance(action, JsonString) else "τ"
     place = action if isinstance(action, JsonString) else location
-    return DocumentSymbol(name, detail, SymbolKind.TRANSITION, item.span, place.content_span)
+    return DocumentSymbol(name, detail, DocumentSymbolKind.TRANSITION, item.span, place.content_span)
 
 
 def _items(parts: dict[str, JsonValue], key: str) -> tuple[JsonValue, ...]:

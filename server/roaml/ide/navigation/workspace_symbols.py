@@ -10,6 +10,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import uses
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Span
 
 
@@ -26,7 +27,7 @@ class Found:
 def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found, ...]:
     """The definitions in some files whose names hold the letters of `query` in that order, whatever their case."""
     wanted = query.casefold()
-    found: dict[tuple[str, Span, str], Found] = {}
+    found: dict[tuple[str, Span, SymbolKind], Found] = {}
     for path in paths:
         for system in systems_of(analysis, path):
             for each in uses(analysis, path, system).all:
@@ -42,7 +43,7 @@ def _matches(name: str, wanted: str) -> bool:
 
 
 def _container(analysis: Analysis, path: str, symbol: Symbol) -> str:
-    if symbol.kind in ("parameter", "member", "blackboard"):
+    if symbol.kind in (SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.BLACKBOARD):
         return symbol.scope
     machine = analysis.machine(path)
-    return machine.name.value if machine and machine.name and symbol.kind != "machine" else ""
+    return machine.name.value if machine and machine.name and symbol.kind is not SymbolKind.MACHINE else ""

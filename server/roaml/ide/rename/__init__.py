@@ -16,9 +16,22 @@ from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Form
 from roaml.ide.rename.new_name import problem
 from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC, safe_name, sanitise
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 from roaml.text import Span, TextEdit
 
-_NEED_A_DEFINITION = frozenset(("state", "variable", "port", "machine", "plugin", "tree", "struct", "member", *HANDLES))
+_NEED_A_DEFINITION = frozenset(
+    (
+        SymbolKind.STATE,
+        SymbolKind.VARIABLE,
+        SymbolKind.PORT,
+        SymbolKind.MACHINE,
+        SymbolKind.PLUGIN,
+        SymbolKind.TREE,
+        SymbolKind.STRUCT,
+        SymbolKind.MEMBER,
+        *HANDLES,
+    )
+)
 _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
 """Ports that the tree fills by itself if they are called so."""
 
@@ -63,7 +76,7 @@ def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | R
     if found is None:
         return Refusal("no name stands here")
     new = new.strip()
-    if "topic" in found.kinds:
+    if SymbolKind.TOPIC in found.kinds:
         new = new.removeprefix("/")
     reason = _fixed(found) or problem(analysis, found, new)
     if reason:
@@ -94,11 +107,11 @@ def _fixed(found: Thing) -> str:
         name = symbol.name
         if symbol.kind in NOT_OURS:
             return f"`{name}` is defined by ROS, not by this model"
-        if symbol.kind == "plugin" and not symbol.path:
+        if symbol.kind is SymbolKind.PLUGIN and not symbol.path:
             return f"`{name}` is a node of BehaviorTree.CPP"
-        if symbol.kind == "port" and name in _OF_THE_NODE:
+        if symbol.kind is SymbolKind.PORT and name in _OF_THE_NODE:
             return f"the port `{name}` has a meaning of its own in a tree"
-        if symbol.kind == "topic" and name == CLOCK_TOPIC:
+        if symbol.kind is SymbolKind.TOPIC and name == CLOCK_TOPIC:
             return f"the topic `{name}` is that of the time of ROS"
         in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in found.uses)
         if in_prefix and not (name[:1].isalpha() or name[:1] == "_"):

@@ -18,19 +18,20 @@ from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.machine import Declaration, Machine
-from roaml.model.name_forms import EVENT, RESERVED, VARIABLE, variable_problem
+from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.system import sanitise
 from roaml.model.translated import is_synchronising
 from roaml.model.value_types import STATUSES
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
+from roaml.roles import SymbolKind
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
 _MADE = re.compile(r"(topic_|srv_|action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
 """How names begin that the translation makes by itself."""
-_INTERFACES = ("topic", "service", "action")
-_JOINED = ("variable", "parameter", "member", "event")
+_INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
+_JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)
 """Kinds whose names the translation joins to others with `__`."""
 
 
@@ -46,7 +47,7 @@ def problem(analysis: Analysis, found: Thing, new: str) -> str:
         for other in _neighbours(analysis, symbol):
             if other not in found.symbols and _clashes(symbol, other, new):
                 return f"there is {_article(other.kind)} `{other.name}` already"
-        if symbol.kind == "blackboard":
+        if symbol.kind is SymbolKind.BLACKBOARD:
             trees = (trees_of(analysis, symbol.path, system) for system in systems_of(analysis, symbol.path))
             if any(each.is_taken(symbol, new) for each in trees):
                 return f"there is a blackboard variable `{new}` already"
@@ -74,7 +75,7 @@ def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
     return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
 
 
-def _form(kind: str, new: str, found: Thing) -> str:
+def _form(kind: SymbolKind, new: str, found: Thing) -> str:
     """Why `new` cannot name any thing of a kind."""
     what = _article(kind)
     cannot = f"`{new}` cannot name {what}"
@@ -82,28 +83,28 @@ def _form(kind: str, new: str, found: Thing) -> str:
         return f"{cannot}: `__` divides the parts of names in the translation"
     right: object
     match kind:
-        case "variable":
+        case SymbolKind.VARIABLE:
             if new in EVENT_VARIABLES:
                 return f"`{new}` is what received data are called"
             return variable_problem(new)
-        case "event":
+        case SymbolKind.EVENT:
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
             if right and (is_synchronising(new) or _MADE.match(new)):
                 return f"{cannot}: the translation calls its own events so"
-        case "parameter":
+        case SymbolKind.PARAMETER:
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
-        case "member":
-            right = VARIABLE.match(new) and not new.endswith("_") and new != "length" and not RESERVED.match(new)
-        case "struct":
-            right = VARIABLE.match(new) and new not in BASE_TYPES and not RESERVED.match(new)
-        case "port":
+        case SymbolKind.MEMBER:
+            right = VARIABLE.match(new) and not new.endswith("_") and new != "length" and not is_reserved(new)
+        case SymbolKind.STRUCT:
+            right = VARIABLE.match(new) and new not in BASE_TYPES and not is_reserved(new)
+        case SymbolKind.PORT:
             right = VARIABLE.match(new) and not new.startswith("_") and new not in ("name", "ID", "CHILDREN_COUNT")
-        case "blackboard":
+        case SymbolKind.BLACKBOARD:
             right = VARIABLE.match(new) and not new.startswith("_") and not new.endswith("_")
-            right = right and not RESERVED.match(new) and new not in ("name", "ID")
-        case "topic" | "service" | "action":
+            right = right and not is_reserved(new) and new not in ("name", "ID")
+        case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             right = _INTERFACE.match(new)
-        case "machine" | "plugin":
+        case SymbolKind.MACHINE | SymbolKind.PLUGIN:
             right = _WORD.match(new) and not _MADE.match(new)
             if new in BEHAVIOR_TREE.elements:
                 return f"`{new}` is a name of BehaviorTree.CPP"
@@ -121,25 +122,33 @@ def _neighbours(analysis: Analysis, symbol: Symbol) -> Iterator[Symbol]:
 def _clashes(symbol: Symbol, other: Symbol, new: str) -> bool:
     """Whether `symbol` could be taken for `other` if it were called `new`."""
     if symbol.kind in _INTERFACES:
-        is_topic = symbol.kind == "topic"
+        is_topic = symbol.kind is SymbolKind.TOPIC
         return (
-            other.kind in _INTERFACES and (other.kind == "topic") == is_topic and sanitise(other.name) == sanitise(new)
+            other.kind in _INTERFACES
+            and (other.kind is SymbolKind.TOPIC) == is_topic
+            and sanitise(other.name) == sanitise(new)
         )
     if symbol.kind in HANDLES:
         same_file = other.path == symbol.path and other.kind in HANDLES
-        both_timers = symbol.kind == other.kind == "timer"
+        both_timers = symbol.kind == other.kind is SymbolKind.TIMER
         return (same_file or both_timers) and other.name == new
     if other.name != new:
         return False
     match symbol.kind:
-        case "machine" | "plugin":
-            return other.kind in ("machine", "plugin")
-        case "blackboard" | "tree-node":
+        case SymbolKind.MACHINE | SymbolKind.PLUGIN:
+            return other.kind in (SymbolKind.MACHINE, SymbolKind.PLUGIN)
+        case SymbolKind.BLACKBOARD | SymbolKind.TREE_NODE:
             return False  # `Trees.is_taken` tells; nodes of a tree may have equal names
     return (other.kind, other.path, other.scope) == (symbol.kind, symbol.path, symbol.scope)
 
 
-def _article(kind: str) -> str:
-    word = {"machine": "state machine", "blackboard": "blackboard variable", "tree": "behavior tree"}.get(kind, kind)
-    word = word.replace("-", " ")
+_WORDS = {
+    SymbolKind.MACHINE: "state machine",
+    SymbolKind.BLACKBOARD: "blackboard variable",
+    SymbolKind.TREE: "behavior tree",
+}
+
+
+def _article(kind: SymbolKind) -> str:
+    word = _WORDS.get(kind) or kind.value.replace("-", " ")
     return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"

@@ -12,6 +12,7 @@ import importlib.resources
 from fractions import Fraction
 
 from roaml.language import BEHAVIOR_TREE
+from roaml.libraries import BEHAVIORTREE_CPP, library
 from roaml.lower.nodes.switch import switch
 from roaml.lower.program import Program
 from roaml.model.build_machine import build_machine
@@ -19,8 +20,6 @@ from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT, Automaton
 from roaml.xml_syntax import parse
 
-_ALIASES = {"RetryUntilSuccesful": "RetryUntilSuccessful", "SequenceStar": "SequenceWithMemory"}
-"""Names of version 3."""
 _SWITCHES = {f"Switch{cases}": cases for cases in range(2, 7)}
 _MILLISECONDS_PER_SECOND = 1000
 
@@ -32,7 +31,7 @@ def builtin_machine(automaton: Automaton, program: Program) -> Machine:
         return _parsed(switch(name, _SWITCHES[name], program.system.any_type(automaton)))
     slots = _children(automaton) + 1
     none_ended = f"[{', '.join(['false'] * slots)}]"
-    text = _resource(_ALIASES.get(name, name))
+    text = _resource(_current(name))
     return _parsed(text.replace("SLOTS", str(slots)).replace("NONE_ENDED", none_ended))
 
 
@@ -52,8 +51,14 @@ def builtin_ports(automaton: Automaton, program: Program) -> dict[str, str]:
 
 def node_file(name: str) -> str | None:
     """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand."""
-    file = importlib.resources.files(__name__) / f"{_ALIASES.get(name, name)}.ascxml"
+    file = importlib.resources.files(__name__) / f"{_current(name)}.ascxml"
     return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
+
+
+def _current(name: str) -> str:
+    """The name of a node in version 4."""
+    renamed = library(BEHAVIORTREE_CPP).renamed.get(name)
+    return renamed.now if renamed else name
 
 
 def _children(automaton: Automaton) -> int:

@@ -18,21 +18,31 @@ from roaml.model.behavior.explore import Event, Step
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import SENDS
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
+from roaml.roles import SymbolKind
 
 _PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
 """What a client receives, and the duty of the server that it comes from."""
 _KINDS = {
-    "message": ("subscriber",),
-    "request": ("service-server",),
-    "response": ("service-client",),
-    "goal": ("action-server",),
-    "goal-response": ("action-client",),
-    "feedback": ("action-client",),
-    "result": ("action-client",),
+    "message": (SymbolKind.SUBSCRIBER,),
+    "request": (SymbolKind.SERVICE_SERVER,),
+    "response": (SymbolKind.SERVICE_CLIENT,),
+    "goal": (SymbolKind.ACTION_SERVER,),
+    "goal-response": (SymbolKind.ACTION_CLIENT,),
+    "feedback": (SymbolKind.ACTION_CLIENT,),
+    "result": (SymbolKind.ACTION_CLIENT,),
 }
-_SENDERS = {"message": "publisher", "request": "service-client", "goal": "action-client", "feedback": "action-server"}
+_SENDERS = {
+    "message": SymbolKind.PUBLISHER,
+    "request": SymbolKind.SERVICE_CLIENT,
+    "goal": SymbolKind.ACTION_CLIENT,
+    "feedback": SymbolKind.ACTION_SERVER,
+}
 
-_SERVERS = {"response": "service-server", "goal-response": "action-server", "result": "action-server"}
+_SERVERS = {
+    "response": SymbolKind.SERVICE_SERVER,
+    "goal-response": SymbolKind.ACTION_SERVER,
+    "result": SymbolKind.ACTION_SERVER,
+}
 _ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}
 """What a server sends that a client receives."""
 
@@ -101,7 +111,7 @@ class _Solver:
         channel = channel_of(self.system, automaton, event)
         wanted = _SENDERS.get(event.part)
         for endpoint in channel.endpoints if channel else ():
-            if endpoint.use.kind == wanted:
+            if endpoint.use.kind is wanted:
                 yield endpoint.automaton, Event(event.part, endpoint.use.handle)
 
     def causes(self, automaton: Automaton, sent: Event) -> Iterator[Event]:
@@ -225,8 +235,8 @@ def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
             (automaton.interface_name(use) for use in automaton.outline.interfaces if use.handle == event.name), ""
         )
     else:
-        sender = _SENDERS.get(event.part) or _SERVERS.get(event.part, "")
-        acts = tuple(f"{sender} {part}" for part in _ANSWERS.get(event.part, (event.part,)))
+        sender = _SENDERS.get(event.part) or _SERVERS[event.part]
+        acts = tuple(f"{sender.value} {part}" for part in _ANSWERS.get(event.part, (event.part,)))
         channel = channel_of(system, automaton, event)
         name = channel.name if channel else ""
     return any(system.may(act, name or "") for act in acts)
@@ -253,7 +263,9 @@ def server_of(system: System, automaton: Automaton, event: Event) -> Endpoint | 
 def is_clock(system: System, automaton: Automaton, event: Event) -> bool:
     if event.part != "message":
         return False
-    uses = (use for use in automaton.outline.interfaces if use.kind == "subscriber" and use.handle == event.name)
+    uses = (
+        use for use in automaton.outline.interfaces if use.kind is SymbolKind.SUBSCRIBER and use.handle == event.name
+    )
     return any(sanitise(automaton.interface_name(use) or "") == CLOCK_TOPIC for use in uses)
 
 

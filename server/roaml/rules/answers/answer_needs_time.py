@@ -11,6 +11,7 @@ from roaml.model.behavior.explore import Behavior, Duty, Event, Step
 from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
 from roaml.model.machine import Handler
 from roaml.model.system import Automaton, System
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place, plugins
 from roaml.rules.support.asynchronous import rewritten
@@ -160,9 +161,9 @@ def _related(delay: Delay) -> Iterator[Related]:
     while each is not None:
         if each.promise is not None and each.server is not None:
             path, promise = each.server.automaton.path, each.promise
-            yield Related(Symbol(path, "state", promise.state, promise.scope), "the machine waits here")
+            yield Related(Symbol(path, SymbolKind.STATE, promise.state, promise.scope), "the machine waits here")
         elif each.next is None and each.event.part == "tick":
-            yield Related(Symbol(each.automaton.path, "timer", each.event.name), "the timer")
+            yield Related(Symbol(each.automaton.path, SymbolKind.TIMER, each.event.name), "the timer")
         each = each.next
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.behavior.explore import Behavior, Duty, Step
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.support.interfaces import declared
@@ -31,7 +32,7 @@ def _awaited(context: MachineContext) -> set[str]:
     """The handles of the actions whose results at least one client waits for."""
     return {
         declaration.handle.value
-        for declaration, _, channel in declared(context, "action-server")
+        for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER)
         if declaration.handle and any("result" in client.use.receives for client in channel.users)
     }
 

@@ -15,6 +15,7 @@ from roaml.model.machine import Assign, Chart, Communicate, If, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
 from roaml.model.value_types import find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, is_spelled, place
 from roaml.rules.support.interfaces import declared
@@ -94,7 +95,7 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
     whichever client sent the goal."""
     if context.system is None:
         return
-    for declaration, _, channel in declared(context, "action-server"):
+    for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER):
         for chart in context.machine.charts:
             named: dict[float, list[Communicate]] = {}
             for statement in chart.statements:
@@ -125,7 +126,7 @@ def _wrong_constant(system: System, channel: Channel, value: float) -> str:
             return ""
         named = channel.users[int(value)].automaton.name
         return f"which is always the id of `{named}`, but `{channel.name}` has {len(clients)} clients"
-    if not clients or system.may("action-client", channel.name):
+    if not clients or system.may(SymbolKind.ACTION_CLIENT.value, channel.name):
         return ""
     ids = "0" if len(channel.users) == 1 else f"0 to {len(channel.users) - 1}"
     return f"which is not the id of any client of `{channel.name}`: the ids are {ids}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.language.grammar import UNBOUNDED
+from roaml.libraries import UNBOUNDED
 from roaml.model.gaps import ANYTHING, TREE
 from roaml.model.outline import MachineOutline
 from roaml.model.system import builtin_plugins

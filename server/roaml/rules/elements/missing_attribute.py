@@ -12,6 +12,7 @@ from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Declaration
 from roaml.model.syntax import PortRead
 from roaml.model.vocabulary import DECLARING_ELEMENTS
+from roaml.roles import SymbolKind
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
@@ -36,7 +37,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 def check_machine(context: MachineContext) -> Iterator[Finding]:
     """Attributes that the schema cannot require, because a child element may replace them."""
     for declaration in context.machine.declarations:
-        if declaration.kind != "timer":  # invalid-rate reports these
+        if declaration.kind is not SymbolKind.TIMER:  # invalid-rate reports these
             yield from _interface(declaration)
 
 

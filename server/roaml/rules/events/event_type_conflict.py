@@ -12,6 +12,7 @@ from roaml.model.machine import Communicate, Declaration, Param, Send
 from roaml.model.outline import SentField
 from roaml.model.system import Event
 from roaml.model.value_types import TypedValue, Use, find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 from roaml.rules.support.types import phrase
@@ -45,7 +46,7 @@ def _parameter(event: Event, param: Param, value: TypedValue) -> Iterator[Findin
                 yield RULE.at(
                     value.value.span,
                     f"`{name}` is {phrase(mine)} here, but {there} in another `{event.name}`{hint}",
-                    related=(Related(Symbol(automaton.path, "event", event.name), f"sent as {there}"),),
+                    related=(Related(Symbol(automaton.path, SymbolKind.EVENT, event.name), f"sent as {there}"),),
                 )
                 return
 
@@ -116,7 +117,7 @@ def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[st
     """The fields that other machines publish as real numbers on the topic of `declaration`."""
     return {
         field.name
-        for found, automaton, topic in declared(context, "publisher")
+        for found, automaton, topic in declared(context, SymbolKind.PUBLISHER)
         if found is declaration
         for endpoint in topic.sources
         if endpoint.automaton.path != automaton.path

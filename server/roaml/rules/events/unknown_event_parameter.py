@@ -10,6 +10,7 @@ from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct
 from roaml.model.gaps import PARAMETER
 from roaml.model.system import Event
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 EVENT_DATA = "data of event "
@@ -33,7 +34,7 @@ def _check(problem: UnknownMember, event: Event, params: list[str]) -> Iterator[
     if any(name.startswith(f"{problem.name}.") for name in params):
         return  # the first part of a dotted name
     close = close_names(problem.name, params)
-    senders = dict.fromkeys(Symbol(automaton.path, "event", event.name) for automaton, _ in event.senders)
+    senders = dict.fromkeys(Symbol(automaton.path, SymbolKind.EVENT, event.name) for automaton, _ in event.senders)
     related = [Related(symbol, "sent here") for symbol in [*senders][:3]]
     message = f"no machine sends a parameter `{problem.name}` with `{event.name}`{did_you_mean(close)}"
     yield RULE.at(problem.span, message, *replacements(problem.span, close), related=related)

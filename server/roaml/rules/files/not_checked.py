@@ -14,6 +14,7 @@ from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
 from roaml.text import Span
@@ -87,7 +88,9 @@ def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFo
             yield _Want(_PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
-            yield _Want("subscriber", topic.name, f"which machine subscribes to the topic `{topic.name}`")
+            yield _Want(
+                SymbolKind.SUBSCRIBER.value, topic.name, f"which machine subscribes to the topic `{topic.name}`"
+            )
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
             yield _Want("publisher message", topic.name, f"which machine publishes on the topic `{topic.name}`")
     for what, channels in (("service", system.services), ("action", system.actions)):

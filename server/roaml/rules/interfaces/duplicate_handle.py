@@ -10,15 +10,16 @@ from roaml.edit.elements import removal
 from roaml.model.machine import Communicate, Declaration, Handler
 from roaml.model.syntax import Name, PortRead
 from roaml.model.value_types import find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, unused
 from roaml.text import Span, TextEdit
 
-CLIENTS = {"service-client": "service", "action-client": "action"}
+CLIENTS = {SymbolKind.SERVICE_CLIENT: "service", SymbolKind.ACTION_CLIENT: "action"}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     handles: dict[str, Declaration] = {}
-    clients: dict[tuple[str, str], Declaration] = {}
+    clients: dict[tuple[SymbolKind, str], Declaration] = {}
     for declaration in context.machine.declarations:
         if declaration.handle is None:
             continue
@@ -39,7 +40,7 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
         message = f"`{handle.value}` is declared again with the same meaning"
         remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
         # Two timers of one name are rejected, whatever their rates are (docs/spec/ros.md#timers).
-        severity = Severity.ERROR if declaration.kind == "timer" else Severity.WARNING
+        severity = Severity.ERROR if declaration.kind is SymbolKind.TIMER else Severity.WARNING
         return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
         handle.span,
@@ -69,9 +70,9 @@ def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> 
     return Fix(f"Rename this one to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
 
 
-def _meaning(declaration: Declaration) -> tuple[str, ...]:
+def _meaning(declaration: Declaration) -> tuple[SymbolKind, tuple[str, ...]]:
     values = (declaration.interface, declaration.type, declaration.rate)
-    return (declaration.kind, *(_written(value) for value in values))
+    return declaration.kind, tuple(map(_written, values))
 
 
 def _written(value: Name | PortRead | None) -> str:

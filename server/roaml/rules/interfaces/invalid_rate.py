@@ -10,6 +10,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.expand import Constant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name, PortRead
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.text import Span, TextEdit
 
@@ -20,7 +21,7 @@ ALMOST = re.compile(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for declaration in context.machine.declarations:
-        if declaration.kind != "timer":
+        if declaration.kind is not SymbolKind.TIMER:
             continue
         match declaration.rate:
             case None:

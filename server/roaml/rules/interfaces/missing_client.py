@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.syntax import Name
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import declared, name_span, other_kind
 
@@ -16,11 +17,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if system is None:
         return
     for kind, what, channels in (
-        ("service-server", "service", system.services),
-        ("action-server", "action", system.actions),
+        (SymbolKind.SERVICE_SERVER, "service", system.services),
+        (SymbolKind.ACTION_SERVER, "action", system.actions),
     ):
         for declaration, _, channel in declared(context, kind):
-            if not channel.users and not system.may(other_kind(kind), channel.name):
+            if not channel.users and not system.may(other_kind(kind).value, channel.name):
                 close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
                 message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

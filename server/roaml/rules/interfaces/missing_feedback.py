@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.model.machine import Declaration, Handler
 from roaml.model.value_types import find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 
@@ -17,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for declaration, _, action in declared(context, "action-client"):
+    for declaration, _, action in declared(context, SymbolKind.ACTION_CLIENT):
         if not action.sources or any("feedback" in server.use.sends for server in action.sources):
             continue
         if any(system.may("action-server feedback", action.name, server.automaton) for server in action.sources):

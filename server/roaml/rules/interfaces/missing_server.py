@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.system import System
 from roaml.model.value_types import find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.interfaces import Naming, named_here, other_kind
 from roaml.text import Span, TextEdit
@@ -18,9 +19,9 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for kind, what in (("service-client", "service"), ("action-client", "action")):
+    for kind, what in ((SymbolKind.SERVICE_CLIENT, "service"), (SymbolKind.ACTION_CLIENT, "action")):
         for naming in named_here(context, kind):
-            if not naming.channel.sources and not system.may(other_kind(kind), naming.channel.name):
+            if not naming.channel.sources and not system.may(other_kind(kind).value, naming.channel.name):
                 yield _finding(context, system, naming, what)
 
 

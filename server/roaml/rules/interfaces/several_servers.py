@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration
 from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, name_span
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    for kind, what in (("service-server", "service"), ("action-server", "action")):
+    for kind, what in ((SymbolKind.SERVICE_SERVER, "service"), (SymbolKind.ACTION_SERVER, "action")):
         for declaration, automaton, channel in declared(context, kind):
             own = declaration.handle.value if declaration.handle else ""
             others = [e for e in channel.sources if e.automaton is not automaton or e.use.handle != own]

@@ -11,6 +11,7 @@ from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.model.value_types import find_handle
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, find_use, name_span, response
 
@@ -18,19 +19,19 @@ from roaml.rules.support.interfaces import declared, find_use, name_span, respon
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
-    for declaration, automaton, channel in declared(context, "service-server"):
+    for declaration, automaton, channel in declared(context, SymbolKind.SERVICE_SERVER):
         clients = [c for c in channel.users if "request" in c.use.sends]
-        if clients and not _may_do_more(context.system, automaton, "service-server", channel):
+        if clients and not _may_do_more(context.system, automaton, SymbolKind.SERVICE_SERVER, channel):
             yield from _service(context, declaration, automaton, channel, clients)
-    for declaration, automaton, channel in declared(context, "action-server"):
+    for declaration, automaton, channel in declared(context, SymbolKind.ACTION_SERVER):
         clients = [c for c in channel.users if "goal" in c.use.sends]
-        if clients and not _may_do_more(context.system, automaton, "action-server", channel):
+        if clients and not _may_do_more(context.system, automaton, SymbolKind.ACTION_SERVER, channel):
             yield from _action(declaration, automaton, channel, clients)
 
 
-def _may_do_more(system: System, automaton: Automaton, kind: str, channel: Channel) -> bool:
+def _may_do_more(system: System, automaton: Automaton, kind: SymbolKind, channel: Channel) -> bool:
     """Whether a server may answer in a part of its machine that cannot be read."""
-    return any(system.may(f"{kind} {part}", channel.name, automaton) for part in _PARTS)
+    return any(system.may(f"{kind.value} {part}", channel.name, automaton) for part in _PARTS)
 
 
 _PARTS = ("request", "response", "goal", "goal-accepted", "goal-rejected", "result")

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import has_publisher, named_here
 
@@ -14,7 +15,7 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for naming in named_here(context, "subscriber"):
+    for naming in named_here(context, SymbolKind.SUBSCRIBER):
         topic = naming.channel
         if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
             continue

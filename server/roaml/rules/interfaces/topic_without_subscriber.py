@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.syntax import Name
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import declared, name_span
 
@@ -15,9 +16,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for declaration, _, topic in declared(context, "publisher"):
+    for declaration, _, topic in declared(context, SymbolKind.PUBLISHER):
         observed = system.is_observed(f"topic_{topic.name}_msg")
-        if not topic.users and not observed and not system.may("subscriber", topic.name):
+        if not topic.users and not observed and not system.may(SymbolKind.SUBSCRIBER.value, topic.name):
             close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
             message = f"no machine subscribes to the topic `{topic.name}`{did_you_mean(close)}"
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

@@ -12,6 +12,7 @@ from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Communicate, Declaration, Handler, Machine
 from roaml.model.syntax import Name
 from roaml.model.vocabulary import DECLARING_ELEMENTS
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.interfaces import other_kind
@@ -29,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield _undeclared(context, element, handle, kinds, right)
 
 
-def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) -> Iterator[Finding]:
+def _without_name(element: Element, kinds: tuple[SymbolKind, ...], right: list[str]) -> Iterator[Finding]:
     attribute = element.get("name")
     if misspelled.attribute(element, "name", HL_SCXML.elements[element.name].attributes) or (
         attribute is not None and not attribute.has_value
@@ -47,7 +48,7 @@ def _without_name(element: Element, kinds: tuple[str, ...], right: list[str]) ->
 
 
 def _undeclared(
-    context: MachineContext, element: Element, handle: Name, kinds: tuple[str, ...], right: list[str]
+    context: MachineContext, element: Element, handle: Name, kinds: tuple[SymbolKind, ...], right: list[str]
 ) -> Finding:
     machine = context.machine
     wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
@@ -63,10 +64,10 @@ def _undeclared(
     return RULE.at(handle.span, message + did_you_mean(meant), *replacements(handle.span, meant), related=related)
 
 
-def _declare(context: MachineContext, name: str, kind: str, *, preferred: bool) -> Iterator[Fix]:
+def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred: bool) -> Iterator[Fix]:
     """Declare a timer, or the topic, service or action with this name that other machines of the system use."""
     document, root = context.document, context.machine.element
-    if kind == "timer":
+    if kind is SymbolKind.TIMER:
         text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False
     else:
         found = _elsewhere(context, name, kind)
@@ -80,7 +81,7 @@ def _declare(context: MachineContext, name: str, kind: str, *, preferred: bool) 
     yield Fix(f"Declare it as `<{DECLARING_ELEMENTS[kind]}>`", (edit,), preferred)
 
 
-def _elsewhere(context: MachineContext, name: str, kind: str) -> tuple[str, str] | None:
+def _elsewhere(context: MachineContext, name: str, kind: SymbolKind) -> tuple[str, str] | None:
     """The name and type that another machine declares for a topic, service or action `name`."""
     for automaton in context.system.automata if context.system else ():
         for use in automaton.outline.interfaces:
@@ -91,7 +92,7 @@ def _elsewhere(context: MachineContext, name: str, kind: str) -> tuple[str, str]
     return None
 
 
-def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[str, ...]) -> tuple[str, ...]:
+def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[SymbolKind, ...]) -> tuple[str, ...]:
     """The handles of the right kind for the topic, service or action that a handle of the wrong kind refers to."""
     return tuple(
         d.handle.value
@@ -101,7 +102,7 @@ def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[str, ...]
     )
 
 
-def _may_be_declared(machine: Machine, name: str, kinds: tuple[str, ...]) -> bool:
+def _may_be_declared(machine: Machine, name: str, kinds: tuple[SymbolKind, ...]) -> bool:
     """Whether a declaration without a name, or a misspelled element, may be the missing declaration."""
     if any(d.kind in kinds and d.handle is None for d in machine.declarations):
         return True
@@ -109,7 +110,7 @@ def _may_be_declared(machine: Machine, name: str, kinds: tuple[str, ...]) -> boo
     return any(misspelled.among(named, DECLARING_ELEMENTS[kind], HL_SCXML) for kind in kinds)
 
 
-def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[str, ...]]]:
+def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[SymbolKind, ...]]]:
     """Every element that refers to a declaration, with the name that it uses and the kinds of declarations that it
     accepts."""
     users: list[Handler | Communicate] = []

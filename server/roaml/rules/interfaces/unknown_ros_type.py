@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.model.value_types import INTERFACE_KINDS
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.rule import MachineContext, Rule, did_you_mean, replacements
+from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
 
 KIND_SUFFIX = re.compile("_(?:msg|srv|interface|action)s?$")
@@ -42,7 +43,7 @@ def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
 def _unknown_package(found: NotFound, span: Span) -> Finding:
     """Report an unknown package. Its name may be misspelled; more often it is in a folder that is not searched."""
     package = found.wanted.partition("/")[0]
-    meant = tuple(name for name in found.close if close_names(_stem(package), [_stem(name.partition("/")[0])]))
+    meant = tuple(name for name in found.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
     where = f"; searched {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"
     others = (name for name in found.close if name not in meant)

@@ -50,7 +50,7 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
     for found, _, channel in declared(context, declaration.kind):
         if found is not declaration:
             continue
-        unread = context.system.may(f"{other_kind(declaration.kind)} {part} field", channel.name)
+        unread = context.system.may(f"{other_kind(declaration.kind).value} {part} field", channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(
                 node.name_span,

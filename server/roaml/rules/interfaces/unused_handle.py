@@ -10,6 +10,7 @@ from roaml.edit.elements import remove
 from roaml.model.machine import Communicate, Handler
 from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 
 
@@ -23,9 +24,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
     with_threads = [thread.server.value for thread in machine.threads if thread.server]
     for declaration in machine.declarations:
         if declaration.handle is not None and not any(u is declaration for u in used):
-            if declaration.kind == "action-server" and declaration.handle.value in with_threads:
+            if declaration.kind is SymbolKind.ACTION_SERVER and declaration.handle.value in with_threads:
                 continue
-            what = "timer" if declaration.kind == "timer" else f"`<{DECLARING_ELEMENTS[declaration.kind]}>`"
+            is_timer = declaration.kind is SymbolKind.TIMER
+            what = "timer" if is_timer else f"`<{DECLARING_ELEMENTS[declaration.kind]}>`"
             message = f"the {what} `{declaration.handle.value}` is never used"
             drop = remove(context.document, declaration.element, "Remove the declaration", preferred=True)
             yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))

@@ -16,6 +16,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, System
 from roaml.model.tree import TreeNode
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.text import Span
@@ -38,7 +39,7 @@ class Naming:
     related: tuple[Related, ...] = ()
 
 
-def named_here(context: MachineContext | TreeContext, kind: str) -> Iterator[Naming]:
+def named_here(context: MachineContext | TreeContext, kind: SymbolKind) -> Iterator[Naming]:
     """The places where a file names topics, services or actions of a kind: in declarations, or as constants for
     ports."""
     if context.system is None:
@@ -51,25 +52,25 @@ def named_here(context: MachineContext | TreeContext, kind: str) -> Iterator[Nam
         return
     for node, automaton, use in named_by_ports(context):
         channel_meant = context.system.channel(automaton, use)
-        if use.kind == kind and channel_meant is not None:
+        if use.kind is kind and channel_meant is not None:
             setting = next((setting for setting in node.ports if setting.key.value == use.port), None)
             literal = setting is not None and setting.variable is None
             related = (Related(automaton.symbol(use), "it is used here"),)
             yield Naming(port_span(node, use.port), literal, use, channel_meant, related)
 
 
-def other_kind(kind: str) -> str:
+def other_kind(kind: SymbolKind) -> SymbolKind:
     """The other side of a declaration kind."""
     return OTHER_SIDE[kind]
 
 
-def declared(context: MachineContext, kind: str) -> Iterator[tuple[Declaration, Automaton, Channel]]:
+def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, Automaton, Channel]]:
     """The declarations of a kind, in each automaton of the machine, with the topic, service or action that is named."""
     if context.system is None:
         return
     for automaton in context.automata:
         for declaration in context.machine.declarations:
-            if declaration.kind != kind or declaration.handle is None:
+            if declaration.kind is not kind or declaration.handle is None:
                 continue
             use = find_use(automaton, declaration)
             channel = context.system.channel(automaton, use) if use else None

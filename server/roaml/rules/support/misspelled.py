@@ -9,14 +9,14 @@ from functools import lru_cache
 
 from roaml.language import HL_SCXML, Grammar
 from roaml.model.machine import Machine
-from roaml.rules.rule import close_names
+from roaml.suggest import are_similar
 from roaml.xml_syntax import Element
 
 
 def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
     """Whether an attribute of `element` that is not in `known` is probably a misspelling of `name`."""
     names = set(known)
-    return any(a.name not in names and close_names(a.name, [name]) for a in element.attributes)
+    return any(a.name not in names and are_similar(a.name, name) for a in element.attributes)
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:
@@ -64,7 +64,7 @@ def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[
 def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
     """Whether one of the unknown elements in `elements` is probably a misspelling of `<name>`."""
     return any(
-        not element.prefix and grammar.find(element.name) is None and close_names(element.name, [name])
+        not element.prefix and grammar.find(element.name) is None and are_similar(element.name, name)
         for element in elements
     )
 

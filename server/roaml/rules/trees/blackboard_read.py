@@ -12,6 +12,7 @@ from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedValue, Use
 from roaml.model.vocabulary import EVENT_VARIABLES
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 
 CONSTANT = (Use.INITIAL, Use.BOUND)
@@ -51,7 +52,7 @@ def _bound(context: MachineContext) -> dict[str, str]:
 
 
 def _what(declaration: Declaration) -> str:
-    return "the rate of a timer" if declaration.kind == "timer" else "the name of a topic, service or action"
+    return "the rate of a timer" if declaration.kind is SymbolKind.TIMER else "the name of a topic, service or action"
 
 
 def _reason(context: MachineContext, value: TypedValue) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.model.system import BoundPort
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.blackboard import places
 
@@ -32,7 +33,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _related(*ports: BoundPort) -> list[Related]:
     return [
-        Related(Symbol(bound.automaton.path, "port", bound.port.key), f"declared as `{bound.port.type}`")
+        Related(Symbol(bound.automaton.path, SymbolKind.PORT, bound.port.key), f"declared as `{bound.port.type}`")
         for bound in ports
         if bound.automaton.path
     ]

@@ -12,6 +12,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
 from roaml.model.translated import is_generated
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
 
 
@@ -28,7 +29,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
         if before is not listed:
             yield _finding(context, listed, before, outline.name)
         elif listed.input.section == "node_models" and (reason := _taken(outline.name, generated)):
-            named = Related(Symbol(listed.path, "machine", outline.name), "named here")
+            named = Related(Symbol(listed.path, SymbolKind.MACHINE, outline.name), "named here")
             message = f"the node has the same name as {reason}: `{outline.name}`; rename the node"
             yield RULE.at(listed.input.src.span, message, related=[named])
 
@@ -69,7 +70,7 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
         severity = Severity.ERROR if what == "node" else Severity.WARNING
         message = f"`{src.value}` is listed twice{same}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
-    named = Related(Symbol(listed.path, "machine", name), "named here")
+    named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
     return RULE.at(src.span, f"there are two {what}s `{name}`, here and in `{earlier.value}`", related=[first, named])
 
 

@@ -10,6 +10,7 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.system import CHILDREN_COUNT, builtin_plugins
 from roaml.model.tree import TreeNode, nodes
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, listing
 from roaml.text import Span, TextEdit
 
@@ -50,7 +51,7 @@ def _finding(node: TreeNode, plugin: MachineOutline, path: str, missing: list[Po
     keys = [port.key for port in missing]
     ports = "port" if len(keys) == 1 else "ports"
     message = f"the {ports} {listing(keys)} of `{plugin.name}` must be set"
-    related = [Related(Symbol(path, "port", keys[0]), "declared here")] if path else []
+    related = [Related(Symbol(path, SymbolKind.PORT, keys[0]), "declared here")] if path else []
     end = node.element.attributes[-1].span.end if node.element.attributes else node.element.name_span.end
     new = "".join(f' {port.key}="{_example(port)}"' for port in missing)
     fix = Fix(f"Add the missing {ports}", (TextEdit(Span(end, end), new),))

@@ -15,14 +15,15 @@ from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
 from roaml.model.system import ANY_TYPE
 from roaml.model.tree import (
-    RESERVED,
     PortModel,
     TreeNode,
     blackboard_variable,
+    is_reserved_variable,
     is_variable_name,
     looks_like_reference,
     nodes,
 )
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
@@ -60,7 +61,7 @@ def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
             yield RULE.at(value.span, message)
     elif not variable:
         yield RULE.at(value.span, "the braces contain no variable name")
-    elif RESERVED.match(variable):
+    elif is_reserved_variable(variable):
         yield RULE.at(
             value.span, f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"
         )
@@ -95,7 +96,7 @@ def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Fi
 
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
-    related = [Related(Symbol(path, "port", port.key), "declared here")] if path else []
+    related = [Related(Symbol(path, SymbolKind.PORT, port.key), "declared here")] if path else []
     if port.direction == "out":
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []

@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.edit.elements import remove, rename_tag
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import NodeModel
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 
 
@@ -25,7 +26,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _check(context: TreeContext, model: NodeModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
-    related = [Related(Symbol(path, "machine", plugin.name), "the plugin")] if path else []
+    related = [Related(Symbol(path, SymbolKind.MACHINE, plugin.name), "the plugin")] if path else []
     for port in model.ports:
         if port.name is None:
             continue

@@ -11,8 +11,10 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import NodeOutline, TreeOutline, main_tree
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
 from roaml.rules.support import misspelled
+from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
 
 MAIN = "MainTree"
@@ -51,7 +53,7 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
     same = known.get(tree.id.value, ()) or [t for f in context.files for t in f.trees if t.id == tree.id.value]
     if len(same) > 1:
         here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
-        elsewhere = [Symbol(t.path, "tree", t.id) for t in same if t.path != context.source.path]
+        elsewhere = [Symbol(t.path, SymbolKind.TREE, t.id) for t in same if t.path != context.source.path]
         related = [Related(span, "another one") for span in here]
         related += [Related(symbol, "another one") for symbol in elsewhere]
         name = unused(tree.id.value, known)
@@ -199,7 +201,7 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
 def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
     """Report a wrong name of the only tree, which is executed whatever its name is (docs/spec/trees.md#main-tree). See
     `_no_tree`."""
-    known = context.system is not None or close_names(wanted.value, [executed])
+    known = context.system is not None or are_similar(wanted.value, executed)
     if known and not context.missing_includes:
         message = f"there is no tree `{wanted.value}`; the only tree, `{executed}`, is executed instead"
         yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)

@@ -10,6 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import TreeNode, nodes
+from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
 
 
@@ -26,7 +27,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
     keys = [port.key for port in plugin.ports]
-    related = [Related(Symbol(path, "machine", plugin.name), "the plugin")] if path else []
+    related = [Related(Symbol(path, SymbolKind.MACHINE, plugin.name), "the plugin")] if path else []
     for setting in node.ports:
         key = setting.key
         edit = removal(context.source.text, setting.attribute.span)

@@ -11,11 +11,11 @@ from roaml.model.gaps import is_interface_name
 from roaml.model.machine import Declaration, Send
 from roaml.model.name_forms import EVENT, VARIABLE, variable_problem
 from roaml.model.syntax import Name
+from roaml.model.value_types import CHANNEL_KINDS
 from roaml.model.vocabulary import EVENT_VARIABLES
+from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.interfaces import named_by_ports, port_span
-
-KINDS = {"publisher": "topic", "subscriber": "topic", "service-client": "service", "service-server": "service"}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -55,8 +55,8 @@ def _parameter(name: Name) -> Iterator[Finding]:
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
     """Check names that become parts of event names."""
-    what = "timer" if declaration.kind == "timer" else KINDS.get(declaration.kind, "action")
-    name = declaration.handle if declaration.kind == "timer" else declaration.interface
+    what = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
+    name = declaration.handle if declaration.kind is SymbolKind.TIMER else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
         yield RULE.at(name.span, _with_spaces(name.value, what))
 
@@ -68,7 +68,7 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
         value = automaton.port(use.port)
         text = value.text.strip() if isinstance(value, Constant) else None
         if text is not None and not is_interface_name(text):
-            what = KINDS.get(use.kind, "action")
+            what = CHANNEL_KINDS[use.kind].value
             empty = f"`{use.port}` names {_a(what)} and cannot be empty"
             message = _with_spaces(text, what) if text else empty
             related = (Related(automaton.symbol(use), "it is used here"),)

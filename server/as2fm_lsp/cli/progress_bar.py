@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far a verification is, on one line of a terminal."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from types import TracebackType
+
+from as2fm_lsp.cli.status_line import StatusLine
+from roaml.smc.goal import Question
+from roaml.smc.lss import Search
+from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
+
+BAR_CHARACTERS = 20
+
+
+class ProgressBar:
+    """Within `with`; shows nothing where standard error is not a terminal. The line is gone at the end."""
+
+    def __init__(self) -> None:
+        self._line = StatusLine()
+        self._question: Question | None = None
+        self._search: Search | None = None
+        self._options = Options()
+        self._tally = Tally()
+        self._began = time.monotonic()
+        self._first = 0
+
+    def __enter__(self) -> ProgressBar:
+        self._line.__enter__()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._line.__exit__(kind, error, at)
+
+    def begin(self, question: Question, options: Options, tally: Tally) -> None:
+        """What is shown from here on."""
+        self._question, self._options, self._tally = question, options, tally
+        self._began, self._first = time.monotonic(), tally.traces
+        self._search = None
+
+    def watch(self, tally: Tally) -> None:
+        """A batch has come in."""
+        self._tally = tally
+        self._show()
+
+    def search(self, search: Search) -> None:
+        """Schedulers are looked for, or traces are made with one that was found."""
+        self._search = search
+        side = search.found.get(search.side)
+        if side is not None:
+            self._tally = side.tally
+        self._show()
+
+    def pulse(self, trace: int, steps: int) -> None:
+        """A trace is at so many steps."""
+        self._show(f", trace {trace:,} at step {steps:,}" if steps else "")
+
+    def _show(self, more: str = "") -> None:
+        if not self._line.is_due or self._question is None:
+            return
+        if self._search is None:
+            seconds = time.monotonic() - self._began
+            self._line.show(line(self._question, self._options, self._tally, seconds, self._first) + more)
+        else:
+            self._line.show(search_line(self._question, self._search, self._options))
+
+
+def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
+    """The line: name, bar, traces, the estimate so far, the time that is left."""
+    if tally.traces == 0:
+        return f"{question.name} …"
+    share = progress(question, options, tally)
+    full = int(share * BAR_CHARACTERS)
+    lower, upper = bounds_of(tally, question, options)
+    value = tally.mean.mean if question.is_reward else (tally.successes + tally.undecided / 2) / tally.traces
+    text = f"{question.name} {'━' * full}{'─' * (BAR_CHARACTERS - full)} {share:4.0%}  {tally.traces:,} traces"
+    text += f"  {value:.4g} [{lower:.4g}, {upper:.4g}]"
+    made = tally.traces - first
+    if seconds > 1 and 0 < share < 1 and made:
+        text += f"  {_duration(seconds / made * tally.traces * (1 - share) / share)} left"
+    return text
+
+
+def search_line(question: Question, search: Search, options: Options) -> str:
+    """The line while schedulers are looked for: the round and the best share so far; then the estimate."""
+    text = f"{question.name}, {search.side} probability"
+    side = search.found.get(search.side)
+    if side is not None and side.tally.traces:
+        return line(replace(question, name=text), options, side.tally, 0)
+    if search.round == 0:
+        return f"{text} …"
+    text += f": round {search.round} of {search.rounds}, {search.done:,} of {search.left:,} schedulers tried"
+    return text if search.best is None else f"{text}, best so far {search.best:.4g}"
+
+
+def progress(question: Question, options: Options, tally: Tally) -> float:
+    """The part of the work that is done, between 0 and 1."""
+    wanted = wanted_traces(options)
+    if wanted is None:
+        half = bounds_of(tally, question, options, tally.is_revised).half_width
+        target = options.epsilon * (max(abs(tally.mean.mean), 1e-9) if question.is_reward else 1)
+        # The interval narrows with the root of the number of traces.
+        share = 0.0 if math.isinf(half) or math.isnan(half) else 1.0 if half <= target else (target / half) ** 2
+    else:
+        share = tally.traces / wanted
+    if options.max_traces is not None:
+        share = max(share, tally.traces / options.max_traces)
+    return min(1.0, share)
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`: what they stand for.
+
+Properties use these names, and texts do where several nodes have the same name. Each text that does explains them once.
+"""
+
+from __future__ import annotations
+
+import re
+
+from roaml.jani.model import Model
+from roaml.views.story import PlaceOf
+
+_NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
+_MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")
+
+
+def explained(text: str, model: Model, place_of: PlaceOf) -> str:
+    """A line that says which nodes the names in a text stand for; "" if there are none.
+
+    Args:
+        place_of: file and line of an origin; that of a node's tick is the place of the node in the tree.
+    """
+    mentioned = {int(number) for number in _MENTIONED.findall(text)}
+    if not mentioned:
+        return ""
+    origins = {automaton.name: automaton.origin for automaton in model.automata}
+    explanations = []
+    for automaton in model.automata:
+        node = _NODE.fullmatch(automaton.name)
+        if node and int(node[1]) in mentioned:
+            origin = origins.get(f"bt_{node[1]}_tick")
+            place = f" ({place_of(origin)})" if origin is not None else ""
+            explanations.append(f"bt_{node[1]} is {node[2]}{place}")
+    return f"nodes of the behavior tree: {', '.join(explanations)}\n" if explanations else ""

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known so far, in a file, so that a long run can be taken up again.
+
+The file belongs to a model, its properties, a seed and a limit of steps. It may be continued with other limits, a
+higher confidence or more traces; what has been counted stays right.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from typing import Any
+
+from as2fm_lsp.atomic_write import write_file
+from roaml.disk import MEGABYTE, required
+from roaml.smc.batch import Payload
+from roaml.smc.goal import Question
+from roaml.smc.run import Options, Tally
+from roaml.smc.stored import tally_from_json
+
+VERSION = 3
+MAX_STATE_BYTES = 64 * MEGABYTE
+"""The state of some hundred properties has a few million."""
+WRITE_INTERVAL_S = 1.0
+
+
+class StateError(ValueError):
+    """The file cannot be used; the message says why."""
+
+
+class SavedState:
+    """The tallies of several properties, kept in a file."""
+
+    def __init__(self, path: str, options: Options) -> None:
+        self.path = path
+        self.options = options
+        self._properties: dict[str, dict[str, Any]] = {}
+        self._written = 0.0
+        if os.path.exists(path):
+            self._read()
+
+    def tally(self, question: Question, payload: Payload) -> Tally:
+        """What is known of a property.
+
+        Raises:
+            StateError: the file was written for another model, seed or limit of steps, or holds what traces cannot
+                have given.
+        """
+        name = question.name
+        known = self._properties.get(name)
+        if known is None:
+            return Tally()
+        if known.get("model") != payload.digest:
+            raise StateError(f"{self.path} was written for another model; name another file")
+        if (known.get("seed"), known.get("max_steps")) != (self.options.seed, self.options.max_steps):
+            raise StateError(f"{self.path} was written with another seed or limit of steps; use these, or another file")
+        try:
+            tally = tally_from_json(known.get("tally"), question, self.options)
+        except ValueError as error:
+            raise StateError(f"{self.path} is damaged: of {name}, {error}; remove it to begin again") from None
+        if known.get("options") != repr(self.options):
+            # Who changes the options knows what has come of the traces so far.
+            tally.is_finished, tally.accepted, tally.is_revised = False, None, tally.traces > 0
+        return tally
+
+    def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
+        """Note what is known of a property; written now and then, or at once with `now`.
+
+        Raises:
+            OSError: the file cannot be written; it is as it was.
+        """
+        if not now and time.monotonic() - self._written < WRITE_INTERVAL_S:
+            return
+        self._written = time.monotonic()
+        self._properties[name] = {
+            "model": payload.digest,
+            "seed": self.options.seed,
+            "max_steps": self.options.max_steps,
+            "options": repr(self.options),
+            "tally": tally.to_json(),
+        }
+        text = json.dumps({"version": VERSION, "properties": self._properties}, indent=1)
+        write_file(self.path, text + "\n")
+
+    def _read(self) -> None:
+        try:
+            value = json.loads(required(self.path, MAX_STATE_BYTES).decode("utf-8"))
+        except (ValueError, RecursionError):
+            value = None
+        if not isinstance(value, dict) or "version" not in value:
+            raise StateError(f"{self.path} is not the state of a verification")
+        if value["version"] != VERSION:
+            raise StateError(f"{self.path} was written by another version; remove it to begin again")
+        properties = value.get("properties")
+        if not isinstance(properties, dict) or not all(isinstance(row, dict) for row in properties.values()):
+            raise StateError(f"{self.path} is not the state of a verification")
+        self._properties = properties

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of other schedulers than the uniform one, for people and programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from roaml.smc.choices import EXPLORATION, SAMPLING, Choices, Extreme
+from roaml.smc.goal import Question
+from roaml.verification.schedulers import extreme_asked, interval_text
+
+
+def remark(question: Question, choices: Choices | None) -> str:
+    """One line for people; empty if uniform choices are what is wanted."""
+    if choices is None:
+        return ""
+    if choices.agreement:
+        return f"all schedulers agree: {choices.agreement}"
+    head = "warning: this is the value under uniform choices"
+    head += f", and `{question.operator}` asks for the {extreme_asked(question)}"
+    least, greatest = choices.minimum, choices.maximum
+    if least is not None and greatest is not None and choices.differ:
+        return f"{head}; schedulers reach from {_reached(least)} to {_reached(greatest)}"
+    return f"{head}, which may differ; {_looked(question, choices)}"
+
+
+def warning(question: Question, choices: Choices | None) -> str:
+    """The same if it is a warning, for programs; else empty."""
+    text = remark(question, choices)
+    return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
+
+
+def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
+    """Said once of all properties whose minimum or maximum may differ from their values, and what one can do about it.
+
+    Args:
+        asked: these properties, with what is known of them.
+    """
+    if not asked:
+        return []
+    names: dict[tuple[str, str], list[str]] = {}
+    tried: dict[tuple[str, str], int] = {}
+    for question, choices in asked:
+        key = (question.operator, "" if choices.tried else _looked(question, choices))
+        names.setdefault(key, []).append(question.name)
+        tried[key] = max(tried.get(key, 0), choices.tried)
+    lines = ["note: these are values under uniform choices; the minimum or maximum over all schedulers may differ"]
+    for (operator, why), of in names.items():
+        extreme = "minimum" if operator.endswith("min") else "maximum"
+        looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
+        lines.append(f"  {', '.join(of)} (`{operator}` asks for the {extreme}): {looked}")
+    lines.append(
+        "  help: use --scheduler uniform if you want uniform choices, --scheduler lss to sample more schedulers, "
+        "or --exact to compute the minimum and the maximum if there are few states"
+    )
+    return lines
+
+
+def _looked(question: Question, choices: Choices) -> str:
+    """How a difference was looked for, and was not found."""
+    if choices.tried:
+        return f"{choices.tried:,} sampled schedulers show no difference"
+    return "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"
+
+
+def rows(choices: Choices | None) -> dict[str, Any]:
+    """For JSON: `schedulers`, whether all agree (null if that is not known) and why, `minimum` and `maximum`."""
+    if choices is None:
+        return {"schedulers": {"wanted": "uniform"}}
+    agree = True if choices.agreement else False if choices.differ else None
+    row: dict[str, Any] = {"schedulers": {"wanted": "all", "agree": agree, "why": choices.agreement}}
+    if choices.tried:
+        row["schedulers"]["tried"] = choices.tried
+    for name, extreme in (("minimum", choices.minimum), ("maximum", choices.maximum)):
+        row[name] = None if extreme is None else _row(extreme)
+    return row
+
+
+def _row(extreme: Extreme) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "value": _finite(extreme.value),
+        "lower": _finite(extreme.bounds.lower),
+        "upper": _finite(extreme.bounds.upper),
+        "found": extreme.found,
+    }
+    if extreme.scheduler:
+        row["scheduler"] = extreme.scheduler
+    if extreme.traces:
+        row["traces"] = extreme.traces
+    return row
+
+
+def _reached(extreme: Extreme) -> str:
+    if extreme.found == EXPLORATION:
+        return f"{extreme.value:.6g} (exactly, from all states)"
+    who = extreme.scheduler if extreme.found == SAMPLING else "uniform choices"
+    return f"{interval_text(extreme)} (by {who})"
+
+
+def _finite(value: float) -> float | str | None:
+    if math.isnan(value):
+        return None
+    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

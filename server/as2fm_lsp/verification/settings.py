@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How an editor asks to verify properties: `as2fm.verify` of its settings, and the options of one call.
+
+    {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
+                "stuck": "warning"}}
+
+The options of a call have the same form, besides `seed` and `silent`, and take precedence. A value that is not valid is
+reported, and the default is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from roaml.smc.run import LEAST_EPSILON, Options
+from roaml.verification.expectations import Expectation, parse
+from roaml.verification.stuck import LEVELS, WARNING
+
+
+@dataclass(frozen=True, slots=True)
+class VerificationSettings:
+    """Attributes:
+    is_silent: whether the results are not shown as messages.
+    stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
+    problems: the values that are not valid, in sentences.
+    """
+
+    options: Options
+    expectations: tuple[Expectation, ...]
+    is_silent: bool
+    problems: tuple[str, ...]
+    stuck: str = WARNING
+
+
+def verification_settings(settings: object, options: object = None) -> VerificationSettings:
+    """
+    Args:
+        settings: the client's settings, as they came.
+        options: those of one call.
+    """
+    section = settings.get("verify") if isinstance(settings, Mapping) else None
+    values = {**_mapping(section), **_mapping(options)}
+    problems: list[str] = []
+
+    def number(key: str, otherwise: Any, is_valid: Callable[[Any], bool], range_: str) -> Any:
+        value = values.get(key, otherwise)
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and is_valid(value):
+            return value
+        problems.append(f"verify.{key} must be {range_}, not {value!r}.")
+        return otherwise
+
+    default = Options()
+    share, whole = "a number between 0 and 1", "a whole number"
+    width = f"a number from {LEAST_EPSILON:g} to 1"
+    chosen = Options(
+        confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
+        epsilon=number("epsilon", default.epsilon, lambda value: LEAST_EPSILON <= value < 1, width),
+        max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{whole} from 1 on"),
+        seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
+    )
+    expectations = []
+    for name, text in _mapping(values.get("expectations")).items():
+        try:
+            expectations.append(parse(f"{name} {text}"))
+        except ValueError:
+            problems.append(f"What is expected of {name} must be like '>= 0.95', not {text!r}.")
+    level = values.get("stuck", WARNING)
+    if level not in LEVELS:
+        problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
+        level = WARNING
+    return VerificationSettings(chosen, tuple(expectations), values.get("silent") is True, tuple(problems), level)
+
+
+def _mapping(value: object) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a system gets stuck, for people and programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from roaml.jani.node import Origin
+from roaml.smc.end import End
+from roaml.verification.stuck import WARNING, Look, Stuck
+from roaml.views.story import PlaceOf
+from roaml.views.waiting import help_line
+
+PROBABILITY = "probability of getting stuck"
+NOT_STUCK = "does not get stuck"
+"""The name of the test in a JUnit report."""
+
+
+def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
+    """For people.
+
+    Args:
+        shown: where it has been shown who waits for whom; it is shown here if that is "".
+    """
+    answer, stuck = look.answer, look.stuck
+    lines = []
+    if answer is not None and answer.tally.traces:
+        lower, upper = answer.bounds
+        cut = answer.tally.ended(End.CUT)
+        to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
+        value = f"{answer.value:.6g} in [{lower:.6g}, {upper:.6g}]"
+        lines.append(f"{PROBABILITY}: {value} from {answer.tally.traces:,} traces{to}")
+    if look.fault:
+        lines.append(f"{PROBABILITY}: not known, since a trace that ran on went wrong: {look.fault}")
+    if stuck is not None:
+        still = "" if stuck.time is None else ", time stands still"
+        if shown:
+            lines.append(f"{look.level}: the system gets stuck{still}; who waits for whom is shown {shown}")
+        else:
+            lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
+            lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
+    return "".join(f"{line}\n" for line in lines)
+
+
+def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
+    """For people, beneath the value that it makes doubtful; `shown` as in `as_text`."""
+    if shown:
+        return [f"{level}: {stuck.warning}; who waits for whom is shown {shown}"]
+    lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
+    return [*lines, *(f"  {line}" for line in waiting_lines(stuck, place_of))]
+
+
+def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
+    """Who waits for whom, and what to do about it."""
+    lines = []
+    for wait in stuck.waits:
+        place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
+        lines.append(f"{wait.who} {wait.what}{place}")
+    line = help_line(stuck.waits)
+    return [*lines, line] if line else lines
+
+
+def _where(stuck: Stuck) -> str:
+    at = "" if stuck.time is None else f" at {stuck.time:g} s"
+    return f"trace {stuck.seen.trace} after {stuck.seen.steps:,} steps{at}"
+
+
+def as_row(look: Look, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
+    """For JSON; `place` gives an origin's members."""
+    row: dict[str, Any] = {"level": look.level}
+    if look.answer is not None:
+        tally, (lower, upper) = look.answer.tally, look.answer.bounds
+        row.update(traces=tally.traces, stuck=tally.ended(End.STUCK), cut=tally.ended(End.CUT))
+        row.update(lower=lower, upper=upper)
+    if look.fault:
+        row["fault"] = look.fault
+    row["example"] = None if look.stuck is None else example_row(look.stuck, place)
+    return row
+
+
+def example_row(stuck: Stuck, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
+    """A stuck trace as a value for JSON."""
+    return {
+        "trace": stuck.seen.trace,
+        "steps": stuck.seen.steps,
+        "time": stuck.time,
+        "waits": [
+            {"who": wait.who, "what": wait.what, **({} if wait.origin is None else place(wait.origin))}
+            for wait in stuck.waits
+        ],
+        "advice": stuck.advice,
+        "rule": stuck.rule,
+    }

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Traces as files: CSV for plotting, and JSON with the places that each step exists for.
+
+CSV has a line for each state, the first one included, and a column for its number, the time in seconds where the model
+has a clock, why the trace has ended (in its last line), and each global variable; an array has a column for each of its
+elements; true is 1, false 0.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+from collections.abc import Iterable, Iterator
+
+from as2fm_lsp.atomic_write import write_file
+from roaml.jani.node import Origin
+from roaml.smc.end import End
+from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
+from roaml.smc.run import Answer, Seen
+from roaml.verification.stuck import time_of
+from roaml.verification.target import Target
+from roaml.views.waiting import waits
+
+DEFAULT_LIMIT = 10
+"""The number of traces of each verdict that are written."""
+_UNSAFE = re.compile(r"[^\w.-]")
+
+
+def write_traces(
+    folder: str, target: Target, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
+) -> list[str]:
+    """Write the first traces of each verdict, and the shortest; the files' names.
+
+    Raises:
+        OSError: a file cannot be written; it is not there then, those before are whole.
+    """
+    os.makedirs(folder, exist_ok=True)
+    written = []
+    for verdict, examples in answer.tally.examples.items():
+        chosen = dict.fromkeys(seen.trace for seen in examples[:limit])
+        shortest: Seen | None = answer.tally.shortest.get(verdict)
+        if shortest is not None and limit:
+            chosen[shortest.trace] = None
+        for trace in sorted(chosen):
+            name = f"{_UNSAFE.sub('_', answer.question.name)}-{trace:07}-{VERDICTS[verdict]}"
+            texts = {"csv": csv_lines(recorder, trace, target.clock), "json": json_lines(target, recorder, trace)}
+            for extension, lines in texts.items():
+                path = os.path.join(folder, f"{name}.{extension}")
+                write_file(path, lines)
+                written.append(path)
+    return written
+
+
+def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Iterator[str]:
+    """The lines of a trace."""
+    storages = recorder.shared
+    names = [storage.name for storage in storages]
+    places = None if clock is None else (names.index(clock[0]), names.index(clock[1]))
+
+    def row(number: int, values: list[Plain], end: str = "") -> str:
+        cells: list[int | float | str] = [number]
+        if places is not None:
+            seconds, nanoseconds = values[places[0]], values[places[1]]
+            assert not isinstance(seconds, list)
+            assert not isinstance(nanoseconds, list)
+            cells.append(seconds + nanoseconds / 1e9)
+        return csv_line([*cells, end, *(cell for value in values for cell in _cells(value))])
+
+    start = recorder.initial(storages)
+    header = ["step", *(() if places is None else ("time",)), "end"]
+    for name, value in zip(names, start, strict=True):
+        header += (name + suffix for suffix in _suffixes(value))
+    yield csv_line(header)
+    recording = Recording(trace)
+    number, values = 0, start
+    for step in recorder.walk(recording):
+        yield row(number, values)
+        number, values = step.number, recorder.values(storages)
+    yield row(number, values, end_of(recording))
+
+
+def json_lines(target: Target, recorder: Recorder, trace: int) -> Iterator[str]:
+    """The text of a trace: one line for each step."""
+    recording = Recording(trace)
+    start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
+    yield "{\n"
+    yield f' "property": {_json(recorder.asked.question.name)},\n "trace": {trace},\n "seed": {recorder.seed},\n'
+    yield f' "initial": {_json(start)},\n "steps": ['
+    comma = "\n  "
+    for step in recorder.walk(recording):
+        yield comma + _json(step_row(target, recorder, step))
+        comma = ",\n  "
+    verdict = VERDICTS.get(recording.verdict, "fault")
+    yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
+    if recording.end is End.STUCK:
+        rows = [
+            {"who": wait.who, "what": wait.what, **_place(target, wait.origin)}
+            for wait in waits(recorder.standstill(), time_of(target, recorder))
+        ]
+        yield ',\n "waits": [' + "".join(f"\n  {_json(row)}," for row in rows).removesuffix(",") + "\n ]"
+    yield "\n}\n"
+
+
+def end_of(recording: Recording) -> str:
+    """Why a trace that was walked again has ended."""
+    return "fault" if recording.problem is not None else recording.end.key
+
+
+def step_row(target: Target, recorder: Recorder, step: TraceStep) -> dict[str, object]:
+    """A step as a value for JSON."""
+    automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
+    return {
+        "step": step.number,
+        "action": step.action,
+        "moves": [
+            {
+                "automaton": part.automaton,
+                "from": part.source,
+                "to": part.destination.location,
+                "action": part.edge.action,
+                **_place(target, part.edge.origin),
+            }
+            for part in step.parts
+        ],
+        "changes": [
+            {
+                "variable": change.variable.name,
+                **({} if change.variable.instance < 0 else {"automaton": automata[change.variable.instance]}),
+                "value": change.after,
+            }
+            for change in step.changes
+        ],
+    }
+
+
+def _place(target: Target, origin: Origin | None) -> dict[str, object]:
+    place = target.place(origin)
+    if place is None:
+        return {}
+    path, line, column = place
+    folder = os.path.dirname(os.path.abspath(target.path))
+    return {"file": os.path.relpath(path, folder).replace(os.sep, "/"), "line": line, "column": column}
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+class _Echo:
+    """A file that returns what is written to it."""
+
+    def write(self, text: str) -> str:
+        return text
+
+
+_CSV = csv.writer(_Echo())
+"""With its own line end, CR LF: the writer quotes a cell that holds a character of the line end."""
+
+
+def csv_line(cells: Iterable[int | float | str]) -> str:
+    line: str = _CSV.writerow(cells)
+    return line.removesuffix("\r\n") + "\n"
+
+
+def _cells(value: Plain) -> Iterator[int | float]:
+    if isinstance(value, list):
+        for element in value:
+            yield from _cells(element)
+    else:
+        yield int(value) if isinstance(value, bool) else value
+
+
+def _suffixes(value: Plain) -> Iterator[str]:
+    if isinstance(value, list):
+        for position, element in enumerate(value):
+            yield from (f"[{position}]{more}" for more in _suffixes(element))
+    else:
+        yield ""

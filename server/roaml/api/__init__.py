@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What other programs import; `docs/library.md` shows how.
+
+    from roaml import api
+
+    result = api.check(["main.xml"], ros_paths=["interfaces"])
+    for diagnostic in result.diagnostics:
+        print(diagnostic.path, diagnostic.message)
+
+    system = api.load("main.xml")
+    text = "".join(api.write_jani(api.to_jani(system)))
+    for result in api.verify(system, jobs=2, expectations=["alarm >= 0.95"]):
+        print(result.name, result.answer.value, result.answer.bounds, result.is_met)
+
+Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Names
+that only verification needs are imported when they are used, so that a check starts fast.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+from roaml.api.checking import CheckResult, PathError, check, fix
+from roaml.api.jani_files import JaniError, read_jani
+from roaml.api.migrating import SharedFileError, migrate
+from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
+from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.jani.model import Model
+from roaml.jani.node import Origin
+from roaml.jani.properties import Property
+from roaml.jani.selection import PropertyError
+from roaml.jani.writer import write as write_jani
+from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.project.analysis import Analysis
+from roaml.project.migrate import Migration
+from roaml.project.settings import Settings
+from roaml.project.source_map import SourceMap
+from roaml.project.workspace import Snapshot
+from roaml.scxml.model import Network
+from roaml.scxml.writer import write as write_scxml
+from roaml.text import Location, SourceFile, Span
+
+if TYPE_CHECKING:
+    from roaml.smc.choices import Choices, Extreme
+    from roaml.smc.end import End
+    from roaml.smc.fault import FaultError
+    from roaml.smc.goal import Asked, Question, Threshold
+    from roaml.smc.lss import Search
+    from roaml.smc.model import Checker
+    from roaml.smc.pool import Pool, Pulse, WorkersLostError
+    from roaml.smc.record import Recorder, Recording, TraceStep
+    from roaml.smc.run import Answer, Options, Tally, Watch
+    from roaml.smc.statistics import Bounds
+    from roaml.smc.story import Story
+    from roaml.verification.counterexample import Counterexample, counterexample
+    from roaml.verification.expectations import Expectation, RangeError, Verdict
+    from roaml.verification.refusal import Refusal
+    from roaml.verification.results import Exact, Result, SampledResult, Traces
+    from roaml.verification.storm import ExactError
+    from roaml.verification.stuck import Look, Stuck
+    from roaml.verification.target import LineColumn, Target
+    from roaml.verification.verifier import NoThresholdError, Verifier
+    from roaml.views.story import Line
+    from roaml.views.waiting import Wait
+else:
+    _IMPORTED_ON_USE = {
+        "roaml.smc.choices": ("Choices", "Extreme"),
+        "roaml.smc.end": ("End",),
+        "roaml.smc.fault": ("FaultError",),
+        "roaml.smc.goal": ("Asked", "Question", "Threshold"),
+        "roaml.smc.lss": ("Search",),
+        "roaml.smc.model": ("Checker",),
+        "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
+        "roaml.smc.record": ("Recorder", "Recording", "TraceStep"),
+        "roaml.smc.run": ("Answer", "Options", "Tally", "Watch"),
+        "roaml.smc.statistics": ("Bounds",),
+        "roaml.smc.story": ("Story",),
+        "roaml.verification.counterexample": ("Counterexample", "counterexample"),
+        "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
+        "roaml.verification.refusal": ("Refusal",),
+        "roaml.verification.results": ("Exact", "Result", "SampledResult", "Traces"),
+        "roaml.verification.storm": ("ExactError",),
+        "roaml.verification.stuck": ("Look", "Stuck"),
+        "roaml.verification.target": ("LineColumn", "Target"),
+        "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
+        "roaml.views.story": ("Line",),
+        "roaml.views.waiting": ("Wait",),
+    }
+    _MODULE_OF = {name: module for module, names in _IMPORTED_ON_USE.items() for name in names}
+
+    def __getattr__(name: str) -> object:
+        if name not in _MODULE_OF:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(_MODULE_OF[name]), name)
+
+
+__all__ = [
+    "NO_OVERRIDES",
+    "Analysis",
+    "Answer",
+    "Asked",
+    "Bounds",
+    "CheckResult",
+    "Checker",
+    "Choices",
+    "ConstantError",
+    "Counterexample",
+    "Diagnostic",
+    "End",
+    "Exact",
+    "ExactError",
+    "Expectation",
+    "Extreme",
+    "FaultError",
+    "JaniError",
+    "Line",
+    "LineColumn",
+    "LoadedSystem",
+    "Location",
+    "Look",
+    "Migration",
+    "Model",
+    "ModelError",
+    "Network",
+    "NoThresholdError",
+    "Options",
+    "Origin",
+    "Overrides",
+    "PathError",
+    "Pool",
+    "Property",
+    "PropertyError",
+    "Pulse",
+    "Question",
+    "RangeError",
+    "Recorder",
+    "Recording",
+    "Refusal",
+    "Result",
+    "SampledResult",
+    "Search",
+    "Settings",
+    "Severity",
+    "SharedFileError",
+    "Snapshot",
+    "SourceFile",
+    "SourceMap",
+    "Span",
+    "Story",
+    "Stuck",
+    "Tally",
+    "Target",
+    "Threshold",
+    "TraceStep",
+    "Traces",
+    "Verdict",
+    "Verifier",
+    "Wait",
+    "Watch",
+    "WorkersLostError",
+    "as_target",
+    "check",
+    "checker",
+    "counterexample",
+    "fix",
+    "load",
+    "loaded",
+    "migrate",
+    "read_jani",
+    "source_map",
+    "target",
+    "to_jani",
+    "to_scxml",
+    "verifier",
+    "verify",
+    "write_jani",
+    "write_scxml",
+]

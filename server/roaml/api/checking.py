@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checking files, and making safe fixes."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from roaml.diagnostics import Diagnostic
+from roaml.disk import Problem
+from roaml.model.kinds import FileKind
+from roaml.project.configuration import find_settings
+from roaml.project.discover import is_inside
+from roaml.project.fixing import fix_all, safe_fix
+from roaml.project.settings import Settings, ament_prefixes, enclosing_root
+from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import SourceFile
+
+
+class PathError(ValueError):
+    """A given path cannot be checked; the message contains the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckResult:
+    """The result of `check`.
+
+    Attributes:
+        diagnostics: sorted by file, in the order in which files were checked, then by position.
+        files: the files that were checked.
+        problems: errors in the configuration, as sentences.
+        snapshot: the models behind the diagnostics.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    files: tuple[str, ...]
+    problems: tuple[str, ...]
+    snapshot: Snapshot
+
+    def source(self, path: str) -> SourceFile:
+        """The text of a checked file."""
+        source = self.snapshot.analysis.source(path)
+        assert source is not None
+        return source
+
+
+def check(
+    paths: Iterable[str],
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    texts: Mapping[str, str | bytes] | None = None,
+) -> CheckResult:
+    """Check system files, single files and folders.
+
+    A system file is checked with all files that it names; a folder with all systems and files in it. Any other file is
+    checked as a part of the systems that name it. They are searched for in the configured roots, otherwise in the
+    enclosing repository, otherwise in the folder of the file.
+
+    Args:
+        paths: the files and folders to check.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        texts: path -> text, or the bytes of a file, used instead of the content of the file.
+
+    Raises:
+        PathError: a path does not exist or cannot be read, and `texts` has no text for it.
+    """
+    named = [os.path.abspath(path) for path in paths]
+    texts = {os.path.abspath(path): text for path, text in (texts or {}).items()}
+    for path in named:
+        if not os.path.exists(path) and path not in texts:
+            raise PathError(f"{path}: there is no such file or folder")
+    problems: tuple[str, ...] = ()
+    if settings is None:
+        settings, problems = find_settings(named[0] if named else os.getcwd())
+        settings = replace(settings, ament_prefixes=ament_prefixes())
+    settings = replace(settings, ros_paths=(*settings.ros_paths, *map(os.path.abspath, ros_paths)))
+    workspace, checked = _workspace(named, settings, texts)
+    snapshot = workspace.snapshot()
+    files = _files(named, snapshot, checked)
+    diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path))
+    return CheckResult(diagnostics, files, problems, snapshot)
+
+
+def fix(result: CheckResult) -> dict[str, bytes]:
+    """The texts of the checked files after all safe fixes have been applied. Nothing is written.
+
+    A safe fix removes nothing that has an effect and guesses nothing. Unchanged files and files that are not valid text
+    are left out.
+    """
+    sources = {path: result.source(path) for path in result.files}
+    mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
+    texts = fix_all(result.snapshot, mendable, safe_fix, careful=True)
+    return {path: sources[path].encode(text) for path, text in texts.items()}
+
+
+_HALF = re.compile("[\ud800-\udfff]")
+
+
+def _is_text(text: str) -> bool:
+    """Whether a text that was not read from a file can be encoded: lone surrogates cannot."""
+    return _HALF.search(text) is None
+
+
+def _workspace(
+    named: list[str], settings: Settings, texts: Mapping[str, str | bytes]
+) -> tuple[Workspace, dict[str, FileKind]]:
+    """The workspace in which the named paths are checked, and the kinds of the files among them."""
+    folders = [path for path in named if os.path.isdir(path)]
+    single = Workspace((), settings)
+    for path, text in texts.items():
+        single.open(path, text)
+    analysis = single.snapshot().analysis
+    kinds = {path: analysis.kind(path) for path in named if path not in folders}
+    for path in kinds:
+        problem = analysis.files.read(path)
+        if isinstance(problem, Problem):
+            raise PathError(f"{path}: {problem.value}")
+    systems = [path for path, kind in kinds.items() if kind is FileKind.SYSTEM]
+    roots = list(folders)
+    others = [path for path in kinds if path not in systems]
+    for path in others:
+        if not any(is_inside(path, folder) for folder in folders):
+            roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
+    interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
+    # A link stands for the file that it leads to.
+    interfaces += [os.path.dirname(os.path.realpath(path)) for path in others if os.path.islink(path)]
+    workspace = Workspace(dict.fromkeys(roots), settings, systems, packages=dict.fromkeys((*roots, *interfaces)))
+    for path, text in texts.items():
+        workspace.open(path, text)
+    return workspace, kinds
+
+
+def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
+    """The files that are reported on, in this order: the configuration, and the named paths."""
+    analysis, found = snapshot.analysis, dict[str, None]()
+    if origin := snapshot.checker.settings.origin:  # errors in it affect all of them
+        found[origin] = None
+    for path in named:
+        if path not in kinds:
+            inside = [each for each in snapshot.files() if is_inside(each, path)]
+            systems = [each for each in inside if analysis.kind(each) is FileKind.SYSTEM]
+            found.update(dict.fromkeys(each for system in systems for each in analysis.files_of(system)))
+            found.update(dict.fromkeys(inside))
+        elif kinds[path] is FileKind.SYSTEM:
+            found.update(dict.fromkeys(analysis.files_of(path)))
+        else:
+            found[path] = None
+    return tuple(path for path in found if analysis.source(path) is not None)

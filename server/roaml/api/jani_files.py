@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JANI models in files."""
+
+from __future__ import annotations
+
+import os
+
+from roaml.api.checking import PathError
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.disk import MAX_DATA, NotReadableError, required
+from roaml.jani.model import Model
+from roaml.jani.reader import read_model
+from roaml.json_syntax import parse
+from roaml.text import SourceFile, decode
+
+
+class JaniError(ValueError):
+    """A JANI file has errors: `diagnostics`, with positions in `source`."""
+
+    def __init__(self, diagnostics: tuple[Diagnostic, ...], source: SourceFile) -> None:
+        super().__init__(f"{diagnostics[0].path}: {diagnostics[0].message}")
+        self.diagnostics = diagnostics
+        self.source = source
+
+
+def read_jani(path: str) -> tuple[Model, SourceFile]:
+    """Read a JANI model; its positions are those in the file.
+
+    Raises:
+        PathError: the file cannot be read.
+        JaniError: it is not a JANI model, or has errors.
+    """
+    path = os.path.abspath(path)
+    try:
+        source = decode(path, required(path, MAX_DATA))
+    except NotReadableError as error:
+        raise PathError(str(error)) from None
+    if source.undecodable is not None:
+        raise PathError(f"{path}: not valid UTF-8; fix the encoding")
+    value, syntax = parse(source.text)
+    model, findings = (None, ()) if syntax else read_model(value, path)
+    diagnostics = tuple(
+        Diagnostic(path, found.code, found.severity or Severity.ERROR, found.span, found.message)
+        for found in (*syntax, *findings)
+    )
+    errors = tuple(diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR)
+    if errors or model is None:
+        raise JaniError(errors or diagnostics, source)
+    return model, source

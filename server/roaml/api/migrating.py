@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Moving systems to the current dialect."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from roaml.api.checking import PathError, check
+from roaml.project.analysis import Analysis
+from roaml.project.configuration import find_settings
+from roaml.project.migrate import Migration
+from roaml.project.migrate import migrate as _migrate
+from roaml.project.settings import Settings, enclosing_root
+from roaml.project.workspace import Snapshot, Workspace
+
+
+class SharedFileError(ValueError):
+    """Systems that are not migrated would break. `shared` are the files that they use and that would change."""
+
+    def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
+        path, systems = next(iter(shared.items()))
+        super().__init__(f"{path}: also used by {', '.join(systems)}; migrate them together")
+        self.shared = shared
+
+    @property
+    def systems(self) -> tuple[str, ...]:
+        """The systems that would have to be migrated as well, without duplicates."""
+        return tuple(dict.fromkeys(system for systems in self.shared.values() for system in systems))
+
+
+def migrate(
+    paths: Iterable[str],
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    *,
+    with_related: bool = False,
+) -> tuple[Migration, ...]:
+    """The changes that migrate systems to the current dialect. Nothing is written.
+
+    Args:
+        paths: system files, or folders that are searched for them.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        with_related: whether to also migrate the systems that would break because they share a file, and so on. They
+            are searched for in the repository around each system, or in the folder around its files.
+
+    Raises:
+        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is not valid text.
+        SharedFileError: another system would break; only if not `with_related`.
+    """
+    paths = [os.path.abspath(path) for path in paths]
+    if settings is None:
+        settings, _ = find_settings(paths[0] if paths else os.getcwd())
+    # Files that are not reported are migrated as well.
+    settings = replace(settings, select=frozenset(), ignore=frozenset())
+    result = check(paths, ros_paths, settings)
+    systems = result.snapshot.analysis.system_paths
+    for path in paths:
+        if not os.path.isdir(path) and path not in systems:
+            raise PathError(f"{path}: not a system file; only systems can be migrated, so name the system file")
+
+    def snapshot_of(texts: Mapping[str, str]) -> Snapshot:
+        return check(systems, ros_paths, settings, texts).snapshot
+
+    migrations = _migrate(systems, snapshot_of) if systems else ()
+    for migration in migrations:
+        if result.source(migration.path).undecodable is not None:
+            raise PathError(f"{migration.path}: not valid UTF-8; fix the encoding")
+    around = _around(systems, result.snapshot.analysis, settings) if migrations else None
+    shared = {} if around is None else _broken(migrations, frozenset(systems), around)
+    if not shared:
+        return migrations
+    error = SharedFileError(shared)
+    if not with_related:
+        raise error
+    return migrate([*paths, *error.systems], ros_paths, settings, with_related=True)
+
+
+def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
+    """For each file that changes, the systems that it breaks, other than those being migrated: the file is renamed, or
+    causes errors."""
+    memberships = around.analysis.memberships
+    shared: dict[str, tuple[str, ...]] = {}
+    for each in migrations:
+        others = [system for system in memberships.get(each.path, ()) if system not in migrated]
+        if others and each.path == each.new_path:
+            after = around.with_texts({each.path: each.after})
+            others = [s for s in others if len(after.checker.errors(s)) > len(around.checker.errors(s))]
+        if others:
+            shared[each.path] = tuple(others)
+    return shared
+
+
+def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
+    """The files in the configured roots, and in the repositories of some systems or otherwise around their files."""
+    roots = dict.fromkeys(settings.roots)
+    for system in systems:
+        folders = {os.path.dirname(path) for path in analysis.files_of(system)}
+        roots[enclosing_root(system) or os.path.commonpath(folders)] = None
+    return Workspace(roots, settings).snapshot()

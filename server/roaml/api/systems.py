@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Systems without errors, and their translation to plain SCXML and to JANI."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from roaml.api.checking import CheckResult, PathError, check
+from roaml.jani.model import Model
+from roaml.jani.properties import Property
+from roaml.jani.selection import select
+from roaml.lower import lower
+from roaml.model.kinds import FileKind
+from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.project.analysis import Analysis
+from roaml.project.configuration import find_settings
+from roaml.project.settings import Settings, ament_prefixes
+from roaml.project.source_map import SourceMap
+from roaml.project.source_map import source_map as _source_map
+from roaml.project.translation import program_of, properties_of
+from roaml.project.workspace import Snapshot
+from roaml.scxml.model import Network
+from roaml.to_jani import translate
+
+
+class ModelError(ValueError):
+    """A system has errors and cannot be translated. `result` contains only these errors."""
+
+    def __init__(self, result: CheckResult) -> None:
+        first = result.diagnostics[0]
+        more = f", and {len(result.diagnostics) - 1} more" if len(result.diagnostics) > 1 else ""
+        super().__init__(f"{first.path}: {first.message}{more}")
+        self.result = result
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedSystem:
+    """A system without errors, with its files as they were when it was loaded.
+
+    Attributes:
+        path: the system file.
+        properties: those in its property files, in their order.
+        analysis: the models behind it.
+    """
+
+    path: str
+    properties: tuple[Property, ...]
+    analysis: Analysis
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """All files of the system, the system file first."""
+        return self.analysis.files_of(self.path)
+
+
+def load(
+    path: str,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    texts: Mapping[str, str | bytes] | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+) -> LoadedSystem:
+    """Read and check a system, to translate it.
+
+    Args:
+        path: the system file.
+        ros_paths, settings, texts: as for `check`.
+        overrides: parameters that replace those in the system file.
+
+    Raises:
+        PathError: the path cannot be read, or is not a system file.
+        ModelError: the system has errors.
+    """
+    if settings is None:
+        settings, _ = find_settings(os.path.abspath(path))
+        settings = replace(settings, ament_prefixes=ament_prefixes())
+    snapshot = check([path], ros_paths, replace(settings, overrides=overrides), texts).snapshot
+    return loaded(snapshot, os.path.abspath(path))
+
+
+def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
+    """A system of a workspace.
+
+    Args:
+        path: the absolute path of the system file.
+
+    Raises:
+        PathError: the path is not a system file.
+        ModelError: the system has errors.
+    """
+    analysis = snapshot.analysis
+    if analysis.kind(path) is not FileKind.SYSTEM or analysis.system(path) is None:
+        raise PathError(f"{path}: not a system file")
+    errors = snapshot.checker.errors(path)
+    if errors:
+        raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
+    return LoadedSystem(path, properties_of(analysis, path), analysis)
+
+
+def to_scxml(system: LoadedSystem) -> Network:
+    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` creates the files."""
+    return lower(program_of(system.analysis, system.path))
+
+
+def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Model:
+    """The system as a network of Markov decision processes. `roaml.jani.write` creates the text.
+
+    Args:
+        properties: the names of the properties to include; `None` for all.
+
+    Raises:
+        PropertyError: the system has no property with one of the names.
+    """
+    chosen = system.properties if properties is None else select(system.properties, properties, "system")
+    return translate(to_scxml(system), chosen)
+
+
+def source_map(system: LoadedSystem, model: Model) -> SourceMap:
+    """The sources of every automaton, edge and variable of a translated model, as a value for JSON."""
+    return _source_map(model, system.analysis, system.path)

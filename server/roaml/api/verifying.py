@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verifying properties. What it takes is imported only when it is used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING
+
+from roaml.api.jani_files import read_jani
+from roaml.api.systems import LoadedSystem, load, to_jani
+from roaml.jani.constants import with_constants
+from roaml.jani.model import Model
+from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.project.settings import Settings
+
+if TYPE_CHECKING:
+    from roaml.smc.model import Checker
+    from roaml.smc.run import Options
+    from roaml.verification.expectations import Expectation
+    from roaml.verification.results import Result
+    from roaml.verification.target import Target
+    from roaml.verification.verifier import Verifier
+
+
+class ConstantError(ValueError):
+    """A constant cannot have this value, or a model has no such constant or parameter; the message says why."""
+
+
+def target(
+    path: str,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    texts: Mapping[str, str | bytes] | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+    constants: Sequence[str] = (),
+) -> Target:
+    """Read what is to be verified; a file whose name ends in `.jani` is a JANI model, any other one a system.
+
+    Args:
+        path: the system file, or a JANI model.
+        ros_paths, settings, texts, overrides: as for `load`.
+        constants: `NAME=VALUE`, for constants that a JANI model declares without a value.
+
+    Raises:
+        ConstantError: there is no such constant or parameter, or the value does not fit.
+        PathError: the file cannot be read, or is not a system file.
+        ModelError: the system has errors.
+        JaniError: the JANI model has errors.
+    """
+    from roaml.verification.target import target_of  # noqa: PLC0415
+
+    if not path.endswith(".jani"):
+        if constants:
+            raise ConstantError("a system has no constants; they are for JANI models")
+        return as_target(load(path, ros_paths, settings, texts, overrides))
+    if overrides != NO_OVERRIDES:
+        raise ConstantError("a JANI model has no parameters to override; they are for systems")
+    model, source = read_jani(path)
+    try:
+        model = with_constants(model, constants)
+    except ValueError as error:
+        raise ConstantError(str(error)) from None
+    return target_of(model, path, (path,), lambda _: source)
+
+
+def as_target(subject: Target | LoadedSystem | Model) -> Target:
+    """A system, which is translated, or a model, as what is verified."""
+    from roaml.verification.target import target_of  # noqa: PLC0415
+
+    if isinstance(subject, LoadedSystem):
+        return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
+    return target_of(subject) if isinstance(subject, Model) else subject
+
+
+def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
+    """A model, compiled for some of its properties, to make traces of it step by step.
+
+    Args:
+        properties: their names; all if not given. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
+            which every translated system can be asked.
+
+    Raises:
+        PropertyError: the model has no property of a name.
+        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
+            are in `refused`.
+    """
+    from roaml.verification.verifier import checker_of  # noqa: PLC0415
+
+    return checker_of(as_target(model), properties)
+
+
+def verifier(
+    subject: Target | LoadedSystem | Model,
+    properties: Sequence[str] | None = None,
+    options: Options | None = None,
+    expectations: Iterable[str | Expectation] = (),
+    *,
+    only_uniform: bool = False,
+) -> Verifier:
+    """A system or model made ready to be verified property by property: to watch, to interrupt and to go on.
+
+    Args:
+        subject, properties, options, expectations, only_uniform: as for `verify`.
+
+    Raises:
+        PropertyError, FaultError, ValueError: as for `verify`.
+    """
+    from roaml.verification import expectations as _expectations  # noqa: PLC0415
+    from roaml.verification.verifier import verifier_of  # noqa: PLC0415
+
+    parsed = [_expectations.parse(e) if isinstance(e, str) else e for e in expectations]
+    return verifier_of(as_target(subject), properties, options, parsed, only_uniform=only_uniform)
+
+
+def verify(
+    subject: Target | LoadedSystem | Model,
+    properties: Sequence[str] | None = None,
+    options: Options | None = None,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    *,
+    expectations: Iterable[str | Expectation] = (),
+    only_uniform: bool = False,
+) -> Iterator[Result]:
+    """Estimate how probable properties are, by random traces with uniform choices. Results come one by one.
+
+    Args:
+        subject: a system, a JANI model, or what `target` gives.
+        properties: their names; all if not given. `stuck` asks whether traces get stuck.
+        options: confidence, width of the interval, seed and limits.
+        jobs: processes to use; has no influence on the results.
+        executor: where to run batches of traces instead.
+        expectations: such as `alarm >= 0.95`; each gives a verdict in the result of its property.
+        only_uniform: whether only uniform choices are asked about. If not, it is looked into whether other schedulers
+            give other values, and verdicts say so.
+
+    Raises:
+        PropertyError: there is no property of a name.
+        FaultError: the model cannot be run. A property that cannot be answered has a result with a `refusal`.
+        WorkersLostError: processes die again and again.
+        ValueError: an option or expectation makes no sense.
+    """
+    from roaml.smc.pool import Pool  # noqa: PLC0415
+
+    ready = verifier(subject, properties, options, expectations, only_uniform=only_uniform)
+    with Pool(jobs, executor) as pool:
+        for name in ready.names:
+            yield ready.verify(name, pool)

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The end of a `match` over a closed set, as `typing.assert_never` of Python 3.11.
+
+A type checker reports a case that is missing.
+"""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+
+def assert_never(value: NoReturn) -> NoReturn:
+    raise AssertionError(f"unexpected value: {value!r}")

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Choosing properties by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from roaml.jani.properties import Property
+
+
+class PropertyError(ValueError):
+    """There is no property of a name; the message lists the properties that there are."""
+
+
+def select(
+    properties: Sequence[Property], names: Iterable[str], owner: str, others: Sequence[str] = ()
+) -> tuple[Property, ...]:
+    """The properties of some names, in the order of the names.
+
+    Args:
+        owner: what has the properties, for the message: `model` or `system`.
+        others: names that can be asked for besides; for the message.
+
+    Raises:
+        PropertyError: there is no property of a name.
+    """
+    by_name = {property_.name: property_ for property_ in properties}
+    chosen = []
+    for name in names:
+        if name not in by_name:
+            known = ", ".join([*by_name, *others]) or "none"
+            raise PropertyError(f"there is no property {name}; the {owner} has: {known}")
+        chosen.append(by_name[name])
+    return tuple(chosen)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes of the libraries of behavior trees, as data: BehaviorTree.CPP and Nav2.
+
+Kinds, ports, types and defaults of nodes are stated in the XML files of this package only. The node elements of
+`schemas/behaviortree.xsd` are written from them.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.resources
+from typing import Any
+
+from lxml import etree
+
+from roaml.libraries.node import UNBOUNDED, Absent, Direction, Library, Node, NodeKind, Port, Renamed
+
+__all__ = [
+    "BEHAVIORTREE_CPP",
+    "LIBRARIES",
+    "UNBOUNDED",
+    "Absent",
+    "Direction",
+    "Library",
+    "Node",
+    "NodeKind",
+    "Port",
+    "Renamed",
+    "library",
+]
+
+BEHAVIORTREE_CPP = "behaviortree_cpp"
+"""The library that all trees have."""
+
+LIBRARIES = ("nav2",)
+"""The further libraries, as settings name them."""
+
+
+@functools.cache
+def library(name: str) -> Library:
+    """The library that is called `name`: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
+    data = (importlib.resources.files(__name__) / f"{name}.xml").read_bytes()
+    return _read(etree.fromstring(data))
+
+
+def _read(root: Any) -> Library:
+    nodes: dict[str, Node] = {}
+    renamed: dict[str, Renamed] = {}
+    absent: dict[str, Absent] = {}
+    groups = {group.get("id"): tuple(map(_port, group)) for group in root.iterchildren("ports")}
+    for element in root.iterchildren("control", "decorator", "action", "condition"):
+        node = _node(element, groups.get(element.get("use"), ()), root.get("name"))
+        nodes[node.name] = node
+    for element in root.iterchildren("renamed"):
+        renamed[element.get("id")] = Renamed(element.get("id"), element.get("to"))
+    for element in root.iterchildren("absent"):
+        name, kind = element.get("id"), NodeKind(element.get("kind"))
+        hint = element.get("not-translated", "")
+        absent[name] = Absent(name, kind, _text(element), element.get("instead", ""), hint)
+    entries = frozenset(element.get("name") for element in root.iterchildren("entry"))
+    return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries)
+
+
+def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
+    kind = NodeKind(element.tag)
+    running = element.get("running")
+    return Node(
+        element.get("id"),
+        kind,
+        (*map(_port, element.iterchildren("in", "out", "inout")), *more),
+        _children(element.get("children")) or kind.children,
+        _text(element),
+        library_name,
+        element.get("since", ""),
+        element.get("until", ""),
+        None if running is None else running == "true",
+        element.get("not-translated"),
+        element.get("in-systems", ""),
+    )
+
+
+def _port(element: Any) -> Port:
+    return Port(
+        element.get("name"),
+        Direction(element.tag),
+        element.get("type"),
+        element.get("default"),
+        element.get("required") == "true",
+        _text(element),
+        element.get("alias-of", ""),
+        element.get("system-type", ""),
+        element.get("system-direction", ""),
+        element.get("system-constant") == "true",
+    )
+
+
+def _children(text: str | None) -> tuple[int, int] | None:
+    """`2`, `2-3` or `2-` for at least two."""
+    if text is None:
+        return None
+    least, dash, most = text.partition("-")
+    return int(least), int(most) if most else UNBOUNDED if dash else int(least)
+
+
+def _text(element: Any) -> str:
+    return " ".join((element.text or "").split())

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Formulas as text: `H ({ level < 30 } S[:5] { alarm })` (docs/spec/xml-properties.md#formulas).
+
+- Parsing never fails: what cannot be read is a problem with its place, and there is no formula then.
+- What is in braces is an atom. Its text is not looked into; equal texts are the same atom.
+- From tight to loose: `!`, `H` and `O`; `S`; `&&`; `||`; `->`. `S`, `&&` and `||` group to the left, `->` to the right.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Since, Window, historically, implies, once
+from roaml.text import Span
+
+MAX_DEPTH = 100
+"""How deep parentheses and operators may nest."""
+MAX_OPERATORS = 200
+"""How many binary operators a formula may have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Notation:
+    """What was read.
+
+    Attributes:
+        formula: `None` if there are problems.
+        atoms: the places of the texts in braces, without the braces.
+        problems: places and messages.
+    """
+
+    formula: Formula | None
+    atoms: tuple[Span, ...]
+    problems: tuple[tuple[Span, str], ...]
+
+
+def read(text: str) -> Notation:
+    """Spans are offsets in `text`."""
+    parser = _Parser(text)
+    try:
+        formula: Formula | None = parser.whole()
+    except _ProblemError as error:
+        return Notation(None, tuple(parser.atoms), ((error.span, error.message),))
+    return Notation(formula, tuple(parser.atoms), ())
+
+
+class _ProblemError(Exception):
+    def __init__(self, span: Span, message: str) -> None:
+        super().__init__(message)
+        self.span = span
+        self.message = message
+
+
+class _Token(NamedTuple):
+    kind: str
+    text: str
+    span: Span
+
+
+_SPELLINGS = {
+    "&&": "and",
+    "and": "and",
+    "||": "or",
+    "or": "or",
+    "!": "not",
+    "not": "not",
+    "->": "implies",
+    "implies": "implies",
+    "S": "since",
+    "since": "since",
+    "H": "historically",
+    "historically": "historically",
+    "O": "once",
+    "once": "once",
+    "(": "(",
+    ")": ")",
+    "true": "true",
+    "false": "false",
+}
+_BINARY = frozenset(("and", "or", "implies", "since"))
+_TOKEN = re.compile(
+    r"(?P<space>\s+)"
+    r"|(?P<atom>\{(?:[^{}'\"]|'[^']*'|\"[^\"]*\")*\})"
+    r"|(?P<bounds>\[[^\[\]]*\])"
+    r"|(?P<word>&&|\|\||->|[!()]|[A-Za-z_]+)"
+    r"|(?P<other>.)",
+    re.DOTALL,
+)
+_BOUNDS = re.compile(r"\[\s*(\d{0,18})\s*:\s*(\d{0,18})\s*\]", re.ASCII)
+
+
+def _tokens(text: str) -> Iterator[_Token]:
+    for match in _TOKEN.finditer(text):
+        kind, span = match.lastgroup or "other", Span(*match.span())
+        if kind == "word":
+            yield _Token(_SPELLINGS.get(match[0], "other"), match[0], span)
+        elif kind != "space":
+            yield _Token(kind, match[0], span)
+    yield _Token("end", "", Span(len(text), len(text)))
+
+
+class _Parser:
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens = list(_tokens(text))
+        self.at = 0
+        self.depth = 0
+        self.operators = 0
+        self.atoms = [Span(t.span.start + 1, t.span.end - 1) for t in self.tokens if t.kind == "atom"]
+
+    @property
+    def next(self) -> _Token:
+        return self.tokens[self.at]
+
+    def take(self) -> _Token:
+        token = self.next
+        if token.kind != "end":
+            self.at += 1
+        return token
+
+    def accept(self, kind: str) -> bool:
+        if self.next.kind != kind:
+            return False
+        self.take()
+        self.operators += kind in _BINARY
+        if self.operators > MAX_OPERATORS:
+            raise _ProblemError(self.next.span, f"the formula has more than {MAX_OPERATORS} binary operators")
+        return True
+
+    def whole(self) -> Formula:
+        formula = self.implication()
+        if self.next.kind != "end":
+            raise _ProblemError(
+                self.next.span, f"an operator or the end of the formula is expected before `{self.next.text}`"
+            )
+        return formula
+
+    def implication(self) -> Formula:
+        left = self.disjunction()
+        if self.accept("implies"):
+            return self.deeper(lambda: implies(left, self.implication()))
+        return left
+
+    def disjunction(self) -> Formula:
+        formula = self.conjunction()
+        while self.accept("or"):
+            formula = Or(formula, self.conjunction())
+        return formula
+
+    def conjunction(self) -> Formula:
+        formula = self.since()
+        while self.accept("and"):
+            formula = And(formula, self.since())
+        return formula
+
+    def since(self) -> Formula:
+        formula = self.unary()
+        while self.accept("since"):
+            window = self.window()
+            formula = Since(formula, self.unary(), window)
+        return formula
+
+    def unary(self) -> Formula:
+        return self.deeper(self._unary)
+
+    def _unary(self) -> Formula:
+        token = self.take()
+        match token.kind:
+            case "not":
+                return Not(self.unary())
+            case "historically":
+                window = self.window()
+                return historically(self.unary(), window)
+            case "once":
+                window = self.window()
+                return once(self.unary(), window)
+            case "true" | "false":
+                return Constant(token.kind == "true")
+            case "atom":
+                content = token.text[1:-1].strip()
+                if not content:
+                    raise _ProblemError(token.span, "there is no condition in these braces")
+                return Atom(content)
+            case "(":
+                formula = self.implication()
+                if not self.accept(")"):
+                    raise _ProblemError(self.next.span, "`)` is expected")
+                return formula
+            case "bounds":
+                raise _ProblemError(token.span, "bounds belong to `S`, `H` or `O`: `O[:5] { alarm }`")
+            case "end":
+                raise _ProblemError(token.span, "a condition in braces is expected: `{ level < 30 }`")
+        raise _ProblemError(
+            token.span, f"a condition in braces is expected instead of `{token.text}`: `{{ level < 30 }}`"
+        )
+
+    def window(self) -> Window:
+        if self.next.kind != "bounds":
+            return Window()
+        token = self.take()
+        match = _BOUNDS.fullmatch(token.text)
+        if match is None:
+            raise _ProblemError(token.span, "bounds are whole clock steps: `[1:5]`, `[:5]` or `[1:]`")
+        lower, upper = int(match[1] or 0), int(match[2]) if match[2] else None
+        if upper is not None and upper < lower:
+            raise _ProblemError(token.span, f"the lower bound {lower} is greater than the upper bound {upper}")
+        return Window(lower, upper)
+
+    def deeper(self, parse: Callable[[], Formula]) -> Formula:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise _ProblemError(self.next.span, f"the formula is nested more than {MAX_DEPTH} levels deep")
+        formula = parse()
+        self.depth -= 1
+        return formula

@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A pattern in a scope -> its observer.
+
+A *stretch* is a part of the trace that a scope selects. The scope opens and closes stretches; the pattern judges the
+open one. At most one is open at a time.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from roaml.observers.parts import TICK, Age, Builder, Delay, Recent
+from roaml.observers.program import (
+    FALSE,
+    TRUE,
+    Expression,
+    Input,
+    Observer,
+    Outputs,
+    at_least,
+    at_most,
+    conjunction,
+    disjunction,
+    equal,
+    negation,
+)
+from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, ScopeKind, Window
+
+
+def observe_pattern(property_: PatternProperty) -> Observer:
+    builder = Builder()
+    violated = builder.flag("violated")
+    satisfied = None if property_.scope.has_until else builder.flag("satisfied")
+    exercised = builder.flag("exercised") if _can_be_vacuous(property_) else None
+    scope = _Scope(builder, property_.scope)
+    judge = _judge(builder, property_, scope.is_open_at_first)
+    is_deferred = property_.scope.is_judged_at_close
+    bad = builder.flag("bad") if is_deferred else violated
+    asked = builder.flag("asked") if is_deferred and exercised is not None else None
+
+    # A stretch that ends before this letter.
+    closes = builder.temporary("closes", scope.closes)
+    if closes != FALSE:
+        builder.raise_if(violated, conjunction(closes, disjunction(bad if is_deferred else FALSE, judge.owes)))
+        if satisfied is not None:
+            builder.raise_if(satisfied, conjunction(closes, negation(violated)))
+        if asked is not None and exercised is not None:
+            builder.raise_if(exercised, conjunction(closes, asked))
+    judge.advance()
+    if closes != FALSE:
+        judge.clear(closes)
+        for flag in dict.fromkeys((bad, asked)) if is_deferred else ():
+            if flag is not None:
+                builder.set(flag, conjunction(flag, negation(closes)))
+
+    # The stretch that this letter is in.
+    opens = builder.temporary("opens", scope.opens)
+    scope.update(opens, closes)
+    if opens != FALSE:
+        judge.open(opens)
+    builder.raise_if(bad, conjunction(scope.inside, judge.read(scope.inside)))
+    if satisfied is not None:
+        safe = conjunction(scope.inside, judge.is_safe, negation(bad), negation(violated))
+        builder.raise_if(satisfied, safe)
+    if exercised is not None:
+        builder.raise_if(exercised if asked is None else asked, conjunction(scope.inside, judge.asks))
+    builder.finish()
+    pending, due = FALSE if is_deferred else judge.owes, FALSE if is_deferred else judge.is_due
+    outputs = Outputs(
+        violated, satisfied, conjunction(scope.inside, pending), conjunction(scope.inside, due), exercised
+    )
+    return Observer(property_.inputs, tuple(builder.registers), tuple(builder.assignments), outputs)
+
+
+def _can_be_vacuous(property_: PatternProperty) -> bool:
+    return property_.pattern.is_binary or property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.UNTIL)
+
+
+# ----------------------------------------------------------------------- scopes
+
+
+class _Scope:
+    """Which letters are in a stretch (docs/spec/xml-properties.md#scopes)."""
+
+    def __init__(self, builder: Builder, kind: ScopeKind) -> None:
+        self.builder = builder
+        self.kind = kind
+        self.is_open_at_first = kind in (ScopeKind.GLOBALLY, ScopeKind.BEFORE, ScopeKind.UNTIL)
+        self.flag = None if kind is ScopeKind.GLOBALLY else builder.flag("inside", self.is_open_at_first)
+
+    @property
+    def inside(self) -> Expression:
+        return TRUE if self.flag is None else self.flag
+
+    @property
+    def closes(self) -> Expression:
+        """Whether the open stretch ends before this letter."""
+        match self.kind:
+            case ScopeKind.GLOBALLY | ScopeKind.AFTER:
+                return FALSE
+            case ScopeKind.BEFORE | ScopeKind.UNTIL:
+                return conjunction(self.inside, Input(OPEN))
+            case ScopeKind.BETWEEN | ScopeKind.AFTER_UNTIL:
+                return conjunction(self.inside, Input(CLOSE))
+
+    @property
+    def opens(self) -> Expression:
+        """Whether a stretch begins with this letter; the first letter of the trace begins one without that."""
+        match self.kind:
+            case ScopeKind.GLOBALLY | ScopeKind.BEFORE | ScopeKind.UNTIL:
+                return FALSE
+            case ScopeKind.AFTER:
+                return conjunction(negation(self.inside), Input(OPEN))
+            case ScopeKind.BETWEEN | ScopeKind.AFTER_UNTIL:
+                return conjunction(negation(self.inside), Input(OPEN), negation(Input(CLOSE)))
+
+    def update(self, opens: Expression, closes: Expression) -> None:
+        if self.flag is not None:
+            self.builder.set(self.flag, disjunction(opens, conjunction(self.flag, negation(closes))))
+
+
+# --------------------------------------------------------------------- patterns
+
+
+class _Judge(Protocol):
+    """A pattern in a stretch (docs/spec/xml-properties.md#patterns). What it remembers has one value while no stretch
+    is open.
+
+    Attributes:
+        owes: something is still to come, or the stretch violates the pattern.
+        is_due: the same, and its deadline is now, or it has none.
+        is_safe: the stretch holds, whatever is still to come in it.
+        asks: this letter is one that the pattern says something about.
+    """
+
+    @property
+    def owes(self) -> Expression: ...
+    @property
+    def is_due(self) -> Expression: ...
+    @property
+    def is_safe(self) -> Expression: ...
+    @property
+    def asks(self) -> Expression: ...
+
+    def advance(self) -> None:
+        """Let the clock step pass, if this letter is one."""
+
+    def clear(self, closes: Expression) -> None:
+        """Forget everything, if `closes`."""
+
+    def open(self, opens: Expression) -> None:
+        """Begin a stretch at this letter, if `opens`."""
+
+    def read(self, inside: Expression) -> Expression:
+        """Read this letter, if it is `inside` the stretch.
+
+        Returns:
+            Whether the stretch violates the pattern, if it is open.
+        """
+
+
+def _judge(builder: Builder, property_: PatternProperty, is_open: bool) -> _Judge:
+    match property_.pattern:
+        case Pattern.UNIVERSALITY:
+            return _Always(builder, property_.window, is_open, Input(LEFT))
+        case Pattern.ABSENCE:
+            return _Always(builder, property_.window, is_open, negation(Input(LEFT)))
+        case Pattern.EXISTENCE:
+            return _Existence(builder, property_.window, is_open)
+        case Pattern.RESPONSE:
+            return _Response(builder, property_.window)
+        case Pattern.PRECEDENCE:
+            return _Precedence(builder, property_.window)
+        case Pattern.RECURRENCE:
+            assert property_.window.upper is not None
+            return _Recurrence(builder, property_.window.upper, is_open)
+
+
+class _Stretch:
+    """How long the stretch has been open, as far as the window asks for it."""
+
+    def __init__(self, builder: Builder, window: Window, is_open: bool) -> None:
+        self.window = window
+        self.limit = window.lower if window.upper is None else window.upper + 1
+        self.age = None if window.is_unbounded else Age(builder, "elapsed", self.limit, 0 if is_open else None)
+
+    def advance(self) -> None:
+        if self.age is not None:
+            self.age.advance()
+
+    def clear(self, closes: Expression) -> None:
+        if self.age is not None:
+            self.age.forget(closes)
+
+    def open(self, opens: Expression) -> None:
+        if self.age is not None:
+            self.age.reset(opens)
+
+    @property
+    def is_in_window(self) -> Expression:
+        if self.age is None:
+            return TRUE
+        begun = at_least(self.age.register, self.window.lower) if self.window.lower else TRUE
+        passed = FALSE if self.window.upper is None else at_least(self.age.register, self.window.upper + 1)
+        return conjunction(begun, negation(passed))
+
+    @property
+    def is_over(self) -> Expression:
+        """Whether the window has passed."""
+        return FALSE if self.age is None or self.window.upper is None else equal(self.age.register, self.limit)
+
+    @property
+    def is_last(self) -> Expression:
+        """Whether the window has no upper bound, or its last clock step has come."""
+        if self.age is None or self.window.upper is None:
+            return TRUE
+        return at_least(self.age.register, self.window.upper)
+
+
+class _Always:
+    """Every letter in the window has `holds`."""
+
+    owes: Expression = FALSE
+    is_due: Expression = FALSE
+
+    def __init__(self, builder: Builder, window: Window, is_open: bool, holds: Expression) -> None:
+        self.stretch = _Stretch(builder, window, is_open)
+        self.holds = holds
+
+    @property
+    def is_safe(self) -> Expression:
+        return self.stretch.is_over
+
+    @property
+    def asks(self) -> Expression:
+        return self.stretch.is_in_window
+
+    def advance(self) -> None:
+        self.stretch.advance()
+
+    def clear(self, closes: Expression) -> None:
+        self.stretch.clear(closes)
+
+    def open(self, opens: Expression) -> None:
+        self.stretch.open(opens)
+
+    def read(self, inside: Expression) -> Expression:
+        return conjunction(self.stretch.is_in_window, negation(self.holds))
+
+
+class _Existence:
+    """Some letter in the window has the condition."""
+
+    asks: Expression = TRUE
+
+    def __init__(self, builder: Builder, window: Window, is_open: bool) -> None:
+        self.builder = builder
+        self.stretch = _Stretch(builder, window, is_open)
+        self.seen = builder.flag("seen")
+
+    @property
+    def owes(self) -> Expression:
+        return negation(self.seen)
+
+    @property
+    def is_due(self) -> Expression:
+        return conjunction(negation(self.seen), self.stretch.is_last)
+
+    @property
+    def is_safe(self) -> Expression:
+        return self.seen
+
+    def advance(self) -> None:
+        self.stretch.advance()
+
+    def clear(self, closes: Expression) -> None:
+        self.stretch.clear(closes)
+        self.builder.set(self.seen, conjunction(self.seen, negation(closes)))
+
+    def open(self, opens: Expression) -> None:
+        self.stretch.open(opens)
+
+    def read(self, inside: Expression) -> Expression:
+        self.builder.raise_if(self.seen, conjunction(inside, self.stretch.is_in_window, Input(LEFT)))
+        return conjunction(self.stretch.is_over, negation(self.seen))
+
+
+class _Response:
+    """Each request is answered at a distance in the window. Only the oldest open request matters: what answers it
+    answers all others whose window has begun, and it is the first to be late."""
+
+    is_safe: Expression = FALSE
+
+    def __init__(self, builder: Builder, window: Window) -> None:
+        self.builder = builder
+        self.window = window
+        self.delay = Delay(builder, "requests", window.lower) if window.lower else None
+        self.flag = builder.flag("waiting") if window.upper is None else None
+        self.age = None if window.upper is None else Age(builder, "waiting", window.upper + 1)
+        self.is_late: Expression = FALSE
+
+    @property
+    def _waits(self) -> Expression:
+        if self.flag is not None:
+            return self.flag
+        assert self.age is not None
+        assert self.window.upper is not None
+        return at_most(self.age.register, self.window.upper)
+
+    @property
+    def owes(self) -> Expression:
+        return self._waits if self.delay is None else disjunction(self._waits, negation(self.delay.is_empty))
+
+    @property
+    def is_due(self) -> Expression:
+        if self.age is None:
+            return self.owes
+        assert self.window.upper is not None
+        return equal(self.age.register, self.window.upper)
+
+    @property
+    def asks(self) -> Expression:
+        return Input(LEFT)
+
+    def advance(self) -> None:
+        if self.age is not None:
+            self.is_late = self.builder.temporary("late", conjunction(TICK, self.is_due))
+            self.age.advance()
+        if self.delay is not None:
+            self._begin(self.delay.advance("matured"), self.window.lower)
+
+    def _begin(self, condition: Expression, age: int) -> None:
+        """The window of a request begins."""
+        if self.flag is not None:
+            self.builder.raise_if(self.flag, condition)
+        if self.age is not None:
+            self.age.reset(conjunction(condition, negation(self._waits)), age)
+
+    def clear(self, closes: Expression) -> None:
+        if self.delay is not None:
+            self.delay.clear(closes)
+        self._end(closes)
+
+    def _end(self, condition: Expression) -> None:
+        """All requests whose window has begun are answered or forgotten."""
+        if self.flag is not None:
+            self.builder.set(self.flag, conjunction(self.flag, negation(condition)))
+        if self.age is not None:
+            self.age.forget(condition)
+
+    def open(self, opens: Expression) -> None:
+        pass
+
+    def read(self, inside: Expression) -> Expression:
+        request, answer = conjunction(inside, Input(LEFT)), conjunction(inside, Input(RIGHT))
+        if self.delay is not None:
+            self.delay.add(request)
+        else:
+            self._begin(conjunction(request, negation(Input(RIGHT))), 0)
+        self._end(answer)
+        return self.is_late
+
+
+class _Precedence:
+    """Each letter with the second condition has one with the first before it, at a distance in the window."""
+
+    owes: Expression = FALSE
+    is_due: Expression = FALSE
+
+    def __init__(self, builder: Builder, window: Window) -> None:
+        self.recent = Recent(builder, "preceded", window)
+
+    @property
+    def is_safe(self) -> Expression:
+        return FALSE if self.recent.flag is None else self.recent.flag
+
+    @property
+    def asks(self) -> Expression:
+        return Input(RIGHT)
+
+    def advance(self) -> None:
+        self.recent.advance()
+
+    def clear(self, closes: Expression) -> None:
+        self.recent.clear(closes)
+
+    def open(self, opens: Expression) -> None:
+        pass
+
+    def read(self, inside: Expression) -> Expression:
+        self.recent.add(conjunction(inside, Input(LEFT)))
+        return conjunction(Input(RIGHT), negation(self.recent.is_in_window))
+
+
+class _Recurrence:
+    """The condition comes back before the time is over, counted from the opening of the stretch at first."""
+
+    owes: Expression = FALSE
+    is_due: Expression = FALSE
+    is_safe: Expression = FALSE
+    asks: Expression = TRUE
+
+    def __init__(self, builder: Builder, limit: int, is_open: bool) -> None:
+        self.age = Age(builder, "elapsed", limit + 1, 0 if is_open else None)
+
+    def advance(self) -> None:
+        self.age.advance()
+
+    def clear(self, closes: Expression) -> None:
+        self.age.forget(closes)
+
+    def open(self, opens: Expression) -> None:
+        self.age.reset(opens)
+
+    def read(self, inside: Expression) -> Expression:
+        self.age.reset(conjunction(inside, Input(LEFT)))
+        return equal(self.age.register, self.age.limit)

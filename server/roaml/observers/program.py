@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Observers as data: registers, and assignments that are executed in their order at every letter.
+
+- All values are booleans or integers from 0 to the `limit` of their register.
+- Registers that only carry a value from one assignment to a later one are reset at the end of each letter: the state of
+  an observer holds nothing that does not matter.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    value: bool | int
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """Whether a condition of the property holds in this letter."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """Whether this letter is a step of the clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Register:
+    """
+    Attributes:
+        limit: the greatest value of an integer; `None` for a boolean.
+    """
+
+    name: str
+    initial: bool | int
+    limit: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Negation:
+    operand: Expression
+
+
+class BinaryOperator(enum.Enum):
+    AND = "and"
+    OR = "or"
+    EQUAL = "="
+    LESS_EQUAL = "<="
+    ADD = "+"
+    SUBTRACT = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    operator: BinaryOperator
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """`then` if `test` holds, else `otherwise`."""
+
+    test: Expression
+    then: Expression
+    otherwise: Expression
+
+
+Expression: TypeAlias = Literal | Input | Tick | Register | Negation | Binary | Choice
+
+TRUE = Literal(True)
+FALSE = Literal(False)
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    register: Register
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """Registers and conditions that say what is known of a trace. A register that is true stays so.
+
+    Attributes:
+        violated: the property does not hold, however the trace goes on.
+        satisfied: the property holds, however the trace goes on; `None` if that is never known.
+        pending: an obligation is open that is violated if the trace ends here.
+        due: an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline is now.
+        exercised: the property has asked for something: a request, a scope that opened; `None` if it always does.
+    """
+
+    violated: Register
+    satisfied: Register | None = None
+    pending: Expression = FALSE
+    due: Expression = FALSE
+    exercised: Register | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Observer:
+    """`inputs` are the conditions whose values it reads at each letter."""
+
+    inputs: tuple[str, ...]
+    registers: tuple[Register, ...]
+    assignments: tuple[Assign, ...]
+    outputs: Outputs
+
+    def initial(self) -> State:
+        return {register.name: register.initial for register in self.registers}
+
+
+State: TypeAlias = Mapping[str, bool | int]
+"""The value of each register."""
+
+
+def step(observer: Observer, state: State, inputs: Mapping[str, bool], tick: bool) -> State:
+    """The state after one more letter."""
+    values = dict(state)
+    for assignment in observer.assignments:
+        values[assignment.register.name] = evaluate(assignment.value, values, inputs, tick)
+    return values
+
+
+def evaluate(expression: Expression, state: State, inputs: Mapping[str, bool], tick: bool) -> bool | int:
+    match expression:
+        case Literal():
+            return expression.value
+        case Input():
+            return inputs[expression.name]
+        case Tick():
+            return tick
+        case Register():
+            return state[expression.name]
+        case Negation():
+            return not evaluate(expression.operand, state, inputs, tick)
+        case Choice():
+            test = evaluate(expression.test, state, inputs, tick)
+            return evaluate(expression.then if test else expression.otherwise, state, inputs, tick)
+        case Binary():
+            left = evaluate(expression.left, state, inputs, tick)
+            match expression.operator:
+                case BinaryOperator.AND:
+                    return left and evaluate(expression.right, state, inputs, tick)
+                case BinaryOperator.OR:
+                    return left or evaluate(expression.right, state, inputs, tick)
+            right = evaluate(expression.right, state, inputs, tick)
+            match expression.operator:
+                case BinaryOperator.EQUAL:
+                    return left == right
+                case BinaryOperator.LESS_EQUAL:
+                    return left <= right
+                case BinaryOperator.ADD:
+                    return left + right
+                case BinaryOperator.SUBTRACT:
+                    return left - right
+
+
+def simplified(expression: Expression, known: Mapping[Expression, Expression]) -> Expression:
+    """`expression` with parts replaced by what is known of them, and without what is decided then."""
+    if expression in known:
+        return known[expression]
+    match expression:
+        case Negation():
+            return negation(simplified(expression.operand, known))
+        case Choice():
+            test = simplified(expression.test, known)
+            then, otherwise = simplified(expression.then, known), simplified(expression.otherwise, known)
+            return choice(test, then, otherwise)
+        case Binary():
+            left, right = simplified(expression.left, known), simplified(expression.right, known)
+            match expression.operator:
+                case BinaryOperator.AND:
+                    return conjunction(left, right)
+                case BinaryOperator.OR:
+                    return disjunction(left, right)
+            return Binary(expression.operator, left, right)
+        case _:
+            return expression
+
+
+# ------------------------------------------------------- making expressions
+
+
+def negation(operand: Expression) -> Expression:
+    match operand:
+        case Literal():
+            return Literal(not operand.value)
+        case Negation():
+            return operand.operand
+    return Negation(operand)
+
+
+def conjunction(*terms: Expression) -> Expression:
+    whole: Expression = TRUE
+    for term in terms:
+        if FALSE in (whole, term):
+            return FALSE
+        whole = term if whole == TRUE else whole if term == TRUE else Binary(BinaryOperator.AND, whole, term)
+    return whole
+
+
+def disjunction(*terms: Expression) -> Expression:
+    whole: Expression = FALSE
+    for term in terms:
+        if TRUE in (whole, term):
+            return TRUE
+        whole = term if whole == FALSE else whole if term == FALSE else Binary(BinaryOperator.OR, whole, term)
+    return whole
+
+
+def choice(test: Expression, then: Expression, otherwise: Expression) -> Expression:
+    if test == TRUE or then == otherwise:
+        return then
+    return otherwise if test == FALSE else Choice(test, then, otherwise)
+
+
+def equal(left: Expression, value: int) -> Expression:
+    return Binary(BinaryOperator.EQUAL, left, Literal(value))
+
+
+def at_most(left: Expression, value: int) -> Expression:
+    return Binary(BinaryOperator.LESS_EQUAL, left, Literal(value))
+
+
+def at_least(left: Expression, value: int) -> Expression:
+    return Binary(BinaryOperator.LESS_EQUAL, Literal(value), left)
+
+
+def plus(left: Expression, right: Expression) -> Expression:
+    return Binary(BinaryOperator.ADD, left, right)
+
+
+def minus(left: Expression, right: Expression) -> Expression:
+    return Binary(BinaryOperator.SUBTRACT, left, right)

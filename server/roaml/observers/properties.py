@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a property says about a trace: a pattern in a scope, or a formula of past-time metric temporal logic
+(docs/spec/xml-properties.md#meaning).
+
+Conditions are names: of `Atom`s in formulas, `LEFT`, `RIGHT`, `OPEN` and `CLOSE` in patterns. Bounds on time are in
+clock steps, both ends included; `None` is no upper bound.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+LEFT = "left"
+"""The condition of a pattern with one, the first condition of one with two."""
+RIGHT = "right"
+"""The second condition."""
+OPEN = "open"
+"""The condition that limits a scope; the first of two."""
+CLOSE = "close"
+"""The condition that ends a scope `between` and `after-until`."""
+
+
+class Pattern(enum.Enum):
+    UNIVERSALITY = "universality"
+    ABSENCE = "absence"
+    EXISTENCE = "existence"
+    RESPONSE = "response"
+    PRECEDENCE = "precedence"
+    RECURRENCE = "recurrence"
+
+    @property
+    def is_binary(self) -> bool:
+        """Whether the pattern has two conditions."""
+        return self in (Pattern.RESPONSE, Pattern.PRECEDENCE)
+
+
+class ScopeKind(enum.Enum):
+    GLOBALLY = "globally"
+    AFTER = "after"
+    BEFORE = "before"
+    UNTIL = "until"
+    BETWEEN = "between"
+    AFTER_UNTIL = "after-until"
+
+    @property
+    def has_event(self) -> bool:
+        """Whether the scope needs the condition `OPEN`."""
+        return self is not ScopeKind.GLOBALLY
+
+    @property
+    def has_until(self) -> bool:
+        """Whether the scope needs the condition `CLOSE`."""
+        return self in (ScopeKind.BETWEEN, ScopeKind.AFTER_UNTIL)
+
+    @property
+    def is_judged_at_close(self) -> bool:
+        """Whether a stretch is judged when it closes, and not at all if it never does."""
+        return self in (ScopeKind.BEFORE, ScopeKind.BETWEEN)
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The distances in time that a bound allows.
+
+    Raises:
+        ValueError: there are none.
+    """
+
+    lower: int = 0
+    upper: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.lower < 0 or (self.upper is not None and self.upper < self.lower):
+            raise ValueError(f"no time is from {self.lower} to {self.upper}")
+
+    @property
+    def is_unbounded(self) -> bool:
+        return self.lower == 0 and self.upper is None
+
+
+@dataclass(frozen=True, slots=True)
+class PatternProperty:
+    """A pattern that holds in every stretch of a scope.
+
+    Raises:
+        ValueError: a recurrence without an upper bound, or with a lower one.
+    """
+
+    pattern: Pattern
+    scope: ScopeKind = ScopeKind.GLOBALLY
+    window: Window = Window()
+
+    def __post_init__(self) -> None:
+        if self.pattern is Pattern.RECURRENCE and (self.window.upper is None or self.window.lower > 0):
+            raise ValueError("a recurrence has an upper bound on the time and no lower one")
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The conditions that are observed."""
+        names = [LEFT]
+        if self.pattern.is_binary:
+            names.append(RIGHT)
+        if self.scope.has_event:
+            names.append(OPEN)
+        if self.scope.has_until:
+            names.append(CLOSE)
+        return tuple(names)
+
+
+# --------------------------------------------------------------------- formulas
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """`right` held in some letter up to now whose distance is in `window`, and `left` in all letters after that one."""
+
+    left: Formula
+    right: Formula
+    window: Window = Window()
+
+
+Formula: TypeAlias = Atom | Constant | Not | And | Or | Since
+
+
+def implies(left: Formula, right: Formula) -> Formula:
+    return Or(Not(left), right)
+
+
+def once(operand: Formula, window: Window = Window()) -> Formula:
+    """`operand` held in some letter up to now whose distance is in `window`."""
+    return Since(Constant(True), operand, window)
+
+
+def historically(operand: Formula, window: Window = Window()) -> Formula:
+    """`operand` held in all letters up to now whose distance is in `window`."""
+    return Not(once(Not(operand), window))
+
+
+def children(formula: Formula) -> tuple[Formula, ...]:
+    match formula:
+        case Atom() | Constant():
+            return ()
+        case Not():
+            return (formula.operand,)
+        case And() | Or() | Since():
+            return (formula.left, formula.right)
+
+
+def walk(formula: Formula) -> Iterator[Formula]:
+    """`formula` and everything in it, outer before inner, left to right."""
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack += reversed(children(node))
+
+
+@dataclass(frozen=True, slots=True)
+class FormulaProperty:
+    """A formula that is true at every letter."""
+
+    formula: Formula
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The conditions that are observed, in the order of their first occurrence."""
+        return tuple(dict.fromkeys(node.name for node in walk(self.formula) if isinstance(node, Atom)))
+
+
+Property: TypeAlias = PatternProperty | FormulaProperty

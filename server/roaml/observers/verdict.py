@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an observer says about a trace at its end (docs/spec/xml-properties.md#end)."""
+
+from __future__ import annotations
+
+import enum
+
+from roaml.observers.program import Observer, State, evaluate
+
+
+class End(enum.Enum):
+    """Why there are no more letters."""
+
+    FINISHED = "finished"
+    """Nothing can happen any more, with time left or in a model without time: finished or stuck."""
+    TIME = "end of time"
+    """The clock has made its last step, and everything that was possible at this instant has happened."""
+    CUT = "cut"
+    """The trace was not followed any further."""
+
+
+class Verdict(enum.Enum):
+    SATISFIED = "satisfied"
+    VIOLATED = "violated"
+    OPEN = "open"
+    """The end of time came before a deadline."""
+    UNDECIDED = "undecided"
+    """The trace was not followed to an end that decides."""
+
+
+def verdict(observer: Observer, state: State, end: End) -> Verdict:
+    outputs = observer.outputs
+    if state[outputs.violated.name]:
+        return Verdict.VIOLATED
+    if outputs.satisfied is not None and state[outputs.satisfied.name]:
+        return Verdict.SATISFIED
+    if end is End.CUT:
+        return Verdict.UNDECIDED
+    if not evaluate(outputs.pending, state, {}, False):
+        return Verdict.SATISFIED
+    if end is End.FINISHED or evaluate(outputs.due, state, {}, False):
+        return Verdict.VIOLATED
+    return Verdict.OPEN

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The closed vocabularies of the roles that the schemas give to elements and attributes (`xs:appinfo`,
+urn:roaml:roles).
+
+A value that a schema uses is a member here; `tests/language/test_roles.py` holds the two together.
+"""
+
+from __future__ import annotations
+
+import enum
+
+
+class RoleValue(enum.Enum):
+    """A value of a role, as the schemas write it."""
+
+    # Members are compared by identity. `Enum` hashes the name, in Python, which is slow in keys of dictionaries.
+    __hash__ = object.__hash__
+
+    def __lt__(self, other: RoleValue) -> bool:
+        """The order of the words, so that tuples with members can be sorted."""
+        return str(self.value) < str(other.value)
+
+
+class SymbolKind(RoleValue):
+    """What a name names: what the value of an attribute defines or refers to, and what else the editor describes."""
+
+    ACTION = "action"
+    ACTION_CLIENT = "action-client"
+    ACTION_SERVER = "action-server"
+    EVENT = "event"
+    FIELD = "field"
+    MACHINE = "machine"
+    MEMBER = "member"
+    PARAMETER = "parameter"
+    PLUGIN = "plugin"
+    PORT = "port"
+    PUBLISHER = "publisher"
+    SERVICE = "service"
+    SERVICE_CLIENT = "service-client"
+    SERVICE_SERVER = "service-server"
+    STATE = "state"
+    STRUCT = "struct"
+    SUBSCRIBER = "subscriber"
+    TIMER = "timer"
+    TOPIC = "topic"
+    TREE = "tree"
+    TREE_NODE = "tree-node"
+    VARIABLE = "variable"
+
+    # Not in the schemas: `ELSEWHERE`.
+    ATTRIBUTE = "attribute"
+    BASE_TYPE = "base-type"
+    BLACKBOARD = "blackboard"
+    ELEMENT = "element"
+    ENUMERATION_VALUE = "enumeration-value"
+    EVENT_VARIABLE = "event-variable"
+    FUNCTION = "function"
+    GLOBAL = "global"
+    JSON = "json"
+    ROS_TYPE = "ros-type"
+    TREE_INSTANCE = "tree-instance"
+
+
+ELSEWHERE = frozenset(
+    (
+        SymbolKind.ATTRIBUTE,
+        SymbolKind.BASE_TYPE,
+        SymbolKind.BLACKBOARD,
+        SymbolKind.ELEMENT,
+        SymbolKind.ENUMERATION_VALUE,
+        SymbolKind.EVENT_VARIABLE,
+        SymbolKind.FUNCTION,
+        SymbolKind.GLOBAL,
+        SymbolKind.JSON,
+        SymbolKind.ROS_TYPE,
+        SymbolKind.TREE_INSTANCE,
+    )
+)
+"""What no schema says: parts of the languages themselves, ROS types, names on the blackboard, nodes of the executed
+tree, variables of the translation."""

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Types of scripts, and operations that fail whatever the entries hold (docs/spec/scripts.md#types).
+
+Nothing is said about what is not known: an entry whose type nobody states may hold anything.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Iterator
+
+from roaml.script.parse import Problem
+from roaml.script.tree import (
+    Assignment,
+    Binary,
+    Boolean,
+    Comparison,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Name,
+    Number,
+    Script,
+    String,
+    Unary,
+    walk,
+)
+
+
+class Type(enum.Enum):
+    INTEGER = "an integer"
+    REAL = "a number"
+    TEXT = "a text"
+    UNKNOWN = "anything"
+
+
+NUMBERS = (Type.INTEGER, Type.REAL)
+
+
+def type_of(expr: Expr, entry: Callable[[str], Type]) -> Type:
+    """The type of an expression; `entry` gives that of a name."""
+    match expr:
+        case Number(value=value):
+            return Type.INTEGER if isinstance(value, int) else Type.REAL
+        case Boolean() | Comparison():
+            return Type.REAL
+        case String():
+            return Type.TEXT
+        case Name(name=name):
+            return entry(name)
+        case Unary(operator="-", operand=operand):
+            return type_of(operand, entry)
+        case Unary(operator="~"):
+            return Type.INTEGER
+        case Unary():
+            return Type.REAL
+        case Binary(operator=operator, left=left, right=right):
+            return _of_binary(operator, type_of(left, entry), type_of(right, entry))
+        case Conditional(yes=yes, no=no):
+            types = {type_of(yes, entry), type_of(no, entry)}
+            return types.pop() if len(types) == 1 else Type.REAL if types <= set(NUMBERS) else Type.UNKNOWN
+        case Assignment(value=value):
+            return type_of(value, entry)
+        case ErrorExpr():
+            return Type.UNKNOWN
+
+
+def _of_binary(operator: str, left: Type, right: Type) -> Type:
+    if operator == "..":
+        return Type.TEXT
+    if operator in ("&", "|", "^"):
+        return Type.INTEGER
+    if operator == "+":
+        if Type.TEXT in (left, right):
+            return Type.TEXT
+        if Type.UNKNOWN in (left, right):
+            return Type.UNKNOWN
+    return Type.REAL
+
+
+def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Problem]:
+    """The operations of a script that fail in any case. `entry` gives the types of entries as they are before it."""
+    known: dict[str, Type] = {}
+
+    def lookup(name: str) -> Type:
+        return known.get(name) or entry(name)
+
+    for statement in script.statements:
+        for expr in walk(Script(script.span, (statement,))):
+            yield from _operation(expr, lookup)
+        for expr in walk(Script(script.span, (statement,))):
+            if isinstance(expr, Assignment):
+                yield from _assignment(expr, lookup)
+                if expr.operator == ":=" and lookup(expr.target.name) is Type.UNKNOWN:
+                    known[expr.target.name] = type_of(expr.value, lookup)
+
+
+def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[Problem]:
+    """What keeps the value of a script from being true or false."""
+    if script.statements:
+        yield from _truth(script.statements[-1], entry)
+
+
+def statements_without_effect(script: Script) -> Iterator[Problem]:
+    """The statements before the last that assign nothing: an operator is missing, or too much is written."""
+    for statement in script.statements[:-1]:
+        if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
+            yield Problem(statement.span, "this statement has no effect; is an operator missing behind it?")
+
+
+def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[Problem]:
+    match expr:
+        case Unary(operator="!", operand=operand):
+            yield from _truth(operand, entry)
+        case Unary(operator=operator, operand=operand) if type_of(operand, entry) is Type.TEXT:
+            yield Problem(operand.span, f"`{operator}` needs a number, not a text")
+        case Binary(operator="&&" | "||", left=left, right=right):
+            yield from _truth(left, entry)
+            yield from _truth(right, entry)
+        case Binary(operator="..", operator_span=span, left=left, right=right):
+            if type_of(left, entry) in NUMBERS and type_of(right, entry) in NUMBERS:
+                yield Problem(span, "`..` joins texts, not two numbers")
+        case Binary(operator="+", operator_span=span, left=left, right=right):
+            types = {type_of(left, entry), type_of(right, entry)}
+            if Type.TEXT in types and types & set(NUMBERS):
+                yield Problem(span, "`+` does not join a text and a number; `..` does", "..")
+        case Binary(operator=operator, left=left, right=right):
+            for side in (left, right):
+                if type_of(side, entry) is Type.TEXT:
+                    yield Problem(side.span, f"`{operator}` needs numbers, not a text")
+                elif operator in ("&", "|", "^") and isinstance(side, Number) and not float(side.value).is_integer():
+                    yield Problem(side.span, f"`{operator}` needs integers")
+        case Conditional(test=test) if type_of(test, entry) is not Type.TEXT:
+            yield from _truth(test, entry)
+
+
+def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[Problem]:
+    """Reals are true unless 0, integers are 0 or 1, texts are neither true nor false."""
+    if type_of(expr, entry) is Type.TEXT:
+        yield Problem(expr.span, "a text is neither true nor false; compare it")
+    elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):
+        yield Problem(expr.span, f"the integer {expr.value} is neither true (1) nor false (0)")
+
+
+def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[Problem]:
+    name = expr.target.name
+    target, value = entry(name), type_of(expr.value, entry)
+    if expr.operator in ("-=", "*=", "/=") and Type.TEXT in (target, value):
+        span = expr.target.span if target is Type.TEXT else expr.value.span
+        yield Problem(span, f"`{expr.operator}` needs numbers, not a text")
+    elif target in NUMBERS and value is Type.TEXT:
+        if not (isinstance(expr.value, String) and _is_number(expr.value.value)):
+            yield Problem(expr.value.span, f"`{name}` holds a number, and keeps its type; this is a text")
+    elif target is Type.TEXT and value in NUMBERS and expr.operator == "+=":
+        yield Problem(expr.value.span, f"`{name}` holds a text, to which `+=` adds texts only")
+    elif target is Type.INTEGER and expr.operator in (":=", "=") and _is_fraction(expr.value):
+        yield Problem(expr.value.span, f"`{name}` holds an integer, and keeps its type")
+
+
+def _is_fraction(expr: Expr) -> bool:
+    return isinstance(expr, Number) and not float(expr.value).is_integer()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text -> script, by operator precedence (Pratt 1973), whatever the text (docs/spec/scripts.md#grammar).
+
+- Never fails: every mistake is a `Problem` with a place, and the tree holds an `ErrorExpr` there.
+- One problem for each statement: what follows a mistake is skipped up to the next `;`.
+- Takes linear time and recurses no deeper than `MAX_DEPTH`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.script.tree import (
+    Assignment,
+    Binary,
+    Boolean,
+    Comparison,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Name,
+    Number,
+    Script,
+    String,
+    Unary,
+)
+from roaml.text import Decoded, Span
+
+MAX_DEPTH = 150
+MAX_PROBLEMS = 20
+"""Of a script with more mistakes, the first ones are told."""
+
+_INT64 = range(-(2**63), 2**63)
+
+ASSIGNMENTS = (":=", "=", "+=", "-=", "*=", "/=")
+COMPARISONS = ("==", "!=", "<", ">", "<=", ">=")
+UNARY = ("-", "~", "!")
+BINARY = {
+    "*": 9, "/": 9, "+": 8, "-": 8, "..": 8, "&": 7, "|": 6, "^": 6, "&&": 4, "||": 3,
+}  # fmt: skip
+"""How tight the binary operators bind, comparisons (5) left out."""
+
+_COMPARISON, _CONDITIONAL, _ASSIGNMENT = 5, 2, 1
+
+_TOKEN = re.compile(
+    r"""(?P<space>\s+)
+      | (?P<number>0[xX][0-9A-Fa-f]+ | [0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)
+      | (?P<name>[A-Za-z_@][A-Za-z0-9_]*)
+      | (?P<string>'[^']*')
+      | (?P<strange>\+\+|<<|>>|[=!]==)
+      | (?P<operator>:=|[-+*/=!<>]=|&&|\|\||\.\.|[-+*/~!&|^<>?:=();])
+      | (?P<junk>'[^']*|"[^"]*"?|[0-9.]+|[^\s\w@'"]+?(?=[\s\w@'"();]|\Z)|.)
+    """,
+    re.VERBOSE | re.DOTALL | re.ASCII,
+)
+
+_INSTEAD = {
+    "%": "the script language has no remainder",
+    "++": "write `+= 1`",
+    "<<": "the script language has no shifts",
+    ">>": "the script language has no shifts",
+    "===": "write `==`",
+    "!==": "write `!=`",
+}
+_WORDS = {"and": "&&", "or": "||", "not": "!"}
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is wrong with a script; `replacement` is what was probably meant at the place, or ""."""
+
+    span: Span
+    message: str
+    replacement: str = ""
+
+
+class _Token(NamedTuple):
+    """`kind` is number, name, string, operator, junk or end; `start` and `end` index the decoded text."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+class _MistakeError(Exception):
+    """Raised inside a statement and caught at its end."""
+
+    def __init__(self, token: _Token, message: str, replacement: str = "") -> None:
+        super().__init__(message)
+        self.token = token
+        self.message = message
+        self.replacement = replacement
+
+
+def parse(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
+    """The script in a text, and what is wrong with its form."""
+    return _Parser(source).script()
+
+
+def _tokens(text: str) -> list[_Token]:
+    tokens = [
+        _Token("junk" if match.lastgroup == "strange" else match.lastgroup or "junk", match[0], *match.span())
+        for match in _TOKEN.finditer(text)
+        if match.lastgroup != "space"
+    ]
+    return [*tokens, _Token("end", "", len(text), len(text))]
+
+
+class _Parser:
+    def __init__(self, source: Decoded) -> None:
+        self.source = source
+        self.tokens = _tokens(source.text)
+        self.at = 0
+        self.depth = 0
+        self.height = 0
+        """Of the expression that was read last."""
+        self.problems: list[Problem] = []
+
+    @property
+    def token(self) -> _Token:
+        return self.tokens[self.at]
+
+    def span(self, start: _Token, end: _Token | None = None) -> Span:
+        return self.source.span(start.start, (end or start).end)
+
+    def since(self, start: _Token) -> Span:
+        """From a token to the one read last."""
+        return self.source.span(start.start, max(start.end, self.tokens[self.at - 1].end))
+
+    def next(self) -> _Token:
+        token = self.token
+        if token.kind != "end":
+            self.at += 1
+        return token
+
+    def takes(self, *texts: str) -> bool:
+        if self.token.kind == "operator" and self.token.text in texts:
+            self.at += 1
+            return True
+        return False
+
+    # ------------------------------------------------------------ statements
+
+    def script(self) -> tuple[Script, tuple[Problem, ...]]:
+        whole = self.source.span(0, len(self.source.text))
+        statements: list[Expr] = []
+        if self.token.kind == "end":
+            self.problems.append(Problem(whole, "the script is empty"))
+        elif self.token.text == ";":
+            self.problems.append(Problem(self.span(self.token), "a script does not begin with `;`"))
+        while self.token.kind != "end":
+            if not self.takes(";"):
+                statements.append(self.statement())
+        return Script(whole, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
+
+    def statement(self) -> Expr:
+        start = self.token
+        self.depth = 0
+        try:
+            expr = self.expression(_ASSIGNMENT)
+            if self.token.text in (")", ":") or self.token.kind == "junk" or self._begins_nothing():
+                raise self.unexpected()
+        except _MistakeError as mistake:
+            place = mistake.token
+            self.problems.append(Problem(self.span(place), mistake.message, mistake.replacement))
+            while self.token.kind != "end" and self.token.text != ";":
+                self.at += 1
+            return ErrorExpr(self.since(start))
+        return expr
+
+    def _begins_nothing(self) -> bool:
+        """Whether the next token can neither go on with the statement nor begin another one."""
+        token = self.token
+        return token.kind == "operator" and token.text not in (";", "(", *UNARY)
+
+    def unexpected(self) -> _MistakeError:
+        token = self.token
+        text = token.text
+        if token.kind == "end":
+            return _MistakeError(token, "the script ends where a value is missing")
+        if token.kind == "junk":
+            return self._junk(token)
+        if text in ASSIGNMENTS:
+            return _MistakeError(token, f"`{text}` needs the name of an entry on its left")
+        if text == ")":
+            return _MistakeError(
+                token, "this `)` closes nothing" if self.depth <= 1 else "a value is missing before `)`"
+            )
+        if text == ":":
+            return _MistakeError(token, "this `:` belongs to no `?`")
+        return _MistakeError(token, f"a value is missing before `{text}`")
+
+    def _junk(self, token: _Token) -> _MistakeError:
+        text = token.text
+        if text.startswith('"'):
+            plain = text.strip('"')
+            return _MistakeError(token, "texts stand in single quotes", "" if "'" in plain else f"'{plain}'")
+        if text.startswith("'"):
+            return _MistakeError(token, "the text is not closed by `'`")
+        if text[0] in "0123456789.":
+            return _MistakeError(token, f"`{text}` is not a number: a point has digits on both sides")
+        why = _INSTEAD.get(text)
+        return _MistakeError(
+            token, f"the script language has no `{text}`" if why is None else f"unknown operator `{text}`: {why}"
+        )
+
+    # ----------------------------------------------------------- expressions
+
+    def expression(self, least: int) -> Expr:
+        """An expression whose operators bind at least as tight as `least`."""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self._too_deep()
+        start = self.token
+        left = self.operand()
+        while (strength := self._strength()) is not None and strength >= least:
+            height = self.height
+            left = self._operation(start, left, strength)
+            self._grow(max(height, self.height))
+        self.depth -= 1
+        return left
+
+    def _grow(self, height: int) -> None:
+        """The expression that was read last is one level higher than its highest part."""
+        self.height = height + 1
+        if self.height > MAX_DEPTH:
+            raise self._too_deep()
+
+    def _too_deep(self) -> _MistakeError:
+        return _MistakeError(self.token, f"the script is nested deeper than {MAX_DEPTH} levels")
+
+    def _strength(self) -> int | None:
+        token = self.token
+        if token.kind != "operator":
+            return None
+        if token.text in BINARY:
+            return BINARY[token.text]
+        if token.text in COMPARISONS:
+            return _COMPARISON
+        if token.text == "?":
+            return _CONDITIONAL
+        return _ASSIGNMENT if token.text in ASSIGNMENTS else None
+
+    def _operation(self, start: _Token, left: Expr, strength: int) -> Expr:
+        operator = self.token
+        if strength == _ASSIGNMENT:
+            if not isinstance(left, Name):
+                raise self.unexpected()
+            self.at += 1
+            value = self.expression(_ASSIGNMENT)
+            return Assignment(self.since(start), operator.text, self.span(operator), left, value)
+        self.at += 1
+        if strength == _CONDITIONAL:
+            yes = self.expression(_CONDITIONAL)
+            height = self.height
+            if not self.takes(":"):
+                raise _MistakeError(self.token, "`?` needs a `:` with the other value")
+            no = self.expression(_CONDITIONAL)
+            self.height = max(height, self.height)
+            return Conditional(self.since(start), left, yes, no)
+        if strength == _COMPARISON:
+            operators, operands = [operator.text], [left, self.expression(_COMPARISON + 1)]
+            while self.token.kind == "operator" and self.token.text in COMPARISONS:
+                height = self.height
+                operators.append(self.next().text)
+                operands.append(self.expression(_COMPARISON + 1))
+                self.height = max(height, self.height)
+            return Comparison(self.since(start), tuple(operators), tuple(operands))
+        right = self.expression(strength + 1)
+        return Binary(self.since(start), operator.text, self.span(operator), left, right)
+
+    def operand(self) -> Expr:
+        token = self.token
+        if token.kind == "operator" and token.text in UNARY:
+            return self._unary()
+        if token.kind == "operator" and token.text == "(":
+            self.at += 1
+            inner = self.expression(_ASSIGNMENT)
+            if not self.takes(")"):
+                raise _MistakeError(token, "this `(` is not closed")
+            return inner
+        self.height = 1
+        match token.kind:
+            case "number":
+                return self._number()
+            case "name":
+                self.at += 1
+                if token.text in ("true", "false"):
+                    return Boolean(self.span(token), token.text == "true")
+                return self._name(token)
+            case "string":
+                self.at += 1
+                return String(self.span(token), token.text[1:-1])
+        raise self.unexpected()
+
+    def _unary(self) -> Expr:
+        token = self.next()
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self._too_deep()
+        operand = self.operand()
+        self.depth -= 1
+        self._grow(self.height)
+        return Unary(self.since(token), token.text, operand)
+
+    def _name(self, token: _Token) -> Expr:
+        if token.text == "@":
+            raise _MistakeError(token, "`@` needs the name of an entry of the root blackboard behind it")
+        follows = self.token
+        if token.text in _WORDS and follows.kind in ("name", "number", "string"):
+            raise _MistakeError(
+                token, f"`{token.text}` is not an operator; write `{_WORDS[token.text]}`", _WORDS[token.text]
+            )
+        return Name(self.span(token), token.text)
+
+    def _number(self) -> Expr:
+        token = self.next()
+        follows = self.token
+        if follows.start == token.end and follows.kind in ("name", "number", "junk") and follows.text[0] != '"':
+            whole = token._replace(text=token.text + follows.text, end=follows.end)
+            self.at += 1
+            raise _MistakeError(whole, f"`{whole.text}` is neither a number nor a name")
+        text = token.text
+        if text[:2] in ("0x", "0X"):
+            value: int | float = int(text, 16)
+        elif text.isdigit():
+            if len(text) > 20:
+                raise _MistakeError(token, f"`{text[:20]}…` does not fit into 64 bits")
+            value = int(text)
+        else:
+            value = float(text)
+        if isinstance(value, int) and value not in _INT64:
+            raise _MistakeError(token, f"`{text}` does not fit into 64 bits")
+        return Number(self.span(token), value)

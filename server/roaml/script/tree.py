@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The syntax tree of a script.
+
+- Every node has a `span` in the source file, escapes of the surrounding XML already accounted for.
+- Where something is missing or not understood there is an `ErrorExpr`, so the rest of the tree stays usable.
+- No tree is deeper than `roaml.script.parse.MAX_DEPTH`: functions over trees may recurse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An integer, or a real, which is written with a point or an exponent."""
+
+    span: Span
+    value: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean:
+    """`true` or `false`: the numbers 1.0 and 0.0."""
+
+    span: Span
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class String:
+    span: Span
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """An enumeration constant of the program or an entry; a leading `@` means an entry of the root blackboard."""
+
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """`operator` is `-`, `~` or `!`."""
+
+    span: Span
+    operator: str
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operator that is neither a comparison nor an assignment."""
+
+    span: Span
+    operator: str
+    operator_span: Span
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """`a < b == c`: each of `operators` stands between two of `operands`; all must hold."""
+
+    span: Span
+    operators: tuple[str, ...]
+    operands: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """`test ? yes : no`."""
+
+    span: Span
+    test: Expr
+    yes: Expr
+    no: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`target := value` and the like; `operator` is `:=`, `=`, `+=`, `-=`, `*=` or `/=`."""
+
+    span: Span
+    operator: str
+    operator_span: Span
+    target: Name
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorExpr:
+    """Something that is missing or cannot be read."""
+
+    span: Span
+
+
+Expr: TypeAlias = Number | Boolean | String | Name | Unary | Binary | Comparison | Conditional | Assignment | ErrorExpr
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """The statements; the value of a script is that of the last one."""
+
+    span: Span
+    statements: tuple[Expr, ...]
+
+
+def children(expr: Expr) -> tuple[Expr, ...]:
+    """The parts of an expression, in the order of the text."""
+    match expr:
+        case Unary(operand=operand):
+            return (operand,)
+        case Binary(left=left, right=right):
+            return (left, right)
+        case Comparison(operands=operands):
+            return operands
+        case Conditional(test=test, yes=yes, no=no):
+            return (test, yes, no)
+        case Assignment(target=target, value=value):
+            return (target, value)
+        case Number() | Boolean() | String() | Name() | ErrorExpr():
+            return ()
+
+
+def walk(script: Script) -> Iterator[Expr]:
+    """All expressions of a script, each before its parts, in the order of the text."""
+    stack: list[Expr] = list(reversed(script.statements))
+    while stack:
+        expr = stack.pop()
+        yield expr
+        stack.extend(reversed(children(expr)))

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shortest trace that shows why a property fails, as a story whose lines know their places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.record import VERDICTS
+from roaml.smc.run import Seen
+from roaml.text import Location
+from roaml.verification.results import Result
+from roaml.verification.target import Target
+from roaml.views.story import Line, heading, lines
+
+
+@dataclass(frozen=True, slots=True)
+class Counterexample:
+    """Attributes:
+    heading: what happens, in one sentence.
+    verdict: "failed", "passed" (where that is what must not be) or "undecided".
+    trace: its number.
+    lines: one for each turn of an automaton.
+    """
+
+    heading: str
+    verdict: str
+    trace: int
+    lines: tuple[Line, ...]
+
+
+def unwanted_verdict(result: Result) -> int:
+    """The verdict of the traces that speak against what is expected."""
+    if result.answer is not None and result.answer.question.is_stuck:
+        return TRUE
+    thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
+    return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE
+
+
+def unwanted_trace(result: Result) -> Seen | None:
+    """The shortest trace that speaks against what is expected; one that was not decided if there is none.
+
+    If any trace got stuck, the shortest of these: it says why the number means little.
+    """
+    if result.answer is None:
+        return None
+    if result.stuck is not None:
+        return result.stuck.seen
+    shortest = result.answer.tally.shortest
+    return shortest.get(unwanted_verdict(result)) or shortest.get(UNKNOWN)
+
+
+def counterexample(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
+    """Walk the shortest trace that speaks against what is expected again; None if there is none.
+
+    Args:
+        place_of: how a place is written; `path:line` if not given.
+    """
+    seen, traces = unwanted_trace(result), result.traces
+    if seen is None or traces is None:
+        return None
+    story = traces.story(seen.trace)
+    verdict = VERDICTS.get(story.recording.verdict, "fault")
+    told = lines(story, place_of or _path_and_line(traces.target))
+    return Counterexample(heading(story), verdict, seen.trace, tuple(told))
+
+
+def _path_and_line(target: Target) -> Callable[[Location], str]:
+    def place_of(origin: Location) -> str:
+        place = target.place(origin)
+        return f"{place.path}:{place.line}" if place else ""
+
+    return place_of

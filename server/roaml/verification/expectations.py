@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`NAME >= 0.95`: what somebody expects of a property, and whether it is so.
+
+- Judged by the estimate, not by its interval: no number of traces could ever show that a probability is 1. That the
+  interval holds numbers that meet the expectation and others that do not is only told (`Verdict.is_certain`).
+- A bound on a probability counts undecided traces as if each had gone the wrong way; `==` means at most epsilon away.
+- What a sequential test has decided about the same number stands.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from roaml.jani.operators import BinaryOperator
+from roaml.smc.goal import Question, Threshold
+from roaml.smc.run import Answer
+
+_RELATIONS = {
+    ">=": BinaryOperator.GREATER_EQUAL,
+    "≥": BinaryOperator.GREATER_EQUAL,
+    "<=": BinaryOperator.LESS_EQUAL,
+    "≤": BinaryOperator.LESS_EQUAL,
+    ">": BinaryOperator.GREATER,
+    "<": BinaryOperator.LESS,
+    "==": BinaryOperator.EQUAL,
+    "=": BinaryOperator.EQUAL,
+}
+_FORM = re.compile(r"\s*(.+?)\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """That the value of a property is in some relation to a number. `is_own`: the property itself says so."""
+
+    name: str
+    threshold: Threshold
+    is_own: bool = False
+
+    @property
+    def text(self) -> str:
+        return f"{self.threshold.relation.symbol} {self.threshold.number:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an expectation is met.
+
+    Attributes:
+        is_certain: whether the whole interval says the same.
+        is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
+        under: under which scheduler it is not met, in words; "" if only one is asked about.
+    """
+
+    expectation: Expectation
+    is_met: bool
+    is_certain: bool
+    is_uniform: bool = False
+    under: str = ""
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        if self.is_met:
+            return "met under uniform choices" if self.is_uniform else "met"
+        return f"NOT MET {self.under}".rstrip()
+
+    def doubt(self, epsilon: float) -> str:
+        """Why the interval leaves the verdict open; "" if it does not.
+
+        Args:
+            epsilon: what `==` allows a value to be away.
+        """
+        if self.is_certain:
+            return ""
+        number = f"{self.expectation.threshold.number:g}"
+        met, missed = {
+            BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
+            BinaryOperator.GREATER: (f"above {number}", f"of at most {number}"),
+            BinaryOperator.LESS_EQUAL: (f"of at most {number}", f"above {number}"),
+            BinaryOperator.LESS: (f"below {number}", f"of at least {number}"),
+            BinaryOperator.EQUAL: (f"within {epsilon:g} of {number}", f"more than {epsilon:g} away from {number}"),
+        }[self.expectation.threshold.relation]
+        return f"not certain: the interval includes values {missed if self.is_met else met}"
+
+
+def parse(text: str) -> Expectation:
+    """
+    Raises:
+        ValueError: this is not of the form; the message says so.
+    """
+    match = _FORM.fullmatch(text)
+    try:
+        number = float(match[3]) if match else math.nan
+    except ValueError:
+        number = math.nan
+    if match is None or math.isnan(number):
+        raise ValueError(f"an expectation is written like 'NAME >= 0.95', not '{text}'")
+    return Expectation(match[1], Threshold(_RELATIONS[match[2]], number))
+
+
+class RangeError(ValueError):
+    """A probability is compared with a number that it cannot have; the message says which."""
+
+
+def check_range(expectation: Expectation, question: Question) -> None:
+    """
+    Raises:
+        RangeError: a probability is compared with a number that is not between 0 and 1.
+    """
+    number = expectation.threshold.number
+    if not question.is_reward and not 0 <= number <= 1:
+        raise RangeError(
+            f"{expectation.name} is a probability and can only be compared with a number from 0 to 1, not {number:g}"
+        )
+
+
+def judge(expectation: Expectation, answer: Answer) -> Verdict:
+    """Whether an answer meets an expectation."""
+    threshold, tally = expectation.threshold, answer.tally
+    if tally.traces == 0:
+        return Verdict(expectation, False, False)
+    if tally.accepted is not None and answer.question.threshold == threshold:
+        return Verdict(expectation, tally.accepted, True)
+    lower, upper = answer.bounds
+    if threshold.relation is BinaryOperator.EQUAL:
+        width = answer.options.epsilon + 1e-12
+        near = abs(answer.value - threshold.number) <= width
+        least, greatest = threshold.number - width, threshold.number + width
+        is_certain = least <= lower and upper <= greatest if near else upper < least or greatest < lower
+        return Verdict(expectation, near, is_certain)
+    if answer.question.is_reward:
+        value = answer.value
+    elif threshold.is_lower:
+        value = tally.successes / tally.traces
+    else:
+        value = (tally.successes + tally.undecided) / tally.traces
+    met = threshold.met(value)
+    return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper))

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why a property has no answer, with its place: the others are answered all the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roaml.smc.fault import FaultError
+from roaml.verification.target import LineColumn, Target
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Attributes:
+    code: the rule whose document says more.
+    place: None if it is not known.
+    """
+
+    code: str
+    message: str
+    place: LineColumn | None = None
+
+
+def refusal(fault: FaultError, target: Target, seed: int) -> Refusal:
+    """
+    Args:
+        seed: of the traces.
+    """
+    return Refusal(fault.code, fault_message(fault, seed), target.place(fault.origin))
+
+
+def fault_message(fault: FaultError, seed: int) -> str:
+    """What went wrong, with the trace that shows it."""
+    return fault.message if fault.trace is None else f"{fault.message} (in trace {fault.trace} of seed {seed})"

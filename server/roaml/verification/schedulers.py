@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`Pmin` and `Pmax` ask about all schedulers, traces are made with one: what that means for an answer and for what was
+expected of it.
+
+- That a minimum is at least a number, or a maximum at most, must hold under every scheduler. One that misses it refutes
+  it; if only uniform choices are known to meet it, it is met under uniform choices.
+- That a minimum is at most a number, or a maximum at least, holds if one scheduler shows it, be it the uniform one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from roaml.jani.operators import BinaryOperator
+from roaml.smc.choices import UNIFORM, Choices, Extreme
+from roaml.smc.goal import Question
+from roaml.smc.run import Answer
+from roaml.verification.expectations import Verdict
+
+_SLACK = 1e-6
+
+
+def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
+    """A verdict on what is expected of an answer under uniform choices, with what is known of other schedulers.
+
+    Args:
+        choices: None if uniform choices are what is wanted.
+    """
+    if choices is None or choices.agreement:
+        return verdict
+    if not verdict.is_met:
+        verdict = replace(verdict, under="under uniform choices")
+    threshold = verdict.expectation.threshold
+    is_minimum = asks_for_minimum(answer.question)
+    extreme = choices.minimum if is_minimum else choices.maximum
+    missed = replace(verdict, is_met=False, is_certain=True, under=_missed_by(answer.question, extreme))
+    if extreme is not None and extreme.is_exact:
+        if threshold.relation is BinaryOperator.EQUAL:
+            met = abs(extreme.value - threshold.number) <= answer.options.epsilon + 1e-12
+        else:
+            is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
+            slack = 0.0 if is_strict else _SLACK
+            met = threshold.met(extreme.value + slack) or threshold.met(extreme.value - slack)
+        return replace(verdict, is_met=True, is_certain=True, under="") if met else missed
+    if threshold.relation is BinaryOperator.EQUAL:
+        width = answer.options.epsilon
+        bounds = None if extreme is None else extreme.bounds
+        if bounds is not None and not bounds.lower - width <= threshold.number <= bounds.upper + width:
+            return missed
+        return replace(verdict, is_uniform=verdict.is_met)
+    if threshold.is_lower is is_minimum:
+        if extreme is not None and not threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
+            return missed
+        return replace(verdict, is_uniform=verdict.is_met)
+    if extreme is not None and threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
+        return replace(verdict, is_met=True, is_certain=True, under="")
+    return verdict
+
+
+def _missed_by(question: Question, extreme: Extreme | None) -> str:
+    """Where an extreme is found that does not meet what is expected."""
+    if extreme is None or extreme.found == UNIFORM:
+        return "under uniform choices"
+    if extreme.is_exact:
+        return f"by the {extreme_asked(question)} over all schedulers, which is {extreme.value:.6g}"
+    return f"under {extreme.scheduler}: {interval_text(extreme)}"
+
+
+def asks_for_minimum(question: Question) -> bool:
+    """Whether a property asks for the least value."""
+    return question.operator.endswith("min")
+
+
+def may_differ(choices: Choices | None) -> bool:
+    """Whether it is open if other schedulers than the uniform one give another value."""
+    return choices is not None and not choices.agreement and not choices.differ
+
+
+def extreme_asked(question: Question) -> str:
+    """What a property asks for, in a word."""
+    return "minimum" if asks_for_minimum(question) else "maximum"
+
+
+def interval_text(extreme: Extreme) -> str:
+    """The value of an extreme, with its bounds."""
+    return f"{extreme.value:.6g} in [{extreme.bounds.lower:.6g}, {extreme.bounds.upper:.6g}]"

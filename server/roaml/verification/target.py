@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is verified: a model, with the texts in which its places are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.jani.model import Model
+from roaml.jani.node import Origin
+from roaml.text import SourceFile
+
+CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
+"""The variables of a translated system that hold its time: seconds and nanoseconds."""
+
+
+class LineColumn(NamedTuple):
+    """A place in a file; lines and columns begin at 1."""
+
+    path: str
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A model, and the texts in which its places are.
+
+    Attributes:
+        path: the file that was named; "" for a model that was not read from a file.
+        files: all files that were read, the one that was named first.
+        source_of: path -> the text of a file that an origin names; None if it is not known.
+        clock: the variables for seconds and nanoseconds, if the model has them.
+    """
+
+    path: str
+    files: tuple[str, ...]
+    model: Model
+    source_of: Callable[[str], SourceFile | None]
+    clock: tuple[str, str] | None
+
+    def place(self, origin: Origin | None) -> LineColumn | None:
+        """Where an origin is; None if that is not known."""
+        source = None if origin is None else self.source_of(origin.path)
+        if origin is None or source is None:
+            return None
+        start = source.lines.position(origin.span.start)
+        return LineColumn(origin.path, start.line + 1, start.column + 1)
+
+
+def target_of(
+    model: Model,
+    path: str = "",
+    files: tuple[str, ...] = (),
+    source_of: Callable[[str], SourceFile | None] = lambda _: None,
+) -> Target:
+    """A model as a target, with its clock if it has one."""
+    names = {variable.name for variable in model.variables}
+    return Target(path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None)

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Answers the properties of a target, and judges the answers by what is expected."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+from roaml.jani.selection import PropertyError, select
+from roaml.smc.choices import Choices
+from roaml.smc.fault import FaultError
+from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
+from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
+from roaml.smc.model import Checker
+from roaml.smc.pool import Pool, Pulse
+from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
+from roaml.verification import stuck
+from roaml.verification.expectations import Expectation, Verdict, check_range, judge
+from roaml.verification.refusal import refusal
+from roaml.verification.results import Result, SampledResult, Traces
+from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
+from roaml.verification.storm import exact_values, judge_exactly
+from roaml.verification.stuck import Look
+from roaml.verification.target import Target
+from roaml.views.ends import marks
+
+
+class NoThresholdError(ValueError):
+    """A sequential test is to decide a property that is not compared with a number."""
+
+
+def checker_of(target: Target, properties: Iterable[str] | None = None) -> Checker:
+    """A model, compiled for some of its properties.
+
+    Args:
+        properties: their names; all if not given. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
+            which every translated system can be asked.
+
+    Raises:
+        PropertyError: the model has no property of a name.
+        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
+            are in `refused`.
+    """
+    model, ends = target.model, marks(target.model)
+    if properties is None:
+        return Checker(model, model.properties, ends)
+    names = list(dict.fromkeys(properties))
+    asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in model.properties)
+    if asks_stuck:
+        names.remove(STUCK_PROPERTY)
+    chosen = select(model.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
+    return Checker(model, chosen, ends, asks_stuck=asks_stuck)
+
+
+def verifier_of(
+    target: Target,
+    properties: Sequence[str] | None = None,
+    options: Options | None = None,
+    expectations: Iterable[Expectation] = (),
+    *,
+    only_uniform: bool = False,
+) -> Verifier:
+    """A target made ready to be verified.
+
+    Args:
+        properties: the names of those to verify; all if not given. Those of which something is expected are added.
+        only_uniform: whether only uniform choices are asked about, not the minimum or maximum over all schedulers.
+
+    Raises:
+        PropertyError: there is no property of a name, or none of which something is expected.
+        RangeError: a probability is expected to be in relation to a number that is not between 0 and 1.
+        FaultError: the model cannot be run.
+    """
+    expectations = tuple(expectations)
+    expected = [expectation.name for expectation in expectations]
+    known = [property_.name for property_ in target.model.properties]
+    names = None if properties is None else [*properties, *expected]
+    if names is None and STUCK_PROPERTY in expected:
+        names = [*known, STUCK_PROPERTY]
+    for name in expected:
+        if name not in (*known, STUCK_PROPERTY):
+            raise PropertyError(f"there is no property {name}, of which something is expected")
+    checker = checker_of(target, names)
+    for asked in checker.asked:
+        for expectation in expectations:
+            if expectation.name == asked.question.name:
+                check_range(expectation, asked.question)
+    return Verifier(target, checker, options or Options(), expectations, only_uniform)
+
+
+@dataclass(frozen=True, slots=True)
+class Verifier:
+    """A target with compiled properties, and what is expected of them; see `verifier_of`."""
+
+    target: Target
+    checker: Checker
+    options: Options = field(default_factory=Options)
+    expectations: tuple[Expectation, ...] = ()
+    only_uniform: bool = False
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the properties, in their order."""
+        return self.checker.names
+
+    def question(self, name: str) -> Asked:
+        """A property, compared with the first number that is expected of it: a sequential test needs that.
+
+        Raises:
+            FaultError: it cannot be answered.
+        """
+        if name in self.checker.refused:
+            raise self.checker.refused[name]
+        asked = next(asked for asked in self.checker.asked if asked.question.name == name)
+        if asked.question.threshold is None:
+            for expectation in self.expectations:
+                if expectation.name == name:
+                    return replace(asked, question=with_threshold(asked.question, expectation.threshold))
+        return asked
+
+    def expected(self, asked: Asked) -> tuple[Expectation, ...]:
+        """What is expected of a property: by itself, and by `expectations`."""
+        name, threshold = asked.question.name, asked.question.threshold
+        own = tuple(expectation for expectation in self.expectations if expectation.name == name)
+        if threshold is None or any(expectation.threshold == threshold for expectation in own):
+            return own
+        return (Expectation(name, threshold, is_own=True), *own)
+
+    def verify(self, name: str, pool: Pool) -> Result:
+        """The result of a property; a refusal if it cannot be answered.
+
+        Raises:
+            NoThresholdError: see `answer`.
+            WorkersLostError: processes die again and again.
+        """
+        try:
+            return self.answer(self.question(name), pool)
+        except FaultError as fault:
+            return self.refused(name, fault)
+
+    def answer(
+        self,
+        asked: Asked,
+        pool: Pool,
+        tally: Tally | None = None,
+        watch: Watch | None = None,
+        pulse: Pulse | None = None,
+    ) -> Result:
+        """The result of a property, by traces with uniform choices.
+
+        Args:
+            tally: where to go on; it is changed as batches come in. If this is interrupted, `interrupted` makes a
+                result of it.
+            watch: called after each batch.
+            pulse: called several times a second.
+
+        Raises:
+            FaultError: a trace did something that has no meaning.
+            NoThresholdError: a sequential test is to be made, and there is no number to compare with.
+            WorkersLostError: processes die again and again.
+        """
+        self.check_method(asked)
+        began = time.monotonic()
+        answer = self.checker.answer(asked, self.options, pool, tally, watch, pulse)
+        choices = None
+        if not self.only_uniform and not asked.question.is_stuck:
+            choices = self.checker.choices(asked, answer, pool, pulse)
+        return self._judged(asked, answer, choices, time.monotonic() - began)
+
+    def check_method(self, asked: Asked) -> None:
+        """
+        Raises:
+            NoThresholdError: a sequential test is to be made, and there is no number to compare with.
+        """
+        question = asked.question
+        if self.options.method == SPRT and (question.threshold is None or question.is_reward):
+            raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
+
+    def interrupted(self, asked: Asked, tally: Tally, seconds: float) -> Result:
+        """What is known of a property so far."""
+        answer = summary(asked.question, self.options, tally)
+        choices = None if self.only_uniform else Choices()
+        return replace(self._judged(asked, answer, choices, seconds), is_interrupted=True)
+
+    def refused(self, name: str, fault: FaultError) -> Result:
+        """The result of a property that cannot be answered."""
+        return Result(name, None, (), 0.0, refusal=refusal(fault, self.target, self.options.seed))
+
+    def sampled(self, asked: Asked, search: Search, seconds: float, *, is_interrupted: bool = False) -> Result:
+        """The least and the greatest probability that sampled schedulers achieve, as far as a search has come."""
+        sampled = []
+        for side, (scheduler, tally) in search.found.items():
+            if tally.traces:
+                answer = summary(asked.question, sampling_options(self.options), tally)
+                words = described(scheduler, self.checker.automata)
+                got_stuck = stuck.stuck_in(self.target, self.checker, asked, answer, scheduler)
+                sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
+        asked_side = LEAST if asks_for_minimum(asked.question) else GREATEST
+        own = next((result for result in sampled if result.side == asked_side), None)
+        verdicts = [
+            Verdict(expectation, False, False, under="so far") if own is None else judge(expectation, own.answer)
+            for expectation in self.expected(asked)
+        ]
+        if own is not None:
+            verdicts = [v if v.is_met else replace(v, under=f"under {own.words}") for v in verdicts]
+        return Result(
+            asked.question.name,
+            None,
+            tuple(verdicts),
+            seconds,
+            is_interrupted,
+            tuple(sampled),
+            search.tried,
+            stuck.shortest(result.stuck for result in sampled),
+        )
+
+    def exact(self, asked: Asked, max_states: int) -> Result:
+        """The exact minimum and maximum of a property, by Storm.
+
+        Raises:
+            ExactError: see `roaml.verification.storm.exact_values`.
+            FaultError: the model did something that has no meaning.
+        """
+        began = time.monotonic()
+        exact = exact_values(self.checker, asked, max_states)
+        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in self.expected(asked))
+        return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
+
+    def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:
+        """Make traces to see whether the system gets stuck; see `stuck.can_be_stuck`."""
+        return stuck.look(self.target, self.checker, self.options, level, pulse)
+
+    def _judged(self, asked: Asked, answer: Answer, choices: Choices | None, seconds: float) -> Result:
+        verdicts = tuple(
+            under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in self.expected(asked)
+        )
+        return Result(
+            asked.question.name,
+            answer,
+            verdicts,
+            seconds,
+            stuck=stuck.stuck_in(self.target, self.checker, asked, answer),
+            choices=choices,
+            traces=Traces(self.target, self.checker, asked, self.options),
+        )

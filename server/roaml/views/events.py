@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The events of a translated system: which variables carry them, and with which parameters they were sent last."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from roaml.jani.model import Automaton
+from roaml.model.globals import FIELD_PREFIX
+from roaml.model.translated import is_length, received_by, sent_by
+from roaml.smc.record import Part, Plain, TraceStep
+
+_VALID = ".valid"
+
+
+class EventReader:
+    """Reads the steps of a trace one after the other.
+
+    Args:
+        automata: of each instance.
+        start: the variables of the model before the first step.
+
+    Attributes:
+        hearing: for each instance, whether it receives any event.
+    """
+
+    def __init__(self, automata: Sequence[Automaton], start: Mapping[str, Plain]) -> None:
+        actions = [{edge.action or "" for edge in automaton.edges} for automaton in automata]
+        self._automata = {automaton.name for automaton in automata}
+        self._events = {event for used in actions for action in used if (event := sent_by(action))}
+        self.hearing = [any(map(received_by, used)) for used in actions]
+        self._values = dict(start)
+        self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
+        self._of_events = {name for name in self._values if self._is_of_event(name)}
+
+    def read(self, step: TraceStep) -> None:
+        """Note what a step changes."""
+        for change in step.changes:
+            if change.variable.instance < 0:
+                self._values[change.variable.name] = change.after
+
+    def actors(self, step: TraceStep) -> list[Part]:
+        """The parts of a step but for those of automata that only hold an event."""
+        return [part for part in step.parts if part.automaton not in self._events]
+
+    def is_event(self, name: str) -> bool:
+        """Whether an event of the system, or the automaton that holds it, has this name."""
+        return name in self._events
+
+    def carries_event(self, variable: str) -> bool:
+        """Whether a variable of the model carries an event or one of its parameters."""
+        return variable in self._of_events
+
+    def parameters(self, event: str) -> dict[str, Plain]:
+        """The parameters with which an event was sent last, by their names in the interface."""
+        return {
+            variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): self._values[variable]
+            for variable in self._parameters.get(event, ())
+        }
+
+    def name(self, event: str) -> str:
+        """The name of an event without the client whom a service or action serves with it."""
+        name, _, client = event.partition("_client_")
+        return name if client in self._automata else event
+
+    def _is_of_event(self, name: str) -> bool:
+        """Whether a variable of the model carries an event; what is a parameter of it is noted."""
+        if name.endswith(_VALID):
+            return name.removesuffix(_VALID) in self._events
+        at = name.rfind("__")
+        while at > 0:
+            if name[:at] in self._events:
+                if not is_length(name):
+                    self._parameters[name[:at]].append(name)
+                return True
+            at = name.rfind("__", 0, at)
+        return False

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The closed vocabularies of `roaml.roles` are those of the schemas."""
+
+from __future__ import annotations
+
+from lxml import etree
+
+from roaml.language.resources import schema_path
+from roaml.roles import ELSEWHERE, RoleValue, SymbolKind
+
+SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd")
+ROLES = "{urn:roaml:roles}"
+
+
+def written(*places: str) -> set[str]:
+    """The words in `ROLE@ATTRIBUTE` of all schemas."""
+    words: set[str] = set()
+    for schema in SCHEMAS:
+        root = etree.parse(str(schema_path(schema))).getroot()
+        for place in places:
+            role, attribute = place.split("@")
+            for node in root.iter(f"{ROLES}{role}"):
+                words.update(node.get(attribute, "").split())
+    return words
+
+
+def values(*kinds: RoleValue) -> set[str]:
+    return {kind.value for kind in kinds}
+
+
+def test_symbols() -> None:
+    assert written("defines@symbol", "refers@symbol") == values(*SymbolKind) - values(*ELSEWHERE)

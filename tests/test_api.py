@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The door of the library: what its signatures name can be imported from it, and a check stays light."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import dataclasses
+import inspect
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from roaml import api
+
+FOREIGN = {"Callable", "Executor", "Iterable", "Iterator", "Mapping", "Sequence"}
+"""Names of the standard library in signatures."""
+ANSWERS = [
+    api.CheckResult,
+    api.Counterexample,
+    api.Exact,
+    api.Expectation,
+    api.LoadedSystem,
+    api.Migration,
+    api.Refusal,
+    api.Result,
+    api.SampledResult,
+    api.Target,
+    api.Traces,
+    api.Verdict,
+    api.Verifier,
+]
+HEAVY = ("roaml.smc.kernel", "roaml.smc.run", "roaml.verification", "multiprocessing", "asyncio", "lsprotocol", "pygls")
+"""What a check must not import."""
+
+
+def test_every_name_can_be_imported() -> None:
+    assert len(set(api.__all__)) == len(api.__all__)
+    for name in api.__all__:
+        assert getattr(api, name) is not None
+    with pytest.raises(AttributeError):
+        api.no_such_name  # type: ignore[attr-defined]  # noqa: B018
+
+
+FUNCTIONS = [name for name in api.__all__ if inspect.isfunction(getattr(api, name))]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_signatures_name_what_can_be_imported(name: str) -> None:
+    assert named_in(getattr(api, name)) <= set(api.__all__)
+
+
+@pytest.mark.parametrize("kind", ANSWERS, ids=lambda kind: kind.__name__)
+def test_answers_name_what_can_be_imported(kind: type) -> None:
+    names = {name for field in dataclasses.fields(kind) for name in names_of(str(field.type))}
+    for name, member in vars(kind).items():
+        function = member.fget if isinstance(member, property) else member
+        if not name.startswith("_") and inspect.isfunction(function):
+            names |= named_in(function)
+    assert names <= set(api.__all__)
+
+
+def named_in(function: object) -> set[str]:
+    """The names in a signature, but those of Python and its standard library."""
+    return {name for text in function.__annotations__.values() for name in names_of(str(text))}  # type: ignore[attr-defined]
+
+
+def names_of(annotation: str) -> Iterator[str]:
+    for node in ast.walk(ast.parse(annotation)):
+        if isinstance(node, ast.Name) and not hasattr(builtins, node.id) and node.id not in FOREIGN:
+            yield node.id
+
+
+def test_a_check_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+from as2fm_lsp.cli.main import run
+run(["--check", {__file__!r}])
+print(*(name for name in {HEAVY!r} if name in sys.modules))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == ""
