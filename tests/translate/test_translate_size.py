@@ -112,7 +112,7 @@ def found(name: str, size: int, settings: Settings | None = None) -> list[tuple[
 def test_an_array_that_is_too_large() -> None:
     [(file, code, message)] = found("array-bound", 200_000_000)
     assert (file, code) == ("main.xml", "model-too-large")
-    assert "hold 200,000,001 cells, but at most 1,000,000 are translated" in message
+    assert "have 200,000,001 cells, but at most 1,000,000 are translated" in message
     assert "the variable `a` of `M` takes 200,000,001" in message
     result = api.check([MAIN], [], Settings(), BY_NAME["array-bound"].texts(200_000_000))
     [related] = next(d for d in result.diagnostics if d.code == "model-too-large").related
