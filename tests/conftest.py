@@ -5,16 +5,11 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import cache
 from pathlib import Path
-
-from hypothesis import settings
 
 import conformance
 from examples import TIMES, examples
-
-# How long an example takes says more about what else the machine does than about the code.
-settings.register_profile("suite", deadline=None, derandomize=not TIMES, max_examples=examples(100))
-settings.load_profile("suite")
 
 # Where containers forbid it, each of the processes that tests start would compile all modules anew, for a second.
 sys.dont_write_bytecode = False
@@ -29,3 +24,18 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
 def pytest_terminal_summary(terminalreporter) -> None:  # type: ignore[no-untyped-def]
     if not conformance.PRESENT:
         terminalreporter.write_line("conformance cases: not present, so none of them is collected")
+
+
+def pytest_pycollect_makemodule(module_path: Path) -> None:
+    """Set hypothesis up before the first module that may use it. Importing it takes longer than the tests of a rule."""
+    if module_path.parent.name != "rules":
+        _load_profile()
+
+
+@cache
+def _load_profile() -> None:
+    from hypothesis import settings  # noqa: PLC0415
+
+    # How long an example takes says more about what else the machine does than about the code.
+    settings.register_profile("suite", deadline=None, derandomize=not TIMES, max_examples=examples(100))
+    settings.load_profile("suite")

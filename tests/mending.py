@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every quick fix keeps its promise: made alone, it removes its diagnostic and adds no error."""
+"""Every quick fix keeps its promise: made alone, it removes its diagnostic; a preferred one adds no error."""
 
 from __future__ import annotations
 
 import itertools
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from roaml.diagnostics import Diagnostic, Severity
@@ -37,26 +37,34 @@ def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
     return texts
 
 
-def broken_promises(workspace: Workspace, code: str | None = None, *, errors_may_come: bool = False) -> Iterator[str]:
-    """What is wrong with the fixes of all that is found in a folder, or of what one rule finds.
+def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagnostic, Action]]:
+    """The fixes of all that is reported in a folder, or of what one rule reports."""
+    for diagnostic in found(snapshot):
+        if code in (None, diagnostic.code):
+            for action in quick_fixes(snapshot, diagnostic.path, diagnostic):
+                yield diagnostic, action
 
-    Of several names that may be meant, those that are not preferred may be wrong. With `errors_may_come`, a fix need
-    only remove its diagnostic.
+
+def broken_promises(workspace: Workspace, code: str | None = None, *, may_add: Collection[str] = ()) -> Iterator[str]:
+    """What is wrong with the fixes of all that is reported in a folder, or of what one rule reports.
+
+    Args:
+        workspace: the folder.
+        code: of the rule, if it is about one.
+        may_add: the codes of errors that a preferred fix may add. Where several things are wrong at once, mending one
+            may bring another to light.
     """
     snapshot = workspace.snapshot()
     before = found(snapshot)
-    for diagnostic in before:
-        if code in (None, diagnostic.code):
-            for action in quick_fixes(snapshot, diagnostic.path, diagnostic):
-                strict = not errors_may_come and (action.preferred or not action.title.startswith("Change to"))
-                reason = _reason(snapshot, before, diagnostic, action, strict=strict)
-                if reason:
-                    name = os.path.basename(diagnostic.path)
-                    yield f"{name}: {diagnostic.code}: {diagnostic.message}: {action.title}: {reason}"
+    for diagnostic, action in offered(snapshot, code):
+        reason = _reason(snapshot, before, diagnostic, action, may_add)
+        if reason:
+            name = os.path.basename(diagnostic.path)
+            yield f"{name}: {diagnostic.code}: {diagnostic.message}: {action.title}: {reason}"
 
 
 def _reason(
-    snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action, *, strict: bool
+    snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action, may_add: Collection[str]
 ) -> str:
     texts = applied(snapshot, action.make())
     if not texts:
@@ -64,14 +72,12 @@ def _reason(
     after = found(snapshot.with_texts(texts))
     if Counter(map(_key, after))[_key(diagnostic)] >= Counter(map(_key, before))[_key(diagnostic)]:
         return "the diagnostic stays"
-    if any(each.code == "internal-error" for each in after):
+    if any(d.code == "internal-error" for d in after):
         return "a rule fails"
-    if action.preferred and _ill_formed(after) > _ill_formed(before):
-        return "the text is less well-formed than before"
-    new = Counter(map(_key, _errors(after))) - Counter(map(_key, _errors(before)))
-    removes = diagnostic.severity is Severity.ERROR
-    if strict and new and (action.preferred or len(_errors(after)) > len(_errors(before)) - removes):
-        return f"new errors: {sorted(new)}"
+    if action.preferred:
+        new = _errors(after) - _errors(before)
+        if any(code not in may_add for _, code in new):
+            return f"new errors: {sorted(new)}"
     return ""
 
 
@@ -79,12 +85,9 @@ def found(snapshot: Snapshot) -> list[Diagnostic]:
     return [d for path in snapshot.files() for d in snapshot.checker.diagnostics(path)]
 
 
-def _ill_formed(diagnostics: list[Diagnostic]) -> int:
-    return sum(diagnostic.code in ("xml-syntax", "duplicate-attribute") for diagnostic in diagnostics)
-
-
-def _errors(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    return [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
+def _errors(diagnostics: list[Diagnostic]) -> Counter[tuple[str, str]]:
+    """Path and code of each error. Messages name what is around, which a fix may change."""
+    return Counter((d.path, d.code) for d in diagnostics if d.severity is Severity.ERROR)
 
 
 def _key(diagnostic: Diagnostic) -> tuple[str, str, str]:

@@ -17,6 +17,7 @@ from pygls import uris
 
 from as2fm_lsp.buffer import MARK, Units
 from roaml.diagnostics import Diagnostic, Severity, Tag
+from roaml.facts import facts_to_json
 from roaml.rules import document_file
 from roaml.text import Location, SourceFile, Span, TextEdit
 
@@ -121,6 +122,7 @@ class Converter:
             source=SOURCE,
             tags=[_TAGS[tag] for tag in diagnostic.tags] or None,
             related_information=related or None,
+            data=facts_to_json(diagnostic.facts) if diagnostic.facts else None,
         )
 
     def location(self, source: SourceFile, location: Location) -> types.Location:

@@ -24,8 +24,10 @@ from lsprotocol import types
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import Progress, progress
 from as2fm_lsp.session import Moment, Session
+from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.project.memo import Interrupted
+from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
 
 if TYPE_CHECKING:
@@ -163,10 +165,16 @@ class Diagnostics:
         source = snapshot.analysis.source(path)
         if source is None:
             return []
-        found = snapshot.checker.diagnostics(path)
-        related = {r.location.path for d in found for r in d.related}
+        return self.converted(snapshot, source, snapshot.checker.diagnostics(path))
+
+    def converted(
+        self, snapshot: Snapshot, source: SourceFile, diagnostics: Iterable[Diagnostic]
+    ) -> list[types.Diagnostic]:
+        """Diagnostics of a file, as the client takes them."""
+        diagnostics = tuple(diagnostics)
+        related = {r.location.path for d in diagnostics for r in d.related}
         sources: dict[str, SourceFile] = {p: s for p in related if (s := snapshot.analysis.source(p)) is not None}
-        return [self.session.convert.diagnostic(d, source, sources) for d in found]
+        return [self.session.convert.diagnostic(d, source, sources) for d in diagnostics]
 
     def document_report(
         self, path: str, previous: str | None

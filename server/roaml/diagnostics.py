@@ -12,6 +12,7 @@ import enum
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.facts import Facts
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span, TextEdit
 
@@ -75,7 +76,10 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A finding about a span. Without `severity`, the severity of the rule is used."""
+    """Something to say about a span. Without `severity` the rule's own severity holds.
+
+    `facts` are what fixes read that reach into other files. The message is for people only.
+    """
 
     code: str
     span: Span
@@ -84,6 +88,7 @@ class Finding:
     fixes: tuple[Fix, ...] = ()
     related: tuple[Related, ...] = ()
     tags: tuple[Tag, ...] = ()
+    facts: Facts | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,3 +111,4 @@ class Diagnostic:
     fixes: tuple[Fix, ...] = ()
     related: tuple[RelatedPlace, ...] = ()
     tags: tuple[Tag, ...] = ()
+    facts: Facts | None = None

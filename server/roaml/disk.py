@@ -28,6 +28,7 @@ class Problem(enum.Enum):
     SPECIAL = "it is not a regular file"
     UNREADABLE = "it cannot be read"
     TOO_LARGE = "it is larger than 32 MB"
+    TOO_LONG = "it is too large to be checked"
     OUTSIDE = (
         "it is a link to a file outside of the workspace; open the folder of that file as well, or add it to "
         "`roots` or "

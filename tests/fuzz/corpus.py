@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import conformance
-from fixture import read_marks, split_files
+from fixture import read_cases, read_marks, split_files
 from roaml import api
 from roaml.project.settings import Settings
 from roaml.text import decode
@@ -22,7 +22,6 @@ NOWHERE = os.path.join(os.sep, "nowhere")
 """The folder of models that are only in memory."""
 
 _BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-_TITLE = re.compile(r"^## .+\n", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -62,14 +61,12 @@ def _on_disk(main: Path, ros_paths: tuple[str, ...]) -> Model:
 
 
 def _written() -> Iterator[Model]:
-    documents = sorted((ROOT / "server" / "roaml" / "rules").glob("*.md"))
-    for document in documents:
+    for document in sorted((ROOT / "server" / "roaml" / "rules").glob("*/*.md")):
         for number, block in enumerate(_BLOCK.findall(document.read_text(encoding="utf-8"))):
             yield from _in_memory(f"{document.stem}_{number}", block)
-    for case in sorted((ROOT / "tests" / "rules").rglob("*.txt")):
-        common, *parts = _TITLE.split(case.read_text(encoding="utf-8"))
-        for number, part in enumerate(parts):
-            yield from _in_memory(f"{case.stem}_case_{number}", common + part if part.startswith("-- ") else part)
+    for path in sorted((ROOT / "tests" / "rules" / "cases").glob("*/*.txt")):
+        for number, case in enumerate(read_cases(path)):
+            yield from _in_memory(f"{path.stem}_case_{number}", case.text)
 
 
 def _in_memory(name: str, written: str) -> Iterator[Model]:

@@ -88,12 +88,14 @@ class Client(LanguageClient):
         events = [types.FileEvent(path.as_uri(), kind) for path in paths]
         self.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(events))
 
-    async def fixes(self, path: Path, range_: types.Range) -> list[types.CodeAction]:
-        """The quick fixes at a place."""
+    async def fixes(
+        self, path: Path, range_: types.Range, shown: Sequence[types.Diagnostic] = ()
+    ) -> list[types.CodeAction]:
+        """The quick fixes at a place, where the client shows some diagnostics."""
         params = types.CodeActionParams(
             types.TextDocumentIdentifier(path.as_uri()),
             range_,
-            types.CodeActionContext([], only=[types.CodeActionKind.QuickFix]),
+            types.CodeActionContext(list(shown), only=[types.CodeActionKind.QuickFix]),
         )
         actions = await self.text_document_code_action_async(params)
         return [action for action in actions or () if isinstance(action, types.CodeAction)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 from client import Client, connect
 from lsprotocol import types
 from test_lsp_navigate import place
@@ -168,3 +169,47 @@ async def test_an_action_of_nobody(tmp_path: Path) -> None:
         for data in (None, 3, {"uri": "file:///nowhere"}, {"uri": "file:///nowhere", "start": "x", "end": 1}):
             action = types.CodeAction("Do it", kind="quickfix", data=data)
             assert (await client.code_action_resolve_async(action)).edit is None
+
+
+COUNTED = """\
+-- main.xml --
+<roaml>
+    <parameters><max_time value="1" unit="s" /></parameters>
+    <behavior_tree>
+        <input type="bt-plugin-ascxml" src="go.ascxml" />
+    </behavior_tree>
+</roaml>
+-- go.ascxml --
+<ascxml name="Go" version="1.0" initial="a">
+    <state id="a">
+        <bt_tick target="a"><bt_return_status status="SUCCESS" /></bt_tick>
+        <bt_halt target="a"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+-- tree.xml --
+<root BTCPP_format="4"><BehaviorTree ID="MainTree"><Go /></BehaviorTree></root>
+"""
+
+
+async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
+    """The client gets its own diagnostic back, whatever it has made of it; what it makes up changes nothing."""
+    for name, text in split_files(COUNTED).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    main = tmp_path / "main.xml"
+    async with connect(tmp_path, capabilities=LAZY) as client:
+        client.open(main, language="xml")
+        await client.until(lambda: "input-count" in client.codes(main))
+        counted = next(d for d in client.published[main.as_uri()].diagnostics if d.code == "input-count")
+        assert counted.data == {"kind": "TREE"}
+
+        async def mended_by(sent: types.Diagnostic) -> list[types.Diagnostic]:
+            actions = await client.fixes(main, counted.range, [sent])
+            [action] = [action for action in actions if action.title == "List `tree.xml`"]
+            resolved = await client.code_action_resolve_async(action)
+            assert resolved.edit is not None
+            return list(resolved.diagnostics or ())
+
+        translated = attrs.evolve(counted, message="in another language")
+        assert await mended_by(translated) == [translated]
+        for data in (None, {"kind": "NONSENSE"}, {"kind": ["TREE"]}, [1, 2], "TREE", {"kind": "TREE", "more": 1}):
+            assert await mended_by(attrs.evolve(translated, data=data)) == [counted]

@@ -1,27 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every rule has a document, and what the document shows is what the rule does.
 
-A document has the sections What it does, Why, Fix, Bad and Good, without Fix if nothing is offered. The bad example
-gives the rule's code and nothing else that is a warning or worse; the good one gives nothing of the kind. What is
-offered is tested in test_fixes.
+A document has the sections What it does, Why, Fix, Bad and Good, without Fix if the rule offers none. The bad example
+has a finding of the rule and no other warning or error; the good one has no warning, no error and no finding of the
+rule. Each fix of the bad example is made: it removes its finding; a preferred one adds no error.
 """
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import pytest
+from rule_files import cases_of_rules, documents, examples, section
 
-import roaml.rules
-from fixture import check_text, split_files
-from roaml.diagnostics import Diagnostic, Severity
-from roaml.rules import RULES, document
-from roaml.rules.rule import Rule
+from fixture import Case, split_files, write_files
+
+if TYPE_CHECKING:
+    from roaml.diagnostics import Diagnostic
 
 SECTIONS = ["What it does", "Why", "Bad", "Good"]
 # No small text file shows them: three are found outside the rules' own checks, two need certain bytes, and for one no
-# file is known. The last three are tested in test_cases_z.
+# file is known. The last three are tested in tests/findings.
 WITHOUT_EXAMPLE = {
     "file-too-large",
     "ignored-encoding",
@@ -32,63 +34,85 @@ WITHOUT_EXAMPLE = {
 }
 CAUSES = {"not-checked": "unknown-element"}
 """The mistakes that examples show besides, because a rule only says what follows from them."""
-_BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+WITH_EXAMPLE = [code for code in documents() if code not in WITHOUT_EXAMPLE]
 
 
-def section(code: str, title: str) -> str:
-    match = re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", document(code), re.MULTILINE | re.DOTALL)
-    assert match is not None, f"{code} has no section {title}"
-    return match[1].strip()
+def parameters(title: str) -> list[object]:
+    cases = [case for code in WITH_EXAMPLE for case in examples(code, title)]
+    return [pytest.param(case, id=f"{case.subject}: {case.title}") for case in cases]
 
 
-def examples(code: str, title: str) -> list[str]:
-    return _BLOCK.findall(section(code, title))
+BAD = pytest.mark.parametrize("case", parameters("Bad"))
 
 
-WITH_EXAMPLE = [rule for rule in RULES if rule.code not in WITHOUT_EXAMPLE]
-by_code = pytest.mark.parametrize("rule", WITH_EXAMPLE, ids=lambda rule: rule.code)
+@pytest.mark.parametrize("code", documents())
+def test_has_its_parts(code: str) -> None:
+    text = documents()[code]
+    assert text.startswith(f"# {code}\n\n")
+    expected = SECTIONS if code in WITH_EXAMPLE else SECTIONS[:2]
+    titles = re.findall(r"^## (.*)$", text, re.MULTILINE)
+    assert [title for title in titles if title != "Fix"] == expected
+    assert titles[2:3] == ["Fix"] or "Fix" not in titles
+    assert all(section(code, title) for title in expected)
 
 
-@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
-def test_has_its_parts(rule: Rule) -> None:
-    text = document(rule.code)
-    assert text.startswith(f"# {rule.code}\n\n{rule.summary}\n")
-    wanted = SECTIONS if rule in WITH_EXAMPLE else SECTIONS[:2]
-    found = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert [title for title in found if title != "Fix"] == wanted
-    assert found[2:3] == ["Fix"] or "Fix" not in found
-    assert all(section(rule.code, title) for title in wanted)
+@pytest.mark.parametrize("code", WITH_EXAMPLE)
+def test_has_examples(code: str) -> None:
+    """Whose files have different names."""
+    for title in ("Bad", "Good"):
+        assert examples(code, title)
+        assert all(split_files(case.text) for case in examples(code, title))
 
 
-@by_code
-def test_bad_example(rule: Rule, tmp_path: Path) -> None:
-    found = [check_text(tmp_path / str(number), text)[0] for number, text in enumerate(examples(rule.code, "Bad"))]
-    assert found, "there is no bad example"
-    for diagnostics in found:
-        assert rule.code in {d.code for d in diagnostics}, shown(diagnostics)
-        allowed = {rule.code, CAUSES.get(rule.code)}
-        other = [d for d in diagnostics if d.code not in allowed and d.severity >= Severity.WARNING]
-        assert not other, shown(other)
+@BAD
+def test_bad_example(case: Case, checked: ModuleType, tmp_path: Path) -> None:
+    diagnostics, _ = checked.check_text(tmp_path, case.text)
+    assert case.subject in {d.code for d in diagnostics}, shown(diagnostics)
+    allowed = {case.subject, CAUSES.get(case.subject)}
+    other = [d for d in diagnostics if d.code not in allowed and d.severity >= checked.Severity.WARNING]
+    assert not other, shown(other)
 
 
-@by_code
-def test_good_example(rule: Rule, tmp_path: Path) -> None:
-    found = [check_text(tmp_path / str(number), text)[0] for number, text in enumerate(examples(rule.code, "Good"))]
-    assert found, "there is no good example"
-    for diagnostics in found:
-        bad = [d for d in diagnostics if d.code == rule.code or d.severity >= Severity.WARNING]
-        assert not bad, shown(bad)
+@pytest.mark.parametrize("case", parameters("Good"))
+def test_good_example(case: Case, checked: ModuleType, tmp_path: Path) -> None:
+    diagnostics, _ = checked.check_text(tmp_path, case.text)
+    bad = [d for d in diagnostics if d.code == case.subject or d.severity >= checked.Severity.WARNING]
+    assert not bad, shown(bad)
 
 
-def test_every_document_belongs_to_a_rule() -> None:
-    documents = sorted(path.stem for path in Path(roaml.rules.__file__).parent.rglob("*.md"))
-    assert documents == [rule.code.replace("-", "_") for rule in RULES]
+@BAD
+def test_fixes(case: Case, mending: ModuleType, tmp_path: Path) -> None:
+    write_files(tmp_path, case.text)
+    assert not list(mending.broken_promises(mending.workspace_of(tmp_path), case.subject))
 
 
-def test_examples_name_no_file_twice() -> None:
-    for rule in WITH_EXAMPLE:
-        for text in (*examples(rule.code, "Bad"), *examples(rule.code, "Good")):
-            assert split_files(text)
+@BAD
+def test_fixes_keep_line_ends(case: Case, mending: ModuleType, tmp_path: Path) -> None:
+    write_files(tmp_path, case.text)
+    for path in tmp_path.rglob("*.*"):
+        path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    snapshot = mending.workspace_of(tmp_path).snapshot()
+    for _, action in mending.offered(snapshot):
+        change = action.make()
+        for path, after in mending.applied(snapshot, change).items():
+            if path not in change.created:
+                assert "\n" not in after.replace("\r\n", ""), action.title
+
+
+@pytest.mark.parametrize("code", documents())
+def test_describes_the_fix(code: str, mending: ModuleType, tmp_path: Path) -> None:
+    """There is a section Fix if and only if some example or case of the rule has a fix."""
+    cases = [case for case in cases_of_rules() if case.subject == code]
+    cases += examples(code, "Bad") if code in WITH_EXAMPLE else []
+    is_offered = False
+    for number, case in enumerate(reversed(cases)):
+        folder = tmp_path / str(number)
+        write_files(folder, case.text)
+        if any(mending.offered(mending.workspace_of(folder).snapshot(), code)):
+            is_offered = True
+            break
+    assert ("\n## Fix\n" in documents()[code]) is is_offered
 
 
 def shown(diagnostics: list[Diagnostic]) -> str:

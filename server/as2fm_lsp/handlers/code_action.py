@@ -8,22 +8,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
 from as2fm_lsp.handlers import translate
 from roaml.diagnostics import Diagnostic
+from roaml.facts import Facts, facts_from_json, facts_to_json
 from roaml.ide.code_actions import actions
 from roaml.ide.code_actions.action import FIX_ALL, KINDS, Action, Change
 from roaml.project.workspace import Snapshot
-from roaml.text import Span
+from roaml.rules import BY_CODE
+from roaml.text import SourceFile, Span
 
 if TYPE_CHECKING:
     from as2fm_lsp.server import Server
-    from as2fm_lsp.session import Moment
 
 
 def register(server: Server) -> None:
@@ -33,13 +33,12 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, options)
     def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
         path = session.convert.path(params.text_document.uri)
-        moment = session.moment()
-        snapshot = moment.snapshot(path)
+        snapshot = session.moment().snapshot(path)
         source = snapshot.analysis.source(path)
         if source is None:
             return []
         place, only = session.convert.span(source, params.range), params.context.only
-        shown = _Shown(server, moment, path)
+        shown = _Shown(server, snapshot, source, params.context.diagnostics)
         found = [
             _converted(server, snapshot, path, place, shown, action)
             for action in actions(snapshot, path, place, lambda kind: _is_wanted(kind, only))
@@ -84,24 +83,42 @@ def _converted(
     return found
 
 
-def _identity(action: Action) -> str:
+def _identity(action: Action) -> dict[str, Any] | None:
     """What tells actions of one title apart: the diagnostic that they are about."""
-    return f"{action.mends.code} {action.mends.span.start}" if action.mends else ""
+    mended = action.mends
+    if mended is None:
+        return None
+    facts = facts_to_json(mended.facts) if mended.facts else None
+    return {"code": mended.code, "start": mended.span.start, "facts": facts}
 
 
 class _Shown:
-    """The diagnostics of a file as the client has them, made when the first is needed."""
+    """The diagnostics that actions mend, as the client has them: those that it sends along, others made anew.
 
-    def __init__(self, server: Server, moment: Moment, path: str) -> None:
-        self._server, self._moment, self._path = server, moment, path
+    What the client sends may be out of date or made up. It is used only if one diagnostic of ours has its code, place
+    and facts.
+    """
 
-    @cached_property
-    def _known(self) -> Mapping[Diagnostic, types.Diagnostic]:
-        found = self._moment.snapshot(self._path).checker.diagnostics(self._path)
-        return dict(zip(found, self._server.diagnostics.of(self._moment, self._path), strict=True))
+    def __init__(
+        self, server: Server, snapshot: Snapshot, source: SourceFile, sent: Iterable[types.Diagnostic]
+    ) -> None:
+        self._server, self._snapshot, self._source = server, snapshot, source
+        self._sent: dict[tuple[str, Span, Facts | None], list[types.Diagnostic]] = {}
+        for diagnostic in sent:
+            self._sent.setdefault(self._identity(diagnostic), []).append(diagnostic)
+
+    def _identity(self, sent: types.Diagnostic) -> tuple[str, Span, Facts | None]:
+        code, rule = str(sent.code), BY_CODE.get(str(sent.code))
+        facts = facts_from_json(rule.facts, sent.data) if rule and rule.facts else None
+        return code, self._server.session.convert.span(self._source, sent.range), facts
 
     def of(self, diagnostic: Diagnostic | None) -> list[types.Diagnostic] | None:
-        return None if diagnostic is None else [self._known[diagnostic]]
+        if diagnostic is None:
+            return None
+        known = self._sent.get((diagnostic.code, diagnostic.span, diagnostic.facts), [])
+        if len(known) == 1:
+            return known
+        return self._server.diagnostics.converted(self._snapshot, self._source, [diagnostic])
 
 
 def _edit(server: Server, snapshot: Snapshot, change: Change) -> types.WorkspaceEdit:

@@ -88,12 +88,12 @@ class IndexOutOfBounds:
 
 @dataclass(frozen=True, slots=True)
 class BadOperand:
-    """`operator` does not support an operand of type `given`; it requires `wanted` (a noun phrase)."""
+    """`operator` does not take an operand of type `given`; it takes `wanted`, BOOL or REAL."""
 
     span: Span
     operator: str
     given: Type
-    wanted: str
+    wanted: Type
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,7 +270,7 @@ class _Inference:
             case Call():
                 return self.call(expr)
             case Conditional():
-                self.operand(expr.test, "?", BOOL, "a boolean")
+                self.operand(expr.test, "?", BOOL)
                 return self.common(self.type_of(expr.then), expr.otherwise)
             case ArrayLiteral():
                 return self.array(expr)
@@ -332,8 +332,8 @@ class _Inference:
     def binary(self, expr: Binary) -> Type:
         operator = expr.operator
         if operator.kind == "logical":
-            self.operand(expr.left, operator.symbol, BOOL, "a boolean")
-            self.operand(expr.right, operator.symbol, BOOL, "a boolean")
+            self.operand(expr.left, operator.symbol, BOOL)
+            self.operand(expr.right, operator.symbol, BOOL)
             return BOOL
         left, right = self.type_of(expr.left), self.type_of(expr.right)
         if operator.kind == "equality":
@@ -342,7 +342,7 @@ class _Inference:
         good = True
         for type_, operand in ((left, expr.left), (right, expr.right)):
             if not (isinstance(type_, Unknown) or is_number(type_)):
-                self.problems.append(BadOperand(operand.span, operator.symbol, type_, "a number"))
+                self.problems.append(BadOperand(operand.span, operator.symbol, type_, REAL))
                 good = False
         if operator.kind == "order":
             return BOOL
@@ -372,13 +372,13 @@ class _Inference:
 
     def unary(self, expr: Unary) -> Type:
         if expr.operator is UnaryOperator.NOT:
-            self.operand(expr.operand, "!", BOOL, "a boolean")
+            self.operand(expr.operand, "!", BOOL)
             return BOOL
         type_ = self.type_of(expr.operand)
         if isinstance(type_, Unknown):
             return UNKNOWN
         if not is_number(type_):
-            self.problems.append(BadOperand(expr.operand.span, expr.operator.symbol, type_, "a number"))
+            self.problems.append(BadOperand(expr.operand.span, expr.operator.symbol, type_, REAL))
             return UNKNOWN
         return INT if is_kind(type_, "int") else REAL
 
@@ -400,7 +400,7 @@ class _Inference:
             self.problems.append(RandomUsed(expr.span))
         for type_, argument in zip(arguments, expr.arguments, strict=True):
             if not (isinstance(type_, Unknown) or is_number(type_)):
-                self.problems.append(BadOperand(argument.span, f"Math.{function.name}", type_, "a number"))
+                self.problems.append(BadOperand(argument.span, f"Math.{function.name}", type_, REAL))
         if function.result == "same":
             if not arguments or not all(map(is_number, arguments)):
                 return UNKNOWN
@@ -427,10 +427,10 @@ class _Inference:
             return UNKNOWN
         return found
 
-    def operand(self, expr: Expr, operator: str, wanted: Type, noun: str) -> None:
+    def operand(self, expr: Expr, operator: str, wanted: Type) -> None:
         type_ = self.type_of(expr)
         if not fits(type_, wanted):
-            self.problems.append(BadOperand(expr.span, operator, type_, noun))
+            self.problems.append(BadOperand(expr.span, operator, type_, wanted))
 
 
 def _function_name(function: Expr) -> str | None:

@@ -79,6 +79,10 @@ class EvaluationError(Exception):
         self.origin = origin
 
 
+class DivisionByZeroError(EvaluationError):
+    """A number is divided by zero."""
+
+
 def evaluate(
     expression: Expression, variables: Mapping[str, Value], functions: Mapping[str, Function] | None = None
 ) -> Value:
@@ -240,7 +244,7 @@ def _apply(node: Unary | Binary, operator: Operator, *values: Value) -> Value:
     try:
         return operator.function(*values)  # type: ignore[no-any-return]
     except ZeroDivisionError:
-        message = "division by zero"
+        raise DivisionByZeroError("division by zero", node.origin) from None
     except OverflowError:
         message = f"the result of `{operator.symbol}` is too large"
     except ValueError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from roaml.disk import Problem
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.spelling import meant
@@ -43,14 +44,14 @@ class ListedFile:
 
     Attributes:
         path: "" if no file is named.
-        problem: why the file cannot be used, as a clause; "" if it can.
+        problem: why the file cannot be read; None if it can, or if none is named.
         wanted: what the system takes it for, None if its type says nothing that is known.
         found: what it is.
     """
 
     input: Input
     path: str
-    problem: str
+    problem: Problem | None
     wanted: FileKind | None
     found: FileKind
 
@@ -61,7 +62,7 @@ class ListedFile:
 
     @property
     def usable(self) -> bool:
-        return bool(self.path) and not self.problem and self.found is self.wanted
+        return bool(self.path) and self.problem is None and self.found is self.wanted
 
 
 _WANTED = {

@@ -286,19 +286,19 @@ class Analysis:
     def _listed_file(self, base: str, entry: Input) -> ListedFile:
         wanted = wanted_kind(entry)
         if entry.src is None:
-            return ListedFile(entry, "", "", wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, "", None, wanted, FileKind.UNKNOWN)
         path = resolve(base, entry.src.value)
         source = self.files.read(path)
         if isinstance(source, Problem):
-            return ListedFile(entry, path, source.value, wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, path, source, wanted, FileKind.UNKNOWN)
         if len(source.text) > MAX_CHARACTERS:
-            return ListedFile(entry, path, "it is too large to be checked", wanted, self.kind(path))
+            return ListedFile(entry, path, Problem.TOO_LONG, wanted, self.kind(path))
         found = self.kind(path)
         if found is FileKind.MACHINE and self.machine(path) is None:
             found = FileKind.UNKNOWN
         if wanted is FileKind.JSON_STRUCTS and found is FileKind.UNKNOWN and path.endswith(".json"):
             found = FileKind.JSON_STRUCTS
-        return ListedFile(entry, path, "", wanted, found)
+        return ListedFile(entry, path, None, wanted, found)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
         """The tree files of a system: the listed one, then what it includes, each once."""

@@ -165,7 +165,9 @@ class Checker:
         related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
         source = self.analysis.source(path) if finding.fixes else None
         fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
-        return Diagnostic(path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags)
+        return Diagnostic(
+            path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags, finding.facts
+        )
 
     def _related(self, path: str, related: Related) -> RelatedPlace | None:
         if isinstance(related.place, Symbol):

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
+from roaml.facts import Facts
 from roaml.interfaces.registry import NotFound
 from roaml.jani.properties import Property
 from roaml.json_syntax import JsonValue
@@ -139,6 +140,7 @@ class Rule:
     summary: one sentence on what is wrong.
     file, machine, tree, system, structs, properties: the checks for files of these kinds.
     plain: the machine check also holds for plain SCXML.
+    facts: the type of the facts of its findings, for rules whose fixes read facts.
     """
 
     code: str
@@ -151,6 +153,7 @@ class Rule:
     structs: Callable[[StructsContext], Iterable[Finding]] | None = None
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
     plain: bool = False
+    facts: type[Facts] | None = None
 
     def at(
         self,
@@ -160,8 +163,10 @@ class Rule:
         severity: Severity | None = None,
         related: Iterable[Related] = (),
         tags: tuple[Tag, ...] = (),
+        facts: Facts | None = None,
     ) -> Finding:
-        return Finding(self.code, span, message, severity, fixes, tuple(related), tags)
+        assert facts is None or type(facts) is self.facts
+        return Finding(self.code, span, message, severity, fixes, tuple(related), tags, facts)
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Real, Unary
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
-from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.jani.semantics import DivisionByZeroError, EvaluationError, evaluate
 from roaml.smc.cells import CellAssembler
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
@@ -128,9 +128,10 @@ class OperatorAssembler(CellAssembler):
         plain = Unary(node.operator, *constants) if isinstance(node, Unary) else Binary(node.operator, *constants)
         try:
             result = evaluate(plain, {})
-        except EvaluationError as error:
-            code = FaultCode.DIVISION if "division" in error.message else FaultCode.DOMAIN
-            return self.failing(node, code, kind)
+        except DivisionByZeroError:
+            return self.failing(node, FaultCode.DIVISION, kind)
+        except EvaluationError:
+            return self.failing(node, FaultCode.DOMAIN, kind)
         assert isinstance(result, (bool, int, float))
         if kind == INT and abs(result) > MOST:
             return self.failing(node, FaultCode.OVERFLOW, kind)

@@ -12,12 +12,14 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from roaml.diagnostics import Diagnostic
+from roaml.disk import Problem
 from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import QUICK_FIX, Action, Change, known
 from roaml.ide.code_actions.inputs import add_input, move_input
 from roaml.ide.code_actions.new_plugin import port_of, skeletons
 from roaml.ide.rename import Renaming, rename
+from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT
@@ -27,7 +29,12 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
+from roaml.rules.elements.missing_element import MissingChild
+from roaml.rules.files.missing_file import UnusableFile
 from roaml.rules.rule import close_names
+from roaml.rules.support.names import WrongName
+from roaml.rules.systems.input_count import InputCount
+from roaml.rules.trees.blackboard_type_conflict import TypeConflict
 from roaml.text import SourceFile, Span, TextEdit
 
 _MOST = 3
@@ -38,7 +45,7 @@ _Edits = dict[str, tuple[TextEdit, ...]]
 
 def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """What can be done about a diagnostic, apart from what its rule offers."""
-    repair = _REPAIRS.get(diagnostic.code)
+    repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
         yield from repair(snapshot, diagnostic)
 
@@ -62,7 +69,8 @@ def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action
     of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.wanted)
     yield from _other_files(analysis, diagnostic, listed.path, of_kind)
     text = _NEW.get(listed.input.type.value if listed.input.type else "")
-    if text is not None and listed.problem == "there is no such file" and is_on_disk(listed.path):
+    is_missing = diagnostic.facts == UnusableFile(Problem.MISSING)
+    if text is not None and is_missing and is_on_disk(listed.path):
         yield from _create(diagnostic, listed, text)
 
 
@@ -175,13 +183,14 @@ def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: Liste
 
 
 def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
-    if diagnostic.message.startswith("there are plugins"):
+    if diagnostic.facts == InputCount(FileKind.TREE):
         yield from _list_file(snapshot, diagnostic, "behavior_tree", "bt.cpp-xml", FileKind.TREE)
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """A system without properties, whose folder has a file of them."""
-    if snapshot.analysis.kind(diagnostic.path) is FileKind.SYSTEM and "`<properties>`" in diagnostic.message:
+    facts = diagnostic.facts
+    if isinstance(facts, MissingChild) and facts.parent in SYSTEM.roots and facts.name == "properties":
         yield from _list_file(snapshot, diagnostic, "properties", "jani", FileKind.PROPERTIES)
 
 
@@ -301,11 +310,10 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Actio
 def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """Declare a port with the type that the other port has at the same variable."""
     analysis = snapshot.analysis
-    found = _CONFLICT.search(diagnostic.message)
-    node = _node_at(analysis, diagnostic)
-    if found is None or node is None or node.plugin is None:
+    facts, node = diagnostic.facts, _node_at(analysis, diagnostic)
+    if not isinstance(facts, TypeConflict) or node is None or node.plugin is None:
         return
-    key, other = found["key"], found["other"]
+    key, other = facts.port, facts.other_type
     for system in analysis.memberships.get(diagnostic.path, ())[:1]:
         linked = analysis.system(system)
         path = linked.plugin(node.plugin.value)[0] if linked else ""
@@ -316,18 +324,15 @@ def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Actio
             yield _action(diagnostic, f"Declare `{key}` of `{node.plugin.value}` as {other}", known(change))
 
 
-_CONFLICT = re.compile(r"at the port `(?P<key>[^`]+)` and `(?P<other>[^`]+)` at ")
-
-
 # --------------------------------------------------------------------- names
 
 
 def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """A name that cannot be is changed wherever it stands."""
-    if diagnostic.fixes:
+    if diagnostic.fixes or not isinstance(diagnostic.facts, WrongName):
         return
     analysis = snapshot.analysis
-    new = re.sub(r"\W", "_", _text_at(analysis, diagnostic), flags=re.ASCII).strip("_")
+    new = re.sub(r"\W", "_", diagnostic.facts.name, flags=re.ASCII).strip("_")
     if not new:
         return
     new = new if not new[0].isdigit() else f"n{new}"
@@ -373,7 +378,7 @@ def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
 
 
-_REPAIRS: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
+FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
     "blackboard-type-conflict": _type_conflict,
     "input-count": _no_tree,
     "invalid-name": _name,

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import first_in, last_in, remove
+from roaml.facts import Facts
 from roaml.language import HL_SCXML
 from roaml.language.validate import MissingElement
 from roaml.model.machine import Chart, Thread
@@ -15,6 +17,14 @@ from roaml.rules.support import misspelled
 from roaml.rules.support.children import has_counted_children
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
+
+
+@dataclass(frozen=True, slots=True)
+class MissingChild(Facts):
+    """`parent` has no child `name`."""
+
+    parent: str
+    name: str
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -26,14 +36,15 @@ def check(context: FileContext) -> Iterator[Finding]:
         if wanted is None:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
                 message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
-                yield RULE.at(element.name_span, message, *_leave_out(context, element))
+                facts = MissingChild(element.name, violation.names[0])
+                yield RULE.at(element.name_span, message, *_leave_out(context, element), facts=facts)
         elif not has_counted_children(violation.type):
             children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """Children that the schema cannot require, because it allows children in any order."""
+    """Children that the schema cannot limit, because it allows children in any order."""
     for chart in context.machine.charts:
         element = chart.element
         states = any(child.name == "state" for child in element.elements)
@@ -75,5 +86,10 @@ def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
 
 
 RULE = Rule(
-    "missing-element", Severity.ERROR, "A required child element is missing.", file=check, machine=check_machine
+    "missing-element",
+    Severity.ERROR,
+    "A required child element is missing.",
+    file=check,
+    machine=check_machine,
+    facts=MissingChild,
 )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
-from roaml.expr.types import Array, Struct, is_kind, is_number, unwrap
+from roaml.expr.types import BOOL, Array, Struct, is_kind, is_number, unwrap
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
@@ -24,7 +24,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         problem.span, f"the condition of `?` must be {problem.wanted}, not {phrase(problem.given)}"
                     )
                 case BadOperand():
-                    message = f"`{problem.operator}` takes {problem.wanted}, not {phrase(problem.given)}"
+                    operand = "a boolean" if problem.wanted == BOOL else "a number"
+                    message = f"`{problem.operator}` takes {operand}, not {phrase(problem.given)}"
                     yield RULE.at(problem.span, message, *_compare(problem))
                 case BadComparison():
                     yield RULE.at(problem.span, _comparison(problem))
@@ -43,7 +44,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _compare(problem: BadOperand) -> Iterator[Fix]:
     """Compare a number with 0 where a boolean is required."""
-    if problem.wanted == "a boolean" and is_number(problem.given):
+    if problem.wanted == BOOL and is_number(problem.given):
         yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
 
 

@@ -4,16 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Severity
+from roaml.disk import Problem
+from roaml.facts import Facts
 from roaml.rules.rule import Rule, SystemContext
+
+
+@dataclass(frozen=True, slots=True)
+class UnusableFile(Facts):
+    problem: Problem
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
     for listed in context.files:
         src = listed.input.src
-        if src is not None and listed.problem:
-            yield RULE.at(src.span, f"`{src.value}` cannot be used: {listed.problem}")
+        if src is not None and listed.problem is not None:
+            message = f"`{src.value}` cannot be used: {listed.problem.value}"
+            yield RULE.at(src.span, message, facts=UnusableFile(listed.problem))
 
 
-RULE = Rule("missing-file", Severity.ERROR, "A system lists a file that cannot be read.", system=check)
+RULE = Rule(
+    "missing-file", Severity.ERROR, "A system lists a file that cannot be read.", system=check, facts=UnusableFile
+)

@@ -25,7 +25,7 @@ TYPES = {
 def check(context: SystemContext) -> Iterator[Finding]:
     for listed in context.files:
         src = listed.input.src
-        if src is None or listed.problem or listed.wanted is None:
+        if src is None or listed.problem is not None or listed.wanted is None:
             continue
         if listed.usable:
             yield from _other_machine(context, listed, src)

@@ -4,12 +4,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
+from roaml.facts import Facts
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import ListedFile
 from roaml.rules.rule import Rule, SystemContext
+
+
+@dataclass(frozen=True, slots=True)
+class InputCount(Facts):
+    """`kind` is the kind of file that the system lists none of."""
+
+    kind: FileKind
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
@@ -23,7 +32,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
     # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
     unread = "behavior_tree" in context.file.unread
     if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
-        yield RULE.at(section.name_span, "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing")
+        message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
+        yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))
     properties = [f for f in context.files if f.input.section == "properties"]
     for extra in properties[1:]:
         related = (Related(properties[0].input.element.name_span, "the first one"),)
@@ -35,4 +45,10 @@ def _remove(context: SystemContext, listed: ListedFile) -> Fix:
     return remove(context.document, listed.input.element, "Remove this `<input>`")
 
 
-RULE = Rule("input-count", Severity.ERROR, "A system lists too many or too few files of a kind.", system=check)
+RULE = Rule(
+    "input-count",
+    Severity.ERROR,
+    "A system lists too many or too few files of a kind.",
+    system=check,
+    facts=InputCount,
+)

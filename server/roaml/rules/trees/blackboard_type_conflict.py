@@ -4,12 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.facts import Facts
 from roaml.model.system import BoundPort
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.blackboard import places
+
+
+@dataclass(frozen=True, slots=True)
+class TypeConflict(Facts):
+    """`other_type` is the type of another port that is bound to the same variable as `port`."""
+
+    port: str
+    other_type: str
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -28,6 +38,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                     f"`{variable}` is `{bound.port.type}` at the port `{bound.port.key}` and `{other.port.type}` at "
                     f"`{other.port.key}` of `{other.automaton.outline.name}`",
                     related=_related(bound, other),
+                    facts=TypeConflict(bound.port.key, other.port.type),
                 )
 
 
@@ -44,4 +55,5 @@ RULE = Rule(
     Severity.ERROR,
     "A blackboard variable is used with different types.",
     tree=check,
+    facts=TypeConflict,
 )

@@ -16,6 +16,7 @@ from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.interfaces import named_by_ports, port_span
+from roaml.rules.support.names import WrongName
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -26,8 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement in chart.statements:
             if isinstance(statement, Send):
                 if statement.event and not EVENT.match(statement.event.value):
-                    yield RULE.at(
-                        statement.event.span,
+                    yield _wrong(
+                        statement.event,
                         f"`{statement.event.value}` is not a valid event name: it must begin with a letter or `_` "
                         "and contain only "
                         "letters, digits, `.`, `-` and `_`",
@@ -41,16 +42,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _variable(name: Name) -> Iterator[Finding]:
     if reason := variable_problem(name.value):
-        yield RULE.at(name.span, reason)
+        yield _wrong(name, reason)
     elif name.value in EVENT_VARIABLES:
         message = f"`{name.value}` is also the name of received data, which hides the variable where it is available"
-        yield RULE.at(name.span, message, severity=Severity.WARNING)
+        yield _wrong(name, message, Severity.WARNING)
 
 
 def _parameter(name: Name) -> Iterator[Finding]:
     if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
         message = f"`{name.value}` is not a valid parameter name: only letters, digits and `_`, and no `_` at the end"
-        yield RULE.at(name.span, message)
+        yield _wrong(name, message)
 
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
@@ -58,7 +59,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
     what = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
     name = declaration.handle if declaration.kind is SymbolKind.TIMER else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
-        yield RULE.at(name.span, _with_spaces(name.value, what))
+        yield _wrong(name, _with_spaces(name.value, what))
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
@@ -72,8 +73,15 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
             empty = f"`{use.port}` names {_a(what)} and cannot be empty"
             message = _with_spaces(text, what) if text else empty
             related = (Related(automaton.symbol(use), "it is used here"),)
-            found[RULE.at(port_span(node, use.port), message, related=related)] = None
+            # A default is reported at the name of the node, which is no wrong name.
+            is_here = any(setting.key.value == use.port for setting in node.ports)
+            facts = WrongName(text) if is_here else None
+            found[RULE.at(port_span(node, use.port), message, related=related, facts=facts)] = None
     yield from found
+
+
+def _wrong(name: Name, message: str, severity: Severity | None = None) -> Finding:
+    return RULE.at(name.span, message, severity=severity, facts=WrongName(name.value))
 
 
 def _with_spaces(name: str, what: str) -> str:
@@ -85,5 +93,10 @@ def _a(what: str) -> str:
 
 
 RULE = Rule(
-    "invalid-name", Severity.ERROR, "A name is not valid for the thing that it names.", machine=check, tree=check_tree
+    "invalid-name",
+    Severity.ERROR,
+    "A name is not valid for the thing that it names.",
+    machine=check,
+    tree=check_tree,
+    facts=WrongName,
 )

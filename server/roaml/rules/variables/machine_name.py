@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.system import builtin_plugins, safe_name
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.rules.support.names import WrongName
 from roaml.text import TextEdit
 
 
@@ -23,17 +24,21 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     if "behavior_tree" in context.listed_as and name.value in builtin_plugins():
         message = f"`{name.value}` is the name of a node of BehaviorTree.CPP; rename the plugin"
-        yield RULE.at(name.span, message)
+        yield RULE.at(name.span, message, facts=WrongName(name.value))
     elif "behavior_tree" in context.listed_as and name.value in (*EXPLICIT, *SUBTREES):
         message = f"`<{name.value}>` has a special meaning in trees; rename the plugin"
-        yield RULE.at(name.span, message)
+        yield RULE.at(name.span, message, facts=WrongName(name.value))
     elif (safe := safe_name(name.value)) != name.value:
         message = f"`{name.value}` is not an identifier; generated names use `{safe}`"
         # The tree, if there is one, would have to be changed as well.
         fixes = [] if "behavior_tree" in context.listed_as else [*replacements(name.span, [safe])]
-        yield RULE.at(name.span, message, *fixes, severity=Severity.WARNING)
+        yield RULE.at(name.span, message, *fixes, severity=Severity.WARNING, facts=WrongName(name.value))
 
 
 RULE = Rule(
-    "machine-name", Severity.ERROR, "The name of a machine is already used or not an identifier.", machine=check
+    "machine-name",
+    Severity.ERROR,
+    "The name of a machine is already used or not an identifier.",
+    machine=check,
+    facts=WrongName,
 )

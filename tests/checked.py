@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnostics of test input."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fixture import Mark, write_files
+from roaml import api
+from roaml.diagnostics import Diagnostic, Severity
+from roaml.project.settings import Settings
+from roaml.rules import BY_CODE
+
+
+def check_text(folder: Path, text: str, settings: Settings | None = None) -> tuple[list[Diagnostic], list[Mark]]:
+    """Write the files of `text` into `folder` and check them all as a folder; what is found, what is expected."""
+    marks = write_files(folder, text)
+    result = api.check([str(folder)], settings=settings or Settings())
+    return list(result.diagnostics), marks
+
+
+def of_rule(diagnostics: list[Diagnostic], code: str) -> list[Diagnostic]:
+    """The findings of a rule that are more than hints, unless the rule only gives hints."""
+    least = min(Severity.INFORMATION, BY_CODE[code].severity)
+    return [d for d in diagnostics if d.code == code and d.severity >= least]
+
+
+def as_mark(diagnostic: Diagnostic, folder: Path) -> Mark:
+    file = Path(diagnostic.path).relative_to(folder).as_posix()
+    return Mark(file, *diagnostic.span, diagnostic.code)

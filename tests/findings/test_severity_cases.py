@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rules whose severity depends on the model; what is no error is translated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from checked import check_text
+from fixture import split_files
+from roaml import api
+from roaml.diagnostics import Severity
+
+SYSTEM = """
+-- main.xml --
+<roaml>
+    <parameters><max_time value="5" unit="s" /></parameters>
+    <node_models>
+        <input type="node-ascxml" src="robot.ascxml" />
+        <input type="node-ascxml" src="lamp.ascxml" />
+    </node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- properties.jani --
+{"properties": []}
+-- lamp.ascxml --
+<ascxml name="Lamp" version="1.0" initial="a">
+    <ros_topic_publisher name="light" topic="/light" type="std_msgs/Bool" />
+    <ros_time_rate name="second" rate_hz="1" />
+    <state id="a">
+        <ros_rate_callback name="second" target="a">
+            <ros_topic_publish name="light"><field name="data" expr="true" /></ros_topic_publish>
+        </ros_rate_callback>
+    </state>
+</ascxml>
+-- robot.ascxml --
+<ascxml name="Robot" version="1.0" initial="a">
+    <datamodel><data id="fast" type="bool" expr="false" /></datamodel>
+    <ros_topic_subscriber name="input" topic="TOPIC" type="std_msgs/Bool" />
+    <ros_topic_subscriber name="light" topic="/light" type="std_msgs/Bool" />
+    <state id="a">
+        <ros_topic_callback name="input" target="a"><assign location="fast" expr="_msg.data" /></ros_topic_callback>
+        <ros_topic_callback name="light" target="TARGET"><log expr="fast" /></ros_topic_callback>
+    </state>
+    <state id="b">
+        <ros_topic_callback name="input" target="a" />
+    </state>
+</ascxml>
+"""
+
+
+def check(folder: Path, topic: str, target: str) -> list[tuple[str, Severity]]:
+    text = SYSTEM.replace("TOPIC", topic).replace("TARGET", target)
+    diagnostics, _ = check_text(folder, text)
+    return [(d.code, d.severity) for d in diagnostics if d.code in ("topic-without-publisher", "ignored-element")]
+
+
+@pytest.mark.parametrize(
+    ("topic", "target", "severity"),
+    [
+        pytest.param("/joystick", "a", Severity.WARNING, id="the node always has something else to do"),
+        pytest.param("/joystick", "b", Severity.ERROR, id="the node waits for the message alone"),
+        pytest.param("/lihgt", "a", Severity.ERROR, id="the name is like that of another topic"),
+    ],
+)
+def test_topic_without_publisher(topic: str, target: str, severity: Severity, tmp_path: Path) -> None:
+    found = check(tmp_path, topic, target)
+    assert found == [("topic-without-publisher", severity), ("ignored-element", Severity.HINT)]
+
+
+def test_what_is_a_warning_is_translated(tmp_path: Path) -> None:
+    check(tmp_path, "/joystick", "a")
+    system = api.load(str(tmp_path / "main.xml"))
+    assert [automaton.name for automaton in api.to_jani(system).automata][:2] == ["Robot", "Lamp"]
+
+
+def test_an_optional_input_is_marked_by_a_comment(tmp_path: Path) -> None:
+    marked = '<!-- as2fm: ignore[topic-without-publisher] -->\n    <ros_topic_subscriber name="input"'
+    text = SYSTEM.replace('<ros_topic_subscriber name="input"', marked)
+    text = text.replace("TOPIC", "/joystick").replace("TARGET", "a")
+    assert set(split_files(text)) == {"main.xml", "properties.jani", "lamp.ascxml", "robot.ascxml"}
+    diagnostics, _ = check_text(tmp_path, text)
+    assert {d.code for d in diagnostics} == {"unreachable-state", "ignored-element"}
+
+
+@pytest.mark.parametrize(
+    ("declaration", "severity"),
+    [
+        ('<ros_time_rate name="t" rate_hz="1" />', Severity.ERROR),
+        ('<ros_topic_publisher name="t" topic="/t" type="std_msgs/Empty" />', Severity.WARNING),
+    ],
+)
+def test_only_timers_may_not_be_declared_twice_in_the_same_way(
+    declaration: str, severity: Severity, tmp_path: Path
+) -> None:
+    text = f'<ascxml name="A" version="1.0" initial="a">{declaration * 2}<state id="a" /></ascxml>'
+    diagnostics, _ = check_text(tmp_path, text)
+    assert [d.severity for d in diagnostics if d.code == "duplicate-handle"] == [severity]
