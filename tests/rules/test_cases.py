@@ -16,9 +16,9 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from rule_files import CASES_FOLDER, RULES_FOLDER, cases_of_all_rules, cases_of_rules, documents
 
 from fixture import Case, read_cases, write_files
+from rule_files import CASES_FOLDER, RULES_FOLDER, cases_of_all_rules, cases_of_rules, documents
 
 
 def parameters(cases: tuple[Case, ...]) -> list[object]:

@@ -14,9 +14,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 import pytest
-from rule_files import cases_of_rules, documents, examples, section
 
 from fixture import Case, split_files, write_files
+from rule_files import cases_of_rules, documents, examples, section
 
 if TYPE_CHECKING:
     from roaml.diagnostics import Diagnostic
