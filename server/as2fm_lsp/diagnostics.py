@@ -17,21 +17,19 @@ import time
 from collections.abc import Callable, Iterable
 from contextlib import AsyncExitStack
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from lsprotocol import types
 
+from as2fm_lsp.client import Client
 from as2fm_lsp.inbox import Inbox
-from as2fm_lsp.progress import Progress, progress
+from as2fm_lsp.progress import Progress, ProgressReporter
 from as2fm_lsp.session import Moment, Session
 from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.project.memo import Interrupted
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -53,11 +51,12 @@ class Diagnostics:
     finished: called when all that is known of a change has been told.
     """
 
-    def __init__(self, server: Server, session: Session, inbox: Inbox) -> None:
+    def __init__(self, client: Client, session: Session, inbox: Inbox, progress: ProgressReporter) -> None:
         self.session = session
         self.pushes = True
         self.finished: Callable[[], None] = lambda: None
-        self._server = server
+        self._client = client
+        self._progress = progress
         self._inbox = inbox
         self._gives_way = False
         self._sent: dict[str, tuple[int | None, list[types.Diagnostic]]] = {}
@@ -88,7 +87,7 @@ class Diagnostics:
         if self.pushes:
             await self._check_all()
         else:
-            self._server.ask_to_pull()
+            self._client.refresh_diagnostics()
         self._waiting.clear()
         self._all_waiting = False
         self.finished()
@@ -115,7 +114,7 @@ class Diagnostics:
             told: Progress | None = None
             for number, path in enumerate(there):
                 if told is None and self._all_waiting and time.monotonic() - started > QUICK:
-                    told = await shown.enter_async_context(progress(self._server, TITLE))
+                    told = await shown.enter_async_context(self._progress.show(TITLE))
                 if told is not None:
                     told.report(number, len(there))
                 await self._check(moment, path)
@@ -154,8 +153,7 @@ class Diagnostics:
         if before[1] == found and (before[0] == version or not found):
             return
         self._sent[path] = (version, found)
-        params = types.PublishDiagnosticsParams(self.session.convert.uri(path), found, version)
-        self._server.text_document_publish_diagnostics(params)
+        self._client.publish_diagnostics(self.session.convert.uri(path), found, version)
 
     # ------------------------------------------------------------------ pull
 

@@ -8,34 +8,36 @@ import logging
 import uuid
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
+from as2fm_lsp.client import Client
+from as2fm_lsp.inbox import Inbox
+from as2fm_lsp.requests import Requests
 
 log = logging.getLogger(__name__)
 
-PATIENCE = 10.0
-"""Seconds in which a client must say that it shows the work; the work waits for that."""
+CREATION_TIMEOUT_S = 10.0
+"""The time in which a client must say that it shows the work, which waits for that."""
 
 
 class Progress:
-    """What is told of some work. Nothing is told if `token` is empty.
+    """What is shown of some work. Nothing is shown if `token` is empty.
 
-    The same share of the work is told once only.
+    The same share of the work is shown once only.
     """
 
-    def __init__(self, server: Server, token: str) -> None:
+    def __init__(self, client: Client, inbox: Inbox, requests: Requests, token: str) -> None:
         self.token = token
-        self._server = server
-        self._told = 0
+        self._client = client
+        self._inbox = inbox
+        self._requests = requests
+        self._percentage = 0
 
     @property
     def is_cancelled(self) -> bool:
         """Whether the user has cancelled the work where the client shows it."""
-        return bool(self.token) and self._server.inbox.is_cancelled(self.token)
+        return bool(self.token) and self._inbox.is_cancelled(self.token)
 
     async def step(self, what: str) -> None:
         """Begin a part of the work, after what the client has sent in the meantime is handled.
@@ -45,48 +47,56 @@ class Progress:
         """
         self.say(what)
         await asyncio.sleep(0)
-        self._server.requests.checkpoint()
+        self._requests.checkpoint()
 
     def say(self, what: str) -> None:
-        """Tell what is being done."""
+        """Show what is being done."""
         if self.token:
-            self._server.work_done_progress.report(self.token, types.WorkDoneProgressReport(message=what))
+            self._client.report_progress(self.token, types.WorkDoneProgressReport(message=what))
 
     def report(self, done: int, total: int) -> None:
         percentage = done * 100 // max(total, 1)
-        if self.token and percentage > self._told:
-            self._told = percentage
+        if self.token and percentage > self._percentage:
+            self._percentage = percentage
             value = types.WorkDoneProgressReport(message=f"{done}/{total}", percentage=percentage)
-            self._server.work_done_progress.report(self.token, value)
+            self._client.report_progress(self.token, value)
 
 
-@asynccontextmanager
-async def progress(server: Server, title: str, *, cancellable: bool = False) -> AsyncIterator[Progress]:
-    token = await _created(server)
-    if not token:
-        yield Progress(server, "")
-        return
-    server.inbox.alive.add(token)
-    begin = types.WorkDoneProgressBegin(title, cancellable=cancellable, percentage=None if cancellable else 0)
-    server.work_done_progress.begin(token, begin)
-    await asyncio.sleep(0)  # let the message out
-    try:
-        yield Progress(server, token)
-    finally:
-        server.work_done_progress.end(token, types.WorkDoneProgressEnd())
-        server.work_done_progress.tokens.pop(token, None)
-        server.inbox.forget(token)
+class ProgressReporter:
+    """Shows work at the client."""
 
+    def __init__(self, client: Client, inbox: Inbox, requests: Requests) -> None:
+        self._client = client
+        self._inbox = inbox
+        self._requests = requests
 
-async def _created(server: Server) -> str:
-    """The token of work that the client is ready to show; empty if it is not."""
-    window = server.client_capabilities.window
-    if window is None or not window.work_done_progress:
-        return ""
-    token = str(uuid.uuid4())
-    try:
-        await asyncio.wait_for(server.work_done_progress.create_async(token), PATIENCE)
-    except Exception as error:  # the work is done all the same
-        log.warning("progress cannot be shown: %s", error or type(error).__name__)
-        return ""
-    return token
+    @asynccontextmanager
+    async def show(self, title: str, *, cancellable: bool = False) -> AsyncIterator[Progress]:
+        """Show some work, for as long as the `async with` statement runs."""
+        token = await self._created()
+        work = Progress(self._client, self._inbox, self._requests, token)
+        if not token:
+            yield work
+            return
+        self._inbox.alive.add(token)
+        begin = types.WorkDoneProgressBegin(title, cancellable=cancellable, percentage=None if cancellable else 0)
+        self._client.begin_progress(token, begin)
+        await asyncio.sleep(0)  # let the message out
+        try:
+            yield work
+        finally:
+            self._client.end_progress(token)
+            self._inbox.forget(token)
+
+    async def _created(self) -> str:
+        """The token of work that the client is ready to show; empty if it is not."""
+        window = self._client.capabilities.window
+        if window is None or not window.work_done_progress:
+            return ""
+        token = str(uuid.uuid4())
+        try:
+            await asyncio.wait_for(self._client.create_progress(token), CREATION_TIMEOUT_S)
+        except Exception as error:  # the work is done all the same
+            log.warning("progress cannot be shown: %s", error or type(error).__name__)
+            return ""
+        return token

@@ -9,24 +9,24 @@ The first time it speaks: the client may have asked before anything was known.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from as2fm_lsp.shown import shown
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
+from as2fm_lsp.client import Client
+from as2fm_lsp.display_settings import display_settings
+from as2fm_lsp.session import Session
+from as2fm_lsp.verification.known_results import KnownResults
 
 
 class Refresh:
     """What the client was last told of."""
 
-    def __init__(self, server: Server) -> None:
-        self._server = server
+    def __init__(self, client: Client, session: Session, results: KnownResults) -> None:
+        self._client = client
+        self._session = session
+        self._results = results
         self._known: object = None
 
     def look(self) -> None:
         """Something may have changed."""
-        workspace = self._server.client_capabilities.workspace
+        workspace = self._client.capabilities.workspace
         hints = bool(workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support)
         lenses = bool(workspace and workspace.code_lens and workspace.code_lens.refresh_support)
         if not hints and not lenses:
@@ -35,20 +35,19 @@ class Refresh:
         if before == self._known:
             return
         if hints:
-            self._server.workspace_inlay_hint_refresh(None)
+            self._client.refresh_inlay_hints()
         if lenses:
-            self._server.workspace_code_lens_refresh(None)
+            self._client.refresh_code_lenses()
 
     def _now(self) -> object:
         """All that hints and lenses depend on beyond their own document."""
-        session = self._server.session
-        moment = session.moment()
+        moment = self._session.moment()
         systems = {
             system: (snapshot.analysis.system(system), len(snapshot.checker.errors(system)))
             for path in moment.versions
             for snapshot in (moment.snapshot(path),)
             for system in snapshot.analysis.memberships.get(path, ())
         }
-        verified = self._server.verified
-        stale = [verified.is_stale(known, moment.snapshot(system).analysis, system) for system, known in verified.all()]
-        return shown(session.client_settings), systems, verified.changes, stale
+        results = self._results
+        stale = [results.is_stale(known, moment.snapshot(system).analysis, system) for system, known in results.all()]
+        return display_settings(self._session.client_settings), systems, results.changes, stale

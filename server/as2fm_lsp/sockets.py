@@ -29,22 +29,20 @@ from typing import Any, BinaryIO
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
 
-from as2fm_lsp.protocol import error_response
+from as2fm_lsp.json_rpc import error_response
 
 log = logging.getLogger(__name__)
 
-PATIENCE = 30.0
-"""Seconds in which a client must have sent its first message."""
+FIRST_MESSAGE_TIMEOUT_S = 30.0
 
-MOST_WAITING = 16
+MAX_WAITING_CONNECTIONS = 16
 """Connections whose first message has not come. Others are refused meanwhile."""
 
-LONGEST_FIRST_MESSAGE = 1 << 24
-"""Bytes."""
+MAX_FIRST_MESSAGE_BYTES = 1 << 24
 
 _HEADER = re.compile(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]*)\r?\n", re.IGNORECASE)
 _BEGIN = b"content-"
-_LONGEST_HEADER = 1000
+_MAX_HEADER_LINE_BYTES = 1000
 _ABSENT = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 """A name may stand for addresses that this machine does not have, as that of IPv6."""
 
@@ -58,8 +56,8 @@ class InUseError(OSError):
 
 
 @dataclass(frozen=True)
-class Client:
-    """A client that may be served.
+class Connection:
+    """The connection of a client that may be served.
 
     Attributes:
         first: its first message, the `initialize`, without the token.
@@ -68,7 +66,7 @@ class Client:
     """
 
     first: dict[str, Any]
-    connection: socket.socket
+    channel: socket.socket
     source: BinaryIO
     target: BinaryIO
 
@@ -84,8 +82,8 @@ def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[t
         RemoteError: other machines could connect there, and `allow_remote` is False.
         OSError: an address is taken, or there is none.
     """
-    found = dict.fromkeys(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE))
-    addresses = [(family, address) for family, _, _, _, address in found]
+    candidates = dict.fromkeys(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE))
+    addresses = [(family, address) for family, _, _, _, address in candidates]
     if not allow_remote and not all(_is_loopback(str(address[0])) for _, address in addresses):
         raise RemoteError(host)
     with ExitStack() as stack:
@@ -155,15 +153,15 @@ def _is_socket(path: str) -> bool:
 # --------------------------------------------------------------------- admitting
 
 
-def first_client(listeners: Sequence[socket.socket], token: str) -> Client:
+def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
     """Wait for the first client that may be served. Others are told why not and disconnected.
 
     Args:
         token: what the client must send as `token` in its `initializationOptions`; "" if it need not.
     """
-    admitted: list[Client] = []
+    admitted: list[Connection] = []
     one = threading.Lock()
-    waiting = threading.Semaphore(MOST_WAITING)
+    waiting = threading.Semaphore(MAX_WAITING_CONNECTIONS)
     news, told = socket.socketpair()
 
     def greet(connection: socket.socket) -> None:
@@ -199,9 +197,9 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Client:
     return admitted[0]
 
 
-def _admitted(connection: socket.socket, token: str) -> Client | None:
+def _admitted(connection: socket.socket, token: str) -> Connection | None:
     """The client if its first message is as it must be; it has been told if not."""
-    connection.settimeout(PATIENCE)
+    connection.settimeout(FIRST_MESSAGE_TIMEOUT_S)
     source, target = connection.makefile("rb"), connection.makefile("wb")
     body = _first_body(source)
     if body is None:
@@ -216,7 +214,7 @@ def _admitted(connection: socket.socket, token: str) -> Client | None:
         target.flush()
         return None
     connection.settimeout(None)
-    return Client(message, connection, source, target)
+    return Connection(message, connection, source, target)
 
 
 def _first_body(source: BufferedReader) -> bytes | None:
@@ -225,7 +223,7 @@ def _first_body(source: BufferedReader) -> bytes | None:
     begin = source.peek(len(_BEGIN))[: len(_BEGIN)].lower()
     if not _BEGIN.startswith(begin):  # it need not be a line
         return None
-    for line in iter(lambda: source.readline(_LONGEST_HEADER), b""):
+    for line in iter(lambda: source.readline(_MAX_HEADER_LINE_BYTES), b""):
         if length and line in (b"\r\n", b"\n"):
             body = source.read(length)
             return body if len(body) == length else None
@@ -233,7 +231,7 @@ def _first_body(source: BufferedReader) -> bytes | None:
         if header is None:
             return None
         length = int(header["length"] or length)
-        if length > LONGEST_FIRST_MESSAGE:
+        if length > MAX_FIRST_MESSAGE_BYTES:
             return None
     return None
 

@@ -18,10 +18,10 @@ import pytest
 from client import STARTED, RawServer, frame, start_raw
 
 import clock
-from as2fm_lsp import inbox, parent
+from as2fm_lsp import inbox, parent_process
 from as2fm_lsp.inbox import bodies
-from as2fm_lsp.protocol import Protocol
 from as2fm_lsp.server import create
+from as2fm_lsp.transport import Protocol
 
 INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
 PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600, -32601, -32602
@@ -227,11 +227,11 @@ async def test_it_ends_with_the_process_of_its_client() -> None:
 
 
 def test_the_end_of_a_process_is_seen_without_help_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parent, "INTERVAL", 0.01)
+    monkeypatch.setattr(parent_process, "INTERVAL", 0.01)
     other = subprocess.Popen([sys.executable, "-c", ""])
     other.wait()
-    parent._look_again_and_again(other.pid)
-    parent.wait_for_end(other.pid)
+    parent_process._look_again_and_again(other.pid)
+    parent_process.wait_for_end(other.pid)
 
 
 # ------------------------------------------------------------------------ memory
@@ -252,7 +252,7 @@ def test_nothing_is_kept_of_notifications() -> None:
             yield frame({"jsonrpc": "2.0", "method": "$/setTrace", "params": {"value": "off"}})
             yield frame({"jsonrpc": "2.0", "method": "workspace/didChangeConfiguration", "params": {"settings": {}}})
 
-    protocol = server.protocol
+    protocol = server.endpoint.protocol
     assert isinstance(protocol, Protocol)
     server.serve(BytesIO(b"".join(messages())), _Kept())
     seen = [len(protocol._request_futures), len(protocol._result_types), len(protocol.workspace.text_documents)]
@@ -339,7 +339,7 @@ class _Nowhere(BytesIO):
 
 def test_a_client_that_never_answers() -> None:
     """What it is asked is forgotten after a while, the oldest first."""
-    protocol = create().protocol
+    protocol = create().endpoint.protocol
     protocol.set_writer(_Kept(), include_headers=True)  # type: ignore[arg-type]
     futures = [protocol.send_request("workspace/codeLens/refresh") for _ in range(1500)]
     assert len(protocol._request_futures) == len(protocol._result_types) == 1000

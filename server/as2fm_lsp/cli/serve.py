@@ -59,7 +59,7 @@ def run(tcp: str | None = None, socket_file: str | None = None, allow_remote: bo
     return CLEAN if server.is_shut_down else UNEXPECTED_END
 
 
-def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Client:
+def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
     host, _, port = tcp.rpartition(":")
     if not (port.isascii() and port.isdigit() and len(port) < 6 and int(port) < 65536):
         raise _UsageError(f"--tcp takes HOST:PORT, not {tcp}")
@@ -80,7 +80,7 @@ def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Client:
         raise _UsageError(f"--tcp {tcp}: {error.strerror or error}") from None
 
 
-def _socket_file_client(path: str) -> sockets.Client:
+def _socket_file_client(path: str) -> sockets.Connection:
     if not hasattr(socket, "AF_UNIX"):
         raise _UsageError("--socket: this system has no socket files; use --tcp")
     try:

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers import (
-    about,
     call_hierarchy,
     code_action,
     code_lens,
     completion,
+    configuration,
+    document_kind,
     first_error,
     formatting,
     hover,
@@ -25,22 +25,21 @@ from as2fm_lsp.handlers import (
     signature_help,
     structure,
     tags,
+    text_document,
     translate,
     type_hierarchy,
     verify,
+    workspace,
     workspace_symbol,
 )
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
-
 
 _FEATURES = (
-    about,
     call_hierarchy,
     code_action,
     code_lens,
     completion,
+    configuration,
+    document_kind,
     first_error,
     formatting,
     hover,
@@ -55,14 +54,16 @@ _FEATURES = (
     signature_help,
     structure,
     tags,
+    text_document,
     translate,
     type_hierarchy,
     verify,
+    workspace,
     workspace_symbol,
 )
 
 
-def register(server: Server) -> None:
-    """Make all features known to the server."""
+def register(context: Context) -> None:
+    """Register all features."""
     for module in _FEATURES:
-        module.register(server)
+        module.register(context)

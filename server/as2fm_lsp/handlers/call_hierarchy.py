@@ -4,25 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, symbol_kind, unpack
 from roaml.diagnostics import Symbol
 from roaml.ide.hierarchy import calls
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
-
 Ask = Callable[[Analysis, Symbol], tuple[calls.Call, ...]]
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
     def convert(analysis: Analysis, item: calls.Item) -> types.CallHierarchyItem:
         source, symbol = analysis.source(item.path), item.symbol
@@ -47,13 +44,13 @@ def register(server: Server) -> None:
         symbol = unpack(item.data)
         return analysis, question(analysis, symbol) if symbol else ()
 
-    @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
+    @context.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         items = calls.items_at(on.analysis, on.path, on.offset(params.position)) if on else ()
         return [convert(on.analysis, item) for item in items] if on else []
 
-    @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
+    @context.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
         analysis, found = ask(params.item, calls.incoming)
         return [
@@ -61,7 +58,7 @@ def register(server: Server) -> None:
             for call in found
         ]
 
-    @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
+    @context.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
         analysis, found = ask(params.item, calls.outgoing)
         path = session.convert.path(params.item.uri)

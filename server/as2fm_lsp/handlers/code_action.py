@@ -9,10 +9,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers import translate
 from roaml.diagnostics import Diagnostic
 from roaml.facts import Facts, facts_from_json, facts_to_json
@@ -22,15 +23,12 @@ from roaml.project.workspace import Snapshot
 from roaml.rules import BY_CODE
 from roaml.text import SourceFile, Span
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
-
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
     options = types.CodeActionOptions([*KINDS, types.CodeActionKind.Source], resolve_provider=True)
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, options)
+    @context.feature(types.TEXT_DOCUMENT_CODE_ACTION, options)
     def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
         path = session.convert.path(params.text_document.uri)
         snapshot = session.moment().snapshot(path)
@@ -38,17 +36,17 @@ def register(server: Server) -> None:
         if source is None:
             return []
         place, only = session.convert.span(source, params.range), params.context.only
-        shown = _Shown(server, snapshot, source, params.context.diagnostics)
+        shown = _Shown(context, snapshot, source, params.context.diagnostics)
         found = [
-            _converted(server, snapshot, path, place, shown, action)
+            _converted(context, snapshot, path, place, shown, action)
             for action in actions(snapshot, path, place, lambda kind: _is_wanted(kind, only))
-            if _can(server, action)
+            if _can(context, action)
         ]
         if _is_wanted(types.CodeActionKind.Source, only):
             found += translate.actions(snapshot, path, session.convert)
         return found
 
-    @server.feature(types.CODE_ACTION_RESOLVE)
+    @context.feature(types.CODE_ACTION_RESOLVE)
     def resolve(action: types.CodeAction) -> types.CodeAction:
         data: Any = action.data
         if action.edit is not None or not isinstance(data, dict):
@@ -61,13 +59,13 @@ def register(server: Server) -> None:
         snapshot = session.moment().snapshot(path)
         for found in actions(snapshot, path, place, lambda kind: kind == action.kind):
             if (found.title, found.kind, _identity(found)) == (action.title, action.kind, data.get("mends")):
-                action.edit = _edit(server, snapshot, found.make())
+                action.edit = _edit(context, snapshot, found.make())
                 break
         return action
 
 
 def _converted(
-    server: Server, snapshot: Snapshot, path: str, place: Span, shown: _Shown, action: Action
+    context: Context, snapshot: Snapshot, path: str, place: Span, shown: _Shown, action: Action
 ) -> types.CodeAction:
     found = types.CodeAction(
         action.title,
@@ -75,11 +73,11 @@ def _converted(
         diagnostics=shown.of(action.mends),
         is_preferred=action.preferred or None,
     )
-    if _resolves(server):
-        uri = server.session.convert.uri(path)
+    if _resolves(context):
+        uri = context.session.convert.uri(path)
         found.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
     else:
-        found.edit = _edit(server, snapshot, action.make())
+        found.edit = _edit(context, snapshot, action.make())
     return found
 
 
@@ -100,9 +98,9 @@ class _Shown:
     """
 
     def __init__(
-        self, server: Server, snapshot: Snapshot, source: SourceFile, sent: Iterable[types.Diagnostic]
+        self, context: Context, snapshot: Snapshot, source: SourceFile, sent: Iterable[types.Diagnostic]
     ) -> None:
-        self._server, self._snapshot, self._source = server, snapshot, source
+        self._context, self._snapshot, self._source = context, snapshot, source
         self._sent: dict[tuple[str, Span, Facts | None], list[types.Diagnostic]] = {}
         for diagnostic in sent:
             self._sent.setdefault(self._identity(diagnostic), []).append(diagnostic)
@@ -110,7 +108,7 @@ class _Shown:
     def _identity(self, sent: types.Diagnostic) -> tuple[str, Span, Facts | None]:
         code, rule = str(sent.code), BY_CODE.get(str(sent.code))
         facts = facts_from_json(rule.facts, sent.data) if rule and rule.facts else None
-        return code, self._server.session.convert.span(self._source, sent.range), facts
+        return code, self._context.session.convert.span(self._source, sent.range), facts
 
     def of(self, diagnostic: Diagnostic | None) -> list[types.Diagnostic] | None:
         if diagnostic is None:
@@ -118,11 +116,11 @@ class _Shown:
         known = self._sent.get((diagnostic.code, diagnostic.span, diagnostic.facts), [])
         if len(known) == 1:
             return known
-        return self._server.diagnostics.converted(self._snapshot, self._source, [diagnostic])
+        return self._context.diagnostics.converted(self._snapshot, self._source, [diagnostic])
 
 
-def _edit(server: Server, snapshot: Snapshot, change: Change) -> types.WorkspaceEdit:
-    convert, analysis = server.session.convert, snapshot.analysis
+def _edit(context: Context, snapshot: Snapshot, change: Change) -> types.WorkspaceEdit:
+    convert, analysis = context.session.convert, snapshot.analysis
     edits = {
         path: [convert.edit(source, edit) for edit in sorted(change.edits[path])]
         for path in change.edits
@@ -135,7 +133,7 @@ def _edit(server: Server, snapshot: Snapshot, change: Change) -> types.Workspace
     for path, text in change.created.items():
         steps.append(types.CreateFile(convert.uri(path), options=types.CreateFileOptions(ignore_if_exists=True)))
         steps.append(_document_edit(convert.uri(path), None, [types.TextEdit(start, text)]))
-    versions = server.session.moment().versions
+    versions = context.session.moment().versions
     steps += [_document_edit(convert.uri(path), versions.get(path), found) for path, found in edits.items()]
     steps += [types.RenameFile(convert.uri(path), convert.uri(new)) for path, new in change.renamed.items()]
     return types.WorkspaceEdit(document_changes=steps)
@@ -145,17 +143,17 @@ def _document_edit(uri: str, version: int | None, edits: list[types.TextEdit]) -
     return types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri, version), list(edits))
 
 
-def _resolves(server: Server) -> bool:
+def _resolves(context: Context) -> bool:
     """Whether the client asks for the edit of an action when it is chosen."""
-    document = server.client_capabilities.text_document
+    document = context.client.capabilities.text_document
     action = document.code_action if document else None
     support = action.resolve_support if action else None
     return bool(action and action.data_support and support and "edit" in support.properties)
 
 
-def _can(server: Server, action: Action) -> bool:
+def _can(context: Context, action: Action) -> bool:
     """Whether the client can make and rename files, if an action does so."""
-    workspace = server.client_capabilities.workspace
+    workspace = context.client.capabilities.workspace
     edit = workspace.workspace_edit if workspace else None
     operations: Sequence[str] = (edit.resource_operations if edit and edit.document_changes else None) or ()
     return all(resource in operations for resource in action.resources)

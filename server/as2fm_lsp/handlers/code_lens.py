@@ -8,43 +8,39 @@ lenses only tell.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
+from as2fm_lsp.display_settings import display_settings
 from as2fm_lsp.handlers import first_error, translate, verify
-from as2fm_lsp.handlers.asked import asked
 from as2fm_lsp.handlers.first_error import errors_of
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
-from as2fm_lsp.shown import shown
 from roaml.ide.code_lens import counted, lenses
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 OPTION = "showReferences"
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(resolve_provider=True))
+    @context.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(resolve_provider=True))
     def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return []
         broken = errors_of(on)
         found = list(first_error.lenses(on, broken))
         if on.path not in broken:
             found += translate.lenses(on.snapshot, on.path, on.source, on.convert)
-        found += verify.lenses(server, on, broken)
-        if shown(session.client_settings).references:
+        found += verify.lenses(context, on, broken)
+        if display_settings(session.client_settings).references:
             for each in lenses(on.analysis, on.path):
                 data = [params.text_document.uri, pack(each.symbol)]
                 found.append(types.CodeLens(on.range(each.span), data=data))
         return found
 
-    @server.feature(types.CODE_LENS_RESOLVE)
+    @context.feature(types.CODE_LENS_RESOLVE)
     def resolve(lens: types.CodeLens) -> types.CodeLens:
         data = lens.data if isinstance(lens.data, (list, tuple)) and len(lens.data) == 2 else ("", None)
         uri, symbol = str(data[0]), unpack(data[1])
@@ -58,7 +54,7 @@ def register(server: Server) -> None:
             for each in found.places
             if (source := analysis.source(each.path)) is not None
         ]
-        command = server.show_references if places else ""
+        command = context.client.show_references if places else ""
         arguments = [uri, lens.range.start, places] if command else None
         lens.command = types.Command(found.title, command, arguments=arguments)
         return lens

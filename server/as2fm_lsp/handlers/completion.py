@@ -8,17 +8,14 @@ The protocol has no command that asks for completions. A client that has one nam
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import documentation
 from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -40,30 +37,30 @@ _KINDS = {
 }
 
 
-def register(server: Server) -> None:
+def register(context: Context) -> None:
     options = types.CompletionOptions(trigger_characters=list(TRIGGERS), resolve_provider=True)
 
-    @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
+    @context.feature(types.TEXT_DOCUMENT_COMPLETION, options)
     def completion(params: types.CompletionParams) -> types.CompletionList | None:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return None
         trigger = params.context.trigger_character or "" if params.context else ""
         found = complete(on.snapshot, on.path, on.offset(params.position), trigger)
         if found is None:
             return None
-        client = _Client(server)
+        client = _Client(context)
         range_ = on.range(found.span)
         items = [client.item(item, range_, rank, on.path) for rank, item in enumerate(found.items)]
         return types.CompletionList(is_incomplete=found.incomplete, items=items)
 
-    @server.feature(types.COMPLETION_ITEM_RESOLVE)
+    @context.feature(types.COMPLETION_ITEM_RESOLVE)
     def resolve(item: types.CompletionItem) -> types.CompletionItem:
         if isinstance(item.data, list) and len(item.data) == 5:
             path, about = item.data[0], unpack(item.data[1:])
-            text = document(server.session.moment().snapshot(path).analysis, about) if about else ""
+            text = document(context.session.moment().snapshot(path).analysis, about) if about else ""
             if text:
-                item.documentation = documentation(text, _Client(server).formats)
+                item.documentation = documentation(text, _Client(context).formats)
         return item
 
 
@@ -75,14 +72,14 @@ choices, the editor lists them by itself."""
 class _Client:
     """Writes items in the way that the client understands."""
 
-    def __init__(self, server: Server) -> None:
-        document = server.client_capabilities.text_document
+    def __init__(self, context: Context) -> None:
+        document = context.client.capabilities.text_document
         asks = document.completion.completion_item if document and document.completion else None
         self.snippets = bool(asks and asks.snippet_support)
         self.tags = bool(asks and asks.tag_support)
         self.formats = asks.documentation_format if asks else None
         self.label_details = bool(asks and asks.label_details_support)
-        self.trigger_suggest = server.trigger_suggest
+        self.trigger_suggest = context.client.trigger_suggest
 
     def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:
         new = item.snippet if self.snippets else plain(item.snippet)

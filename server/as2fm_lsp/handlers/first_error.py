@@ -8,32 +8,27 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
-from pygls.lsp.server import LanguageServer
 
-from as2fm_lsp.handlers.asked import Asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import RequestedDocument
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import verifiable
 from roaml.project.workspace import Snapshot
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
-
 COMMAND = "as2fm.showFirstError"
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.command(COMMAND, needs_trust=False)
-    async def show_first_error(ls: LanguageServer, *arguments: object) -> types.Location | None:
+    @context.command(COMMAND, needs_trust=False)
+    async def show_first_error(*arguments: object) -> types.Location | None:
         """Show the first error of a system, in whichever file it is.
 
         Args:
-            ls: the server; pygls gives it to a function that takes any number of arguments.
             arguments: the URI of the system file.
 
         Returns:
@@ -41,30 +36,27 @@ def register(server: Server) -> None:
         """
         if len(arguments) != 1 or not isinstance(arguments[0], str):
             text = f"{COMMAND} takes the URI of a system file."
-            server.window_show_message(types.ShowMessageParams(types.MessageType.Error, text))
+            context.client.show_message(types.MessageType.Error, text)
             return None
         system = session.convert.path(arguments[0])
         snapshot = session.moment().snapshot(system)
         errors = snapshot.checker.errors(system)
-        place = await show(server, snapshot, errors) if errors else None
+        place = await show(context, snapshot, errors) if errors else None
         if place is not None:
             where = f"{os.path.basename(errors[0].path)}:{place.range.start.line + 1}"
             text = f"{where}: {errors[0].message}"
-            server.window_show_message(types.ShowMessageParams(types.MessageType.Error, text))
+            context.client.show_message(types.MessageType.Error, text)
         return place
 
 
-async def show(server: Server, snapshot: Snapshot, errors: Sequence[Diagnostic]) -> types.Location | None:
+async def show(context: Context, snapshot: Snapshot, errors: Sequence[Diagnostic]) -> types.Location | None:
     """Let the client show the place of the first error, if it can; the place."""
     source = snapshot.analysis.source(errors[0].path)
     if source is None:
         return None
-    convert = server.session.convert
+    convert = context.session.convert
     place = types.Location(convert.uri(errors[0].path), convert.range(source, errors[0].span))
-    window = server.client_capabilities.window
-    if window is not None and window.show_document is not None and window.show_document.support:
-        params = types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range)
-        await server.window_show_document_async(params)
+    await context.client.show_document(place)
     return place
 
 
@@ -72,14 +64,14 @@ def counted(errors: tuple[Diagnostic, ...]) -> str:
     return "1 error" if len(errors) == 1 else f"{len(errors)} errors"
 
 
-def errors_of(on: Asked) -> dict[str, tuple[Diagnostic, ...]]:
+def errors_of(on: RequestedDocument) -> dict[str, tuple[Diagnostic, ...]]:
     """The systems of a file that have errors, with these."""
     systems = on.analysis.memberships.get(on.path, ())
     found = {system: on.snapshot.checker.errors(system) for system in systems if os.path.isabs(system)}
     return {system: errors for system, errors in found.items() if errors}
 
 
-def lenses(on: Asked, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
+def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
     """At a system file that has errors, and at the properties of such systems."""
     names = system_names(on.analysis.memberships.get(on.path, ()))
     for system, errors in broken.items():

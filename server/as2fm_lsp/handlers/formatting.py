@@ -3,28 +3,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide.formatting import format_edits
 from roaml.ide.formatting.layout import Layout
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _WIDEST = 16
 
 
-def register(server: Server) -> None:
-    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+def register(context: Context) -> None:
+    @context.feature(types.TEXT_DOCUMENT_FORMATTING)
     def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-        return _edits(server, params.text_document, params.options, None)
+        return _edits(context, params.text_document, params.options, None)
 
-    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    @context.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
     def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
-        return _edits(server, params.text_document, params.options, params.range)
+        return _edits(context, params.text_document, params.options, params.range)
 
 
 def layout_of(options: types.FormattingOptions) -> Layout:
@@ -33,12 +29,12 @@ def layout_of(options: types.FormattingOptions) -> Layout:
 
 
 def _edits(
-    server: Server,
+    context: Context,
     document: types.TextDocumentIdentifier,
     options: types.FormattingOptions,
     range_: types.Range | None,
 ) -> list[types.TextEdit]:
-    file = asked(server, document)
+    file = requested_document(context, document)
     if file is None:
         return []
     within = None if range_ is None else file.span(range_)

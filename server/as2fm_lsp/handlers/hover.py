@@ -3,25 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.markup import content
 from roaml.ide.hover import hover as hover_at
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
-
-def register(server: Server) -> None:
-    @server.feature(types.TEXT_DOCUMENT_HOVER)
+def register(context: Context) -> None:
+    @context.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(params: types.HoverParams) -> types.Hover | None:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         found = hover_at(on.analysis, on.path, on.offset(params.position)) if on else None
         if on is None or found is None:
             return None
-        text_document = server.client_capabilities.text_document
+        text_document = context.client.capabilities.text_document
         formats = text_document.hover.content_format if text_document and text_document.hover else None
         return types.Hover(content(found.text, formats), on.range(found.span))

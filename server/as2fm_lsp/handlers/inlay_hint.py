@@ -3,38 +3,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
+from as2fm_lsp.display_settings import display_settings
 from as2fm_lsp.handlers import verify
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import content
-from as2fm_lsp.shown import shown
 from roaml.ide.inlay_hints import HintKind, InlayHint, explain, inlay_hints
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _TYPES = (HintKind.TYPES, HintKind.PORTS, HintKind.EVENTS)
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(resolve_provider=True))
+    @context.feature(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(resolve_provider=True))
     def inlay_hint(params: types.InlayHintParams) -> list[types.InlayHint]:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return []
-        wanted = shown(session.client_settings)
+        wanted = display_settings(session.client_settings)
         found = inlay_hints(on.analysis, on.path, on.span(params.range), wanted.hints)
-        explains = _explains(server)
+        explains = _explains(context)
         written = [_hint(each, on.convert.position(on.source, each.offset), on.path, explains) for each in found]
-        return [*written, *(verify.hints(server, on, params.range) if wanted.results else ())]
+        return [*written, *(verify.hints(context, on, params.range) if wanted.results else ())]
 
-    @server.feature(types.INLAY_HINT_RESOLVE)
+    @context.feature(types.INLAY_HINT_RESOLVE)
     def resolve(hint: types.InlayHint) -> types.InlayHint:
         data = hint.data
         if not isinstance(data, (list, tuple)) or not data or isinstance(hint.label, str):
@@ -52,9 +48,9 @@ def register(server: Server) -> None:
         return hint
 
 
-def _explains(server: Server) -> bool:
+def _explains(context: Context) -> bool:
     """Whether the client asks again about a hint that is looked at."""
-    document = server.client_capabilities.text_document
+    document = context.client.capabilities.text_document
     return bool(document and document.inlay_hint and document.inlay_hint.resolve_support)
 
 

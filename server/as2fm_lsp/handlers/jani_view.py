@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri
 from as2fm_lsp.handlers.structure import nested
 from as2fm_lsp.verification import background
 from roaml.disk import Problem
 from roaml.ide.jani_view import JaniView, jani_view
 from roaml.text import SourceFile
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 METHOD = "as2fm/janiView"
 MAX_CHARACTERS = 4_000_000
@@ -30,10 +28,10 @@ class View(TypedDict):
     problem: str
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(METHOD)
+    @context.feature(METHOD)
     async def view(params: Any) -> View:
         path = session.convert.path(document_uri(params))
         source = session.moment().snapshot(path).analysis.files.read(path)

@@ -7,17 +7,15 @@ What stands on the disk is migrated: the client saves first.
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.migrate import Migration
 from roaml.text import SourceFile, Span
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 METHOD = "as2fm/migrate"
 
@@ -36,12 +34,12 @@ def shown(migration: Migration, system: str) -> str:
     return " → ".join(dict.fromkeys(names))
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(METHOD)
+    @context.feature(METHOD)
     def migrate(params: Any) -> Migrated:
-        server.trust.require(METHOD)
+        context.trust.require(METHOD)
         path = session.convert.path(document_uri(params))
         try:
             migrations = api.migrate([path], settings=session.settings_of(path), with_related=True)

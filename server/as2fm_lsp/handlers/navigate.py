@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide import navigation
 from roaml.ide.names.occurrence import Access
 from roaml.project.analysis import Analysis
 from roaml.text import Location
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _HIGHLIGHTS = {
     Access.TEXT: types.DocumentHighlightKind.Text,
@@ -26,33 +23,33 @@ _HIGHLIGHTS = {
 Find = Callable[[Analysis, str, int], Iterable[Location]]
 
 
-def register(server: Server) -> None:
+def register(context: Context) -> None:
     def locations(document: types.TextDocumentIdentifier, position: types.Position, find: Find) -> list[types.Location]:
         """What `find` says about a place."""
-        on = asked(server, document)
+        on = requested_document(context, document)
         if on is None:
             return []
         found = find(on.analysis, on.path, on.offset(position))
         targets = ((on.analysis.source(each.path), each) for each in found)
         return [on.convert.location(target, each) for target, each in targets if target is not None]
 
-    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    @context.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(params: types.DefinitionParams) -> list[types.Location]:
         return locations(params.text_document, params.position, navigation.definition)
 
-    @server.feature(types.TEXT_DOCUMENT_DECLARATION)
+    @context.feature(types.TEXT_DOCUMENT_DECLARATION)
     def declaration(params: types.DeclarationParams) -> list[types.Location]:
         return locations(params.text_document, params.position, navigation.declaration)
 
-    @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
+    @context.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
     def type_definition(params: types.TypeDefinitionParams) -> list[types.Location]:
         return locations(params.text_document, params.position, navigation.type_definition)
 
-    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
+    @context.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
     def implementation(params: types.ImplementationParams) -> list[types.Location]:
         return locations(params.text_document, params.position, navigation.implementation)
 
-    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    @context.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(params: types.ReferenceParams) -> list[types.Location]:
         def find(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
             with_declaration = params.context.include_declaration
@@ -60,9 +57,9 @@ def register(server: Server) -> None:
 
         return locations(params.text_document, params.position, find)
 
-    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    @context.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def document_highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return []
         found = navigation.highlights(on.analysis, on.path, on.offset(params.position))

@@ -3,23 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri, string
 from roaml.ide.diagrams import Picture, machine_picture, ros_picture, tree_picture
 from roaml.project.analysis import Analysis
 from roaml.text import Location
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 METHOD = "as2fm/picture"
 
 _PICTURES = {"machine": machine_picture, "tree": tree_picture, "ros": ros_picture}
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
     def place(analysis: Analysis, location: Location | None) -> dict[str, object] | None:
         source = analysis.source(location.path) if location else None
@@ -63,7 +61,7 @@ def register(server: Server) -> None:
             ],
         }
 
-    @server.feature(METHOD)
+    @context.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
         """null where there is nothing of the kind to draw."""
         kind = string(params, "kind")

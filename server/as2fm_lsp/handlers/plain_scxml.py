@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.first_error import counted
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
 from roaml.scxml.model import Role
 from roaml.scxml.writer import Line, write_lines
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 METHOD = "as2fm/plainScxml"
 
@@ -36,8 +34,8 @@ class PlainScxml(TypedDict):
     problem: str
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
     def convert(analysis: Analysis, lines: list[Line]) -> PlainScxml:
         places: list[PlainLine] = []
@@ -48,7 +46,7 @@ def register(server: Server) -> None:
                 places.append({"line": number, "uri": uri, "range": session.convert.range(source, line.origin.span)})
         return {"text": "".join(f"{line.text}\n" for line in lines), "lines": places, "problem": ""}
 
-    @server.feature(METHOD)
+    @context.feature(METHOD)
     def plain_scxml(params: Any) -> PlainScxml:
         """Of a plugin that the tree has several times, the first: the others differ in their ports only."""
         path = session.convert.path(document_uri(params))

@@ -3,24 +3,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide.rename import Refusal, prepare, rename
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _REQUEST_FAILED = types.LSPErrorCodes.RequestFailed.value
 
 
-def register(server: Server) -> None:
-    @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
+def register(context: Context) -> None:
+    @context.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare_rename(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return None
         found = prepare(on.analysis, on.path, on.offset(params.position))
@@ -28,9 +24,9 @@ def register(server: Server) -> None:
             raise _refused(found)
         return types.PrepareRenamePlaceholder(on.range(found.span), found.name)
 
-    @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
+    @context.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_(params: types.RenameParams) -> types.WorkspaceEdit | None:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         if on is None:
             return None
         found = rename(on.analysis, on.path, on.offset(params.position), params.new_name)

@@ -6,15 +6,12 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import Asked, asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import RequestedDocument, requested_document
 from roaml.ide.semantic_tokens import Modifier, Token, TokenKind, semantic_tokens
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _TYPES = {
     TokenKind.STRUCTURE_TAG: types.SemanticTokenTypes.Keyword,
@@ -60,11 +57,11 @@ _REMEMBERED = 64
 """Files whose last answer is kept, to tell what has changed since."""
 
 
-def register(server: Server) -> None:
+def register(context: Context) -> None:
     last: OrderedDict[str, types.SemanticTokens] = OrderedDict()
     answers = 0
 
-    def answer(file: Asked) -> types.SemanticTokens:
+    def answer(file: RequestedDocument) -> types.SemanticTokens:
         nonlocal answers
         answers += 1
         found = types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path)), str(answers))
@@ -74,14 +71,14 @@ def register(server: Server) -> None:
             last.popitem(last=False)
         return found
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
+    @context.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
     def full(params: types.SemanticTokensParams) -> types.SemanticTokens:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         return answer(file) if file else types.SemanticTokens([])
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA)
+    @context.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA)
     def delta(params: types.SemanticTokensDeltaParams) -> types.SemanticTokens | types.SemanticTokensDelta:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return types.SemanticTokens([])
         before = last.get(file.path)
@@ -90,15 +87,15 @@ def register(server: Server) -> None:
             return after
         return types.SemanticTokensDelta(changes(before.data, after.data), after.result_id)
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE)
+    @context.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE)
     def range_(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return types.SemanticTokens([])
         return types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path, file.span(params.range))))
 
 
-def encoded(file: Asked, tokens: Sequence[Token]) -> list[int]:
+def encoded(file: RequestedDocument, tokens: Sequence[Token]) -> list[int]:
     """Five numbers for each token, its place relative to the one before."""
     data: list[int] = []
     line = character = 0

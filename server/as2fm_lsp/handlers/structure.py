@@ -4,20 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import Asked, asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import RequestedDocument, requested_document
 from roaml.ide.folding_range import FoldKind, folds
 from roaml.ide.navigation.document_links import links
 from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.ide.selection_range import selections
 from roaml.text import Span
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 _FOLDS = {FoldKind.BLOCK: types.FoldingRangeKind.Region, FoldKind.COMMENT: types.FoldingRangeKind.Comment}
 
@@ -42,43 +39,43 @@ _KINDS = {
 }
 
 
-def register(server: Server) -> None:
-    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+def register(context: Context) -> None:
+    @context.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     def folding_range(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         found = folds(file.analysis, file.path) if file else ()
         return [types.FoldingRange(fold.first, fold.last, kind=_FOLDS[fold.kind]) for fold in found]
 
-    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    @context.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
     def selection_range(params: types.SelectionRangeParams) -> list[types.SelectionRange]:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return []
         offsets = [file.offset(position) for position in params.positions]
         return [_selection(file, selections(file.analysis, file.path, offset)) for offset in offsets]
 
-    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    @context.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def document_symbol(
         params: types.DocumentSymbolParams,
     ) -> list[types.DocumentSymbol] | list[types.SymbolInformation]:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return []
         found = document_symbols(file.analysis, file.path)
-        if _takes_nested_symbols(server):
+        if _takes_nested_symbols(context):
             return [nested(symbol, file.range) for symbol in found]
         return list(_flat(file, found))
 
-    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    @context.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
     def document_link(params: types.DocumentLinkParams) -> list[types.DocumentLink]:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return []
         found = links(file.analysis, file.path)
         return [types.DocumentLink(file.range(link.span), file.convert.uri(link.target)) for link in found]
 
 
-def _selection(file: Asked, spans: Sequence[Span]) -> types.SelectionRange:
+def _selection(file: RequestedDocument, spans: Sequence[Span]) -> types.SelectionRange:
     selection: types.SelectionRange | None = None
     for span in reversed(spans):
         selection = types.SelectionRange(file.range(span), selection)
@@ -99,7 +96,7 @@ def nested(symbol: DocumentSymbol, range_of: Callable[[Span], types.Range]) -> t
 
 
 def _flat(
-    file: Asked, symbols: Sequence[DocumentSymbol], container: str | None = None
+    file: RequestedDocument, symbols: Sequence[DocumentSymbol], container: str | None = None
 ) -> Sequence[types.SymbolInformation]:
     """For clients that know no outline."""
     found: list[types.SymbolInformation] = []
@@ -110,7 +107,7 @@ def _flat(
     return found
 
 
-def _takes_nested_symbols(server: Server) -> bool:
-    capabilities = server.client_capabilities.text_document
+def _takes_nested_symbols(context: Context) -> bool:
+    capabilities = context.client.capabilities.text_document
     symbol = capabilities.document_symbol if capabilities else None
     return bool(symbol and symbol.hierarchical_document_symbol_support)

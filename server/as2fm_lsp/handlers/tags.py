@@ -3,22 +3,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide.linked_editing import NAME_PATTERN, linked_names
 from roaml.ide.on_type import TRIGGERS, close_tag
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
-
-def register(server: Server) -> None:
-    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+def register(context: Context) -> None:
+    @context.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked_editing_range(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         if file is None:
             return None
         names = linked_names(file.analysis, file.path, file.offset(params.position))
@@ -26,11 +22,11 @@ def register(server: Server) -> None:
 
     first, *more = TRIGGERS
 
-    @server.feature(
+    @context.feature(
         types.TEXT_DOCUMENT_ON_TYPE_FORMATTING,
         types.DocumentOnTypeFormattingOptions(first, more_trigger_character=more),
     )
     def on_type_formatting(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
-        file = asked(server, params.text_document)
+        file = requested_document(context, params.text_document)
         edit = close_tag(file.analysis, file.path, file.offset(params.position)) if file else None
         return [file.convert.edit(file.source, edit)] if file and edit else []

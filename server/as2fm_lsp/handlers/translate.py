@@ -6,15 +6,15 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator
 from itertools import chain
-from typing import TYPE_CHECKING, TypedDict
+from typing import TypedDict
 
 from lsprotocol import types
-from pygls.lsp.server import LanguageServer
 
 from as2fm_lsp.atomic_write import write_file
+from as2fm_lsp.context import Context
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.handlers.first_error import counted, show
-from as2fm_lsp.progress import Progress, progress
+from as2fm_lsp.progress import Progress
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
@@ -24,9 +24,6 @@ from roaml.jani.writer import write as jani_text
 from roaml.project.memo import Interrupted
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 COMMAND = "as2fm.translateToJani"
 TITLE = "Translate to JANI"
@@ -39,49 +36,51 @@ class Translated(TypedDict):
     summary: str
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.command(COMMAND)
-    async def translate(ls: LanguageServer, *arguments: object) -> Translated | None:
+    @context.command(COMMAND)
+    async def translate(*arguments: object) -> Translated | None:
         """Translate a system as it stands in the editor.
 
         Args:
-            ls: the server; pygls gives it to a function that takes any number of arguments.
             arguments: the URI of the system file, and that of the JANI file if it is not to lie beside it.
 
         Returns:
             null if the system cannot be translated; the user is told why.
         """
         if not 1 <= len(arguments) <= 2 or not all(isinstance(argument, str) for argument in arguments):
-            _tell(server, types.MessageType.Error, f"{COMMAND} takes the URI of a system file, and that of the output.")
+            text = f"{COMMAND} takes the URI of a system file, and that of the output."
+            context.client.show_message(types.MessageType.Error, text)
             return None
         path, *output = (session.convert.path(str(uri)) for uri in arguments)
         target = output[0] if output else jani_path(path)
         name = os.path.basename(path)
-        async with progress(server, f"Translating {name}", cancellable=True) as shown:
+        async with context.progress.show(f"Translating {name}", cancellable=True) as shown:
             try:
-                with server.requests.cancelled_by(shown.token):
-                    model, left_out = await _write(server, shown, path, target)
+                with context.requests.cancelled_by(shown.token):
+                    model, left_out = await _write(context, shown, path, target)
             except Interrupted:
                 if shown.is_cancelled:
                     return None
                 raise
             except api.ModelError as error:
                 errors = counted(error.result.diagnostics)
-                _tell(server, types.MessageType.Error, f"{name} has {errors} and was not translated.")
-                await show(server, error.result.snapshot, error.result.diagnostics)
+                context.client.show_message(types.MessageType.Error, f"{name} has {errors} and was not translated.")
+                await show(context, error.result.snapshot, error.result.diagnostics)
                 return None
             except (api.PathError, OutputError) as error:
-                _tell(server, types.MessageType.Error, str(error))
+                context.client.show_message(types.MessageType.Error, str(error))
                 return None
             except OSError as error:
-                _tell(server, types.MessageType.Error, f"{target} cannot be written: {error.strerror or error}")
+                context.client.show_message(
+                    types.MessageType.Error, f"{target} cannot be written: {error.strerror or error}"
+                )
                 return None
         for each in left_out:
-            _tell(server, types.MessageType.Warning, f"{each.message} [{each.code}]")
+            context.client.show_message(types.MessageType.Warning, f"{each.message} [{each.code}]")
         found = summary(model)
-        _tell(server, types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
+        context.client.show_message(types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
         return {"uri": session.convert.uri(target), "summary": found}
 
 
@@ -93,7 +92,7 @@ def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter
         yield types.CodeLens(convert.range(source, file.element.name_span), command)
 
 
-async def _write(server: Server, shown: Progress, path: str, target: str) -> tuple[Model, tuple[Diagnostic, ...]]:
+async def _write(context: Context, shown: Progress, path: str, target: str) -> tuple[Model, tuple[Diagnostic, ...]]:
     """Translate a system, as it is now, into a file. Between the steps other messages are handled.
 
     Returns:
@@ -102,20 +101,20 @@ async def _write(server: Server, shown: Progress, path: str, target: str) -> tup
     Raises:
         Interrupted: the client does not want it any more. The file is as it was before.
     """
-    snapshot = server.session.moment().snapshot(path)
+    snapshot = context.session.moment().snapshot(path)
     await shown.step("checking")
     system = api.loaded(snapshot, path)
     keep_off(target, system)
     await shown.step("translating")
     model, left_out = without_bounded(api.to_jani(system))
     await shown.step("writing")
-    write_file(target, _while_wanted(server, chain(jani_text(model), "\n")))
+    write_file(target, _while_wanted(context, chain(jani_text(model), "\n")))
     return model, left_out
 
 
-def _while_wanted(server: Server, pieces: Iterable[str]) -> Iterator[str]:
+def _while_wanted(context: Context, pieces: Iterable[str]) -> Iterator[str]:
     for piece in pieces:
-        server.requests.checkpoint()
+        context.requests.checkpoint()
         yield piece
 
 
@@ -125,7 +124,3 @@ def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types
         title = TITLE if system == path else f"Translate {name} to JANI"
         command = types.Command(title, COMMAND, arguments=[convert.uri(system)])
         yield types.CodeAction(title, kind=types.CodeActionKind.Source, command=command)
-
-
-def _tell(server: Server, kind: types.MessageType, text: str) -> None:
-    server.window_show_message(types.ShowMessageParams(kind, text))

@@ -4,23 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from as2fm_lsp.handlers.asked import asked
+from as2fm_lsp.context import Context
+from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from roaml.diagnostics import Symbol
 from roaml.ide.hierarchy.types import TypeItem, holders_of, members_of, types_at
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
-
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
     def convert(analysis: Analysis, found: Iterable[TypeItem], asked_in: str) -> list[types.TypeHierarchyItem]:
         items = []
@@ -44,15 +41,15 @@ def register(server: Server) -> None:
         analysis = session.moment().snapshot(path).analysis
         return convert(analysis, question(analysis, symbol), path) if symbol else []
 
-    @server.feature(types.TEXT_DOCUMENT_PREPARE_TYPE_HIERARCHY)
+    @context.feature(types.TEXT_DOCUMENT_PREPARE_TYPE_HIERARCHY)
     def prepare(params: types.TypeHierarchyPrepareParams) -> list[types.TypeHierarchyItem]:
-        on = asked(server, params.text_document)
+        on = requested_document(context, params.text_document)
         return convert(on.analysis, types_at(on.analysis, on.path, on.offset(params.position)), on.path) if on else []
 
-    @server.feature(types.TYPE_HIERARCHY_SUBTYPES)
+    @context.feature(types.TYPE_HIERARCHY_SUBTYPES)
     def subtypes(params: types.TypeHierarchySubtypesParams) -> list[types.TypeHierarchyItem]:
         return ask(params.item, members_of)
 
-    @server.feature(types.TYPE_HIERARCHY_SUPERTYPES)
+    @context.feature(types.TYPE_HIERARCHY_SUPERTYPES)
     def supertypes(params: types.TypeHierarchySupertypesParams) -> list[types.TypeHierarchyItem]:
         return ask(params.item, holders_of)

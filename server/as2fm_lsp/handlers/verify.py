@@ -13,16 +13,16 @@ import time
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lsprotocol import types
-from pygls.lsp.server import LanguageServer
 
-from as2fm_lsp.handlers.asked import Asked as Document
+from as2fm_lsp.context import Context
+from as2fm_lsp.display_settings import display_settings
 from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.handlers.parameters import document_uri, string
-from as2fm_lsp.progress import Progress, progress
-from as2fm_lsp.shown import shown
+from as2fm_lsp.handlers.requested_document import RequestedDocument
+from as2fm_lsp.progress import Progress
 from as2fm_lsp.verification import background, stuck_report
 from as2fm_lsp.verification.known_results import KnownResult, missed, short
 from as2fm_lsp.verification.node_names import explained
@@ -49,9 +49,6 @@ from roaml.verification.target import Target
 from roaml.verification.verifier import Verifier, checker_of
 from roaml.views.story import Line
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
-
 COMMAND = "as2fm.verify"
 PROPERTIES = "as2fm/properties"
 COUNTEREXAMPLE = "as2fm/counterexample"
@@ -60,15 +57,14 @@ TITLE = "Verify"
 Json = dict[str, Any]
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.command(COMMAND)
-    async def verify(ls: LanguageServer, *arguments: object) -> Json | None:
+    @context.command(COMMAND)
+    async def verify(*arguments: object) -> Json | None:
         """Verify properties of a system as it stands in the editor.
 
         Args:
-            ls: the server; pygls gives it to a function that takes any number of arguments.
             arguments: the URI of the system file, the names of the properties (all if none are given), and options.
 
         Returns:
@@ -78,26 +74,26 @@ def register(server: Server) -> None:
         """
         if not _are_arguments(arguments):
             text = f"{COMMAND} takes the URI of a system file, a list of names, and options."
-            _tell(server, types.MessageType.Error, text)
+            context.client.show_message(types.MessageType.Error, text)
             return None
         path = session.convert.path(str(arguments[0]))
         names = arguments[1] if len(arguments) > 1 else ()
         settings = verification_settings(session.client_settings, arguments[2] if len(arguments) > 2 else None)
         for problem in settings.problems:
-            _tell(server, types.MessageType.Warning, problem)
-        async with progress(server, f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
+            context.client.show_message(types.MessageType.Warning, problem)
+        async with context.progress.show(f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
             try:
-                with server.requests.cancelled_by(bar.token):
-                    run = _Run(server, bar, path, settings)
+                with context.requests.cancelled_by(bar.token):
+                    run = _Run(context, bar, path, settings)
                     return await run.answer([str(name) for name in names] if isinstance(names, Sequence) else [])
             except Interrupted:
                 if bar.is_cancelled:
                     return None
                 raise
             finally:
-                server.refresh.look()
+                context.refresh.look()
 
-    @server.feature(PROPERTIES)
+    @context.feature(PROPERTIES)
     def properties(_: Any) -> list[Json]:
         """The systems with their properties, and what is known of these."""
         moment = session.moment()
@@ -105,20 +101,20 @@ def register(server: Server) -> None:
         for path in moment.files():
             analysis = moment.snapshot(path).analysis
             if analysis.kind(path) is FileKind.SYSTEM:
-                rows = [_property(server, analysis, path, each) for each in verifiable(analysis, path)]
+                rows = [_property(context, analysis, path, each) for each in verifiable(analysis, path)]
                 found.append({"uri": session.convert.uri(path), "properties": rows})
         return [system for system in found if system["properties"]]
 
-    @server.feature(COUNTEREXAMPLE)
+    @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
         """The shortest trace that speaks against a property; null if none is known."""
         path = session.convert.path(document_uri(params))
-        known = server.verified.get(path, string(params, "property"))
+        known = context.results.get(path, string(params, "property"))
         if known is None or known.result.traces is None:
             return None
         result, target = known.result, known.result.traces.target
         why = await background.in_thread(
-            lambda _: counterexample(result, partial(_place_in_words, target)), server.requests.checkpoint
+            lambda _: counterexample(result, partial(_place_in_words, target)), context.requests.checkpoint
         )
         if why is None:
             return None
@@ -129,15 +125,15 @@ def register(server: Server) -> None:
             "verdict": why.verdict,
             "trace": why.trace,
             "expected": missed(known.result),
-            "stale": server.verified.is_stale(known, analysis, path),
-            "steps": [_step(server, known, path, line) for line in why.lines],
+            "stale": context.results.is_stale(known, analysis, path),
+            "steps": [_step(context, known, path, line) for line in why.lines],
         }
 
 
-def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[types.CodeLens]:
+def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
     """At each property of a system that is not `broken`, and at the system file. Results stand in the hints behind the
     names, and in the lenses only where no hints are shown."""
-    tells = not _shows_hints(server)
+    tells = not _shows_hints(context)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
         if system in broken or not os.path.isabs(system):
@@ -148,51 +144,53 @@ def lenses(server: Server, on: Document, broken: Collection[str]) -> Iterator[ty
         if system == on.path and file is not None and found:
             command = types.Command("Verify all", COMMAND, arguments=[uri])
             yield types.CodeLens(on.range(file.element.name_span), command)
-            stuck_known = server.verified.get(system, STUCK_PROPERTY)
-            if server.show_counterexample and stuck_known and stuck_known.result.stuck:
-                stale = ", stale" if server.verified.is_stale(stuck_known, on.analysis, system) else ""
+            stuck_known = context.results.get(system, STUCK_PROPERTY)
+            if context.client.show_counterexample and stuck_known and stuck_known.result.stuck:
+                stale = ", stale" if context.results.is_stale(stuck_known, on.analysis, system) else ""
                 title = f"Gets stuck{stale}: show who waits for whom"
-                show = types.Command(title, server.show_counterexample, arguments=[uri, STUCK_PROPERTY])
+                show = types.Command(title, context.client.show_counterexample, arguments=[uri, STUCK_PROPERTY])
                 yield types.CodeLens(on.range(file.element.name_span), show)
         for each in found:
             if each.path != on.path:
                 continue
-            known = server.verified.get(system, each.name)
-            words = _words(server, on.analysis, system, known) if tells else []
+            known = context.results.get(system, each.name)
+            words = _words(context, on.analysis, system, known) if tells else []
             title = " · ".join([f"{TITLE}{where}", *words])
             yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
             speaks = known and (missed(known.result) or known.result.stuck)
-            if known and server.show_counterexample and speaks and unwanted_trace(known.result):
-                show = types.Command("Show counterexample", server.show_counterexample, arguments=[uri, each.name])
+            if known and context.client.show_counterexample and speaks and unwanted_trace(known.result):
+                show = types.Command(
+                    "Show counterexample", context.client.show_counterexample, arguments=[uri, each.name]
+                )
                 yield types.CodeLens(on.range(each.name_span), show)
 
 
-def hints(server: Server, on: Document, within: types.Range) -> Iterator[types.InlayHint]:
+def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
     """What is known, behind the name of each property."""
     span = on.span(within)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
         where = f" in {name}" if len(systems) > 1 else ""
-        for each in verifiable(on.analysis, system) if server.verified.has(system) else ():
-            known = server.verified.get(system, each.name)
+        for each in verifiable(on.analysis, system) if context.results.has(system) else ():
+            known = context.results.get(system, each.name)
             if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
                 continue
             is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
             mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
             mark = "⚠" if known.result.stuck else mark
-            text = f"{mark} {', '.join(_words(server, on.analysis, system, known))}{where}"
+            text = f"{mark} {', '.join(_words(context, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
             place_of = partial(_place_in_words, known.result.traces.target if known.result.traces else None)
             whole = one_as_text(known.result, place_of)
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
 
 
-def _shows_hints(server: Server) -> bool:
-    document = server.client_capabilities.text_document
-    return bool(document and document.inlay_hint) and shown(server.session.client_settings).results
+def _shows_hints(context: Context) -> bool:
+    document = context.client.capabilities.text_document
+    return bool(document and document.inlay_hint) and display_settings(context.session.client_settings).results
 
 
-def _words(server: Server, analysis: Analysis, system: str, known: KnownResult | None) -> list[str]:
+def _words(context: Context, analysis: Analysis, system: str, known: KnownResult | None) -> list[str]:
     if known is None:
         return []
     wrong = missed(known.result)
@@ -200,7 +198,7 @@ def _words(server: Server, analysis: Analysis, system: str, known: KnownResult |
     parts += dict.fromkeys(verdict.text for verdict in known.result.verdicts if verdict.is_uniform)
     if known.result.stuck is not None:
         parts.append(f"{known.result.stuck.count:,} traces got stuck")
-    if server.verified.is_stale(known, analysis, system):
+    if context.results.is_stale(known, analysis, system):
         parts.append("stale")
     return [", ".join(parts)]
 
@@ -208,32 +206,32 @@ def _words(server: Server, analysis: Analysis, system: str, known: KnownResult |
 class _Run:
     """One call of the command."""
 
-    def __init__(self, server: Server, bar: Progress, path: str, settings: VerificationSettings) -> None:
-        self.server = server
+    def __init__(self, context: Context, bar: Progress, path: str, settings: VerificationSettings) -> None:
+        self.context = context
         self.bar = bar
         self.path = path
         self.settings = settings
 
     async def answer(self, names: list[str]) -> Json | None:
-        server, path = self.server, self.path
+        context, path = self.context, self.path
         name = os.path.basename(path)
         try:
             await self.bar.step("checking")
-            system = api.loaded(server.session.moment().snapshot(path), path)
+            system = api.loaded(context.session.moment().snapshot(path), path)
         except api.ModelError as error:
             self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
             if not self.settings.is_silent:
-                await show(server, error.result.snapshot, error.result.diagnostics)
+                await show(context, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
             self.say_wrong(str(error))
             return {"results": [], "errors": [{"message": str(error)}]}
         texts = fingerprint(system.analysis, path)
-        target = server.verified.target(texts)
+        target = context.results.target(texts)
         if target is None:
             await self.bar.step("translating")
             target = api.as_target(system)
-            server.verified.keep_target(texts, target)
+            context.results.keep_target(texts, target)
         rows: list[Json] = []
         results: list[Result] = []
         verifier: Verifier | None = None
@@ -252,11 +250,11 @@ class _Run:
                 self.say_wrong(str(error))
                 continue
             results.append(result)
-            server.verified.put(path, KnownResult(result, system.analysis, texts))
+            context.results.put(path, KnownResult(result, system.analysis, texts))
             rows.append({**row(result), "short": short(result), "counterexample": unwanted_trace(result) is not None})
-            server.refresh.look()
+            context.refresh.look()
             if not self.settings.is_silent:
-                _tell(server, types.MessageType.Info, self.text(result, target))
+                context.client.show_message(types.MessageType.Info, self.text(result, target))
         look = None if verifier is None else await self.look(verifier, system.analysis, results, texts)
         return {"results": rows, "errors": [], "stuck": look}
 
@@ -272,7 +270,7 @@ class _Run:
             PropertyError, FaultError: it cannot be answered.
             RangeError: no value of it can meet what is expected of it.
         """
-        only_uniform = self.server.session.settings_of(self.path).scheduler == "uniform"
+        only_uniform = self.context.session.settings_of(self.path).scheduler == "uniform"
         checker = checker_of(target, [name])
         verifier = Verifier(target, checker, self.settings.options, self.settings.expectations, only_uniform)
         asked = verifier.question(name)
@@ -294,23 +292,23 @@ class _Run:
             began = time.monotonic()
             known = await background.in_thread(
                 lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
-                self.server.requests.checkpoint,
+                self.context.requests.checkpoint,
             )
             is_free = all(property_.name != asked.question.name for property_ in target.model.properties)
             if known.answer is not None and is_free:
                 traces = Traces(target, checker, asked, known.answer.options)
                 seconds = time.monotonic() - began
                 result = Result(asked.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces)
-                self.server.verified.put(self.path, KnownResult(result, analysis, texts))
-            self.server.refresh.look()
+                self.context.results.put(self.path, KnownResult(result, analysis, texts))
+            self.context.refresh.look()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
         place_of = partial(_place_in_words, target)
         text = stuck_report.as_text(known, place_of)
         text += explained(text, target.model, place_of)
         if known.stuck is not None and not self.settings.is_silent:
             kind = types.MessageType.Warning if known.is_met else types.MessageType.Error
-            _tell(self.server, kind, text.strip())
-        row = stuck_report.as_row(known, lambda origin: _place(self.server, analysis, origin))
+            self.context.client.show_message(kind, text.strip())
+        row = stuck_report.as_row(known, lambda origin: _place(self.context, analysis, origin))
         return {**row, "text": text.strip()}
 
     async def traces(self, verifier: Verifier, asked: Asked) -> Result:
@@ -318,34 +316,34 @@ class _Run:
             so_far = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
             self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
 
-        return await background.answer(verifier, asked, self.server.requests.checkpoint, show_estimate)
+        return await background.answer(verifier, asked, self.context.requests.checkpoint, show_estimate)
 
     def error(self, diagnostic: Diagnostic, result: api.CheckResult) -> Json:
-        place = _place(self.server, result.snapshot.analysis, Location(diagnostic.path, diagnostic.span))
+        place = _place(self.context, result.snapshot.analysis, Location(diagnostic.path, diagnostic.span))
         return {"message": diagnostic.message, "code": diagnostic.code, **place}
 
     def fault(self, fault: FaultError, analysis: Analysis) -> Json:
-        place = _place(self.server, analysis, fault.origin) if fault.origin is not None else {}
+        place = _place(self.context, analysis, fault.origin) if fault.origin is not None else {}
         return {"message": fault.message, "code": fault.code, "trace": fault.trace, **place}
 
     def say_wrong(self, text: str) -> None:
         if not self.settings.is_silent:
-            _tell(self.server, types.MessageType.Error, text)
+            self.context.client.show_message(types.MessageType.Error, text)
 
 
-def _property(server: Server, analysis: Analysis, system: str, each: Verifiable) -> Json:
-    place = _place(server, analysis, Location(each.path, each.name_span))
+def _property(context: Context, analysis: Analysis, system: str, each: Verifiable) -> Json:
+    place = _place(context, analysis, Location(each.path, each.name_span))
     found: Json = {"name": each.name, "comment": each.comment, **place}
-    known = server.verified.get(system, each.name)
+    known = context.results.get(system, each.name)
     if known is not None:
-        found["stale"] = server.verified.is_stale(known, analysis, system)
+        found["stale"] = context.results.is_stale(known, analysis, system)
     return found
 
 
-def _step(server: Server, known: KnownResult, system: str, line: Line) -> Json:
+def _step(context: Context, known: KnownResult, system: str, line: Line) -> Json:
     origin = line.origin
     nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
-    convert = server.session.convert
+    convert = context.session.convert
     return {
         "step": line.step,
         "time": line.time,
@@ -353,7 +351,7 @@ def _step(server: Server, known: KnownResult, system: str, line: Line) -> Json:
         "what": line.what,
         "place": line.place,
         "details": list(line.details),
-        **(_place(server, known.analysis, origin) if origin is not None else {}),
+        **(_place(context, known.analysis, origin) if origin is not None else {}),
         "highlights": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
     }
 
@@ -363,12 +361,12 @@ def _place_in_words(target: Target | None, origin: Location) -> str:
     return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
 
 
-def _place(server: Server, analysis: Analysis, location: Location) -> Json:
+def _place(context: Context, analysis: Analysis, location: Location) -> Json:
     """`uri` and `range`; nothing if the file is not there."""
     source = analysis.source(location.path)
     if source is None:
         return {}
-    convert = server.session.convert
+    convert = context.session.convert
     start, end = (convert.position(source, offset) for offset in location.span)
     return {
         "uri": convert.uri(location.path),
@@ -384,7 +382,3 @@ def _are_arguments(arguments: Sequence[object]) -> bool:
         return False
     names = arguments[1] if len(arguments) > 1 else ()
     return names is None or (not isinstance(names, str) and isinstance(names, Sequence))
-
-
-def _tell(server: Server, kind: types.MessageType, text: str) -> None:
-    server.window_show_message(types.ShowMessageParams(kind, text))

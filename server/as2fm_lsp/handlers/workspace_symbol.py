@@ -3,25 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.symbols import symbol_kind
 from roaml.ide.navigation.workspace_symbols import search
 from roaml.text import Location
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 MOST = 1000
 """More than anybody reads; the user types another letter."""
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(types.WORKSPACE_SYMBOL)
+    @context.feature(types.WORKSPACE_SYMBOL)
     def workspace_symbol(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         moment = session.moment()
         found: list[types.WorkspaceSymbol] = []

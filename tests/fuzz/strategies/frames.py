@@ -130,7 +130,7 @@ def _said(data: bytes) -> bytes:
     """What a server says to some bytes until they end."""
     logging.getLogger("pygls").setLevel(logging.CRITICAL)  # as the command does
     server = create()
-    server.protocol._converter = _converter()
+    server.endpoint.protocol._converter = _converter()
     target = _Kept()
     server.serve(BytesIO(data), target)
     return target.getvalue()

@@ -23,7 +23,7 @@ _ON = {
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class DisplaySettings:
     """`references`: whether lenses count uses; `results`: whether hints tell what is known of properties."""
 
     hints: frozenset[HintKind]
@@ -31,17 +31,17 @@ class Shown:
     results: bool
 
 
-def shown(settings: object) -> Shown:
+def display_settings(settings: object) -> DisplaySettings:
     """
     Args:
         settings: the client's settings, as they came.
     """
     hints = frozenset(kind for kind, on in _ON.items() if _is_on(settings, "inlayHints", kind.value, on))
     references = _is_on(settings, "codeLens", "references", True)
-    return Shown(hints, references, _is_on(settings, "inlayHints", "results", True))
+    return DisplaySettings(hints, references, _is_on(settings, "inlayHints", "results", True))
 
 
 def _is_on(settings: object, section: str, key: str, otherwise: bool) -> bool:
-    found = settings.get(section) if isinstance(settings, Mapping) else None
-    value = found.get(key) if isinstance(found, Mapping) else found
+    values = settings.get(section) if isinstance(settings, Mapping) else None
+    value = values.get(key) if isinstance(values, Mapping) else values
     return value if isinstance(value, bool) else otherwise

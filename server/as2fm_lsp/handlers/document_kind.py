@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml.model.kinds import FileKind
-
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
 
 METHOD = "as2fm/about"
 
@@ -33,10 +31,10 @@ class About(TypedDict):
     hasTree: bool
 
 
-def register(server: Server) -> None:
-    session = server.session
+def register(context: Context) -> None:
+    session = context.session
 
-    @server.feature(METHOD)
+    @context.feature(METHOD)
     def about(params: Any) -> About:
         path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis

@@ -4,21 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
+from as2fm_lsp.context import Context
 from as2fm_lsp.convert import Converter
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile, Span
 
-if TYPE_CHECKING:
-    from as2fm_lsp.server import Server
-
 
 @dataclass(frozen=True)
-class Asked:
+class RequestedDocument:
     """A file, with all that is known at the moment of the request."""
 
     path: str
@@ -40,10 +37,10 @@ class Asked:
         return self.convert.range(self.source, span)
 
 
-def asked(server: Server, document: types.TextDocumentIdentifier) -> Asked | None:
+def requested_document(context: Context, document: types.TextDocumentIdentifier) -> RequestedDocument | None:
     """None if there is no such file."""
-    session = server.session
+    session = context.session
     path = session.convert.path(document.uri)
     snapshot = session.moment().snapshot(path)
     source = snapshot.analysis.source(path)
-    return None if source is None else Asked(path, snapshot, source, session.convert)
+    return None if source is None else RequestedDocument(path, snapshot, source, session.convert)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The client: what it can do, and what it is told and asked."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from lsprotocol import types
+
+from as2fm_lsp.transport import Endpoint
+
+log = logging.getLogger(__name__)
+
+SECTION = "as2fm"
+"""The section of the client's settings."""
+
+
+class Client:
+    """Args:
+    endpoint: the connection.
+
+    Attributes:
+        show_references: the command of the client that shows places; "" if it has none.
+        show_counterexample: the one that shows why a property fails.
+        trigger_suggest: the one that asks for completions.
+    """
+
+    def __init__(self, endpoint: Endpoint) -> None:
+        self.show_references = ""
+        self.show_counterexample = ""
+        self.trigger_suggest = ""
+        self._endpoint = endpoint
+
+    def use_commands(self, options: Mapping[str, Any]) -> None:
+        """Take over the names of the client's commands from its `initializationOptions`."""
+        self.show_references = str(options.get("showReferences") or "")
+        self.show_counterexample = str(options.get("showCounterexample") or "")
+        self.trigger_suggest = str(options.get("triggerSuggest") or "")
+
+    # ------------------------------------------------------------------ facts
+
+    @property
+    def capabilities(self) -> types.ClientCapabilities:
+        return self._endpoint.client_capabilities
+
+    @property
+    def position_encoding(self) -> types.PositionEncodingKind:
+        """The encoding that was agreed on."""
+        return types.PositionEncodingKind(self._endpoint.workspace.position_encoding)
+
+    @property
+    def folders(self) -> tuple[str, ...]:
+        """The URIs of the folders that are open."""
+        return tuple(folder.uri for folder in self._endpoint.workspace.folders.values())
+
+    # ---------------------------------------------------------- notifications
+
+    def show_message(self, kind: types.MessageType, text: str) -> None:
+        self._endpoint.window_show_message(types.ShowMessageParams(kind, text))
+
+    def publish_diagnostics(self, uri: str, diagnostics: list[types.Diagnostic], version: int | None) -> None:
+        self._endpoint.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, diagnostics, version))
+
+    # --------------------------------------------------------------- requests
+
+    async def show_document(self, place: types.Location) -> None:
+        """Show a place, if the client can."""
+        window = self.capabilities.window
+        if window is not None and window.show_document is not None and window.show_document.support:
+            params = types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range)
+            await self._endpoint.window_show_document_async(params)
+
+    def refresh_diagnostics(self) -> None:
+        """Diagnostics have changed that the client fetches by itself."""
+        workspace = self.capabilities.workspace
+        if workspace is not None and workspace.diagnostics and workspace.diagnostics.refresh_support:
+            self._endpoint.workspace_diagnostic_refresh(None)
+
+    def refresh_inlay_hints(self) -> None:
+        self._endpoint.workspace_inlay_hint_refresh(None)
+
+    def refresh_code_lenses(self) -> None:
+        self._endpoint.workspace_code_lens_refresh(None)
+
+    async def settings(self) -> dict[str, Any] | None:
+        """The client's settings; None if it cannot be asked for them."""
+        workspace = self.capabilities.workspace
+        if workspace is None or not workspace.configuration:
+            return None
+        item = types.ConfigurationItem(section=SECTION)
+        try:
+            answer: Any = await self._endpoint.workspace_configuration_async(types.ConfigurationParams([item]))
+        except Exception as error:  # a client that cannot answer is as good as one without settings
+            log.warning("the client's settings cannot be read: %s", error)
+            return None
+        return answer[0] if answer and isinstance(answer[0], dict) else {}
+
+    async def watch_files(self, patterns: Iterable[str]) -> None:
+        """Be told of changes on the disk, if the client can do so."""
+        workspace = self.capabilities.workspace
+        watched = workspace.did_change_watched_files if workspace else None
+        if watched is None or not watched.dynamic_registration:
+            return
+        watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
+        options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
+        registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+        try:
+            await self._endpoint.client_register_capability_async(types.RegistrationParams([registration]))
+        except Exception as error:  # without it, files are looked at again with each change of a document
+            log.warning("files cannot be watched: %s", error)
+
+    # --------------------------------------------------------------- progress
+
+    async def create_progress(self, token: str) -> None:
+        """
+        Raises:
+            Exception: the client does not show it.
+        """
+        await self._endpoint.work_done_progress.create_async(token)
+
+    def begin_progress(self, token: str, begin: types.WorkDoneProgressBegin) -> None:
+        self._endpoint.work_done_progress.begin(token, begin)
+
+    def report_progress(self, token: str, report: types.WorkDoneProgressReport) -> None:
+        self._endpoint.work_done_progress.report(token, report)
+
+    def end_progress(self, token: str) -> None:
+        self._endpoint.work_done_progress.end(token, types.WorkDoneProgressEnd())
+        self._endpoint.work_done_progress.tokens.pop(token, None)

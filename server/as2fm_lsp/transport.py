@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One connection to a client, on top of pygls: reading, checking, dispatching and answering messages.
+
+This is the only module that uses what is private in pygls, or derives from its classes. It is written for pygls 2.1 and
+the other versions that `pyproject.toml` allows (`pygls>=2.1,<3`); who raises that range reads this module again:
+
+- pygls keeps a second copy of every document, which nobody reads, splits lines differently and moves the positions of
+  changes while it applies them; and it keeps a future for every notification. Neither is done here.
+- It answers no request that comes at the wrong time, and takes any value for a token.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import sys
+from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from typing import Any, BinaryIO
+
+from lsprotocol import types
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInternalError,
+    JsonRpcInvalidParams,
+    JsonRpcInvalidRequest,
+    JsonRpcParseError,
+    JsonRpcRequestCancelled,
+    JsonRpcServerNotInitialized,
+    PyglsError,
+)
+from pygls.io_ import StdoutWriter
+from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol
+
+from as2fm_lsp.inbox import CANCELLATIONS, Inbox, is_id
+from as2fm_lsp.json_rpc import error_response, is_answered
+from as2fm_lsp.sockets import Connection
+from roaml import __version__
+
+log = logging.getLogger(__name__)
+
+_DOCUMENTS = (
+    types.TEXT_DOCUMENT_DID_OPEN,
+    types.TEXT_DOCUMENT_DID_CHANGE,
+    types.TEXT_DOCUMENT_DID_CLOSE,
+    types.NOTEBOOK_DOCUMENT_DID_OPEN,
+    types.NOTEBOOK_DOCUMENT_DID_CHANGE,
+    types.NOTEBOOK_DOCUMENT_DID_CLOSE,
+)
+"""What `Session` does and pygls would do a second time."""
+
+_MAX_NAME_CHARACTERS = 60
+
+_MAX_UNANSWERED = 1000
+"""The number of requests to the client whose answers are awaited: one that never answers must not fill the memory."""
+
+
+class Protocol(LanguageServerProtocol):
+    """The protocol of one session, from `initialize` to `exit`."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._is_initialized = False
+        for method in _DOCUMENTS:
+            self.fm.builtin_features.pop(method, None)
+
+    # ------------------------------------------------------------------ in
+
+    def receive(self, message: object) -> None:
+        """Handle a message that was read: plain data, or the error if it is no JSON.
+
+        Raises:
+            JsonRpcException: it is no message that is understood, or it comes at the wrong time.
+        """
+        if isinstance(message, Exception):
+            raise JsonRpcParseError(f"the message is not JSON: {message}")
+        if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
+            raise JsonRpcInvalidRequest(f'a message is one JSON object with `"jsonrpc": "{self.VERSION}"`')
+        if "id" in message and "method" not in message:
+            self._response(message)
+            return
+        method = message.get("method")
+        if not isinstance(method, str) or not is_id(message.get("id", 0)):
+            raise JsonRpcInvalidRequest("`method` is a string and `id` a number or a string")
+        is_request = "id" in message
+        if self._shutdown and method != types.EXIT:
+            if is_request:
+                raise JsonRpcInvalidRequest("the server was told to shut down; only `exit` can follow")
+            return
+        if method == types.INITIALIZE:
+            self._check_initialize(message)
+        elif not self._is_initialized and method != types.EXIT:
+            if is_request:
+                raise JsonRpcServerNotInitialized(f"`{_short(method)}` comes before `initialize`")
+            return
+        if method in CANCELLATIONS:
+            _check_cancellation(message)
+        structured = self._structured(message)
+        if method == types.INITIALIZE:
+            self._is_initialized = True
+        self.handle_message(structured)
+
+    def _structured(self, message: dict[str, Any]) -> Any:
+        if self.get_message_type(message["method"]) is None:
+            message.setdefault("params", None)
+        elif message.get("params", 0) is None:
+            del message["params"]  # some clients send null where there are none
+        try:
+            return self.structure_message(message)
+        except Exception as error:
+            raise JsonRpcInvalidParams(f"the parameters of `{_short(message['method'])}` are not understood") from error
+
+    def _check_initialize(self, message: dict[str, Any]) -> None:
+        if "id" not in message:
+            raise JsonRpcInvalidRequest("`initialize` is a request and has an `id`")
+        if self._is_initialized:
+            raise JsonRpcInvalidRequest("the server is initialized already")
+
+    def _response(self, message: dict[str, Any]) -> None:
+        """An answer of the client. Those that nobody waits for are passed over."""
+        if not is_id(message["id"]) or message["id"] not in self._request_futures:
+            return
+        if "error" in message:
+            self._result_types.pop(message["id"], None)
+        self.handle_message(self.structure_message(message))
+
+    # ----------------------------------------------------------------- out
+
+    def send_request(self, *arguments: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = super().send_request(*arguments, **named)
+        for id_ in tuple(self._result_types)[:-_MAX_UNANSWERED]:
+            self._result_types.pop(id_, None)
+            self._request_futures.pop(id_, None)
+        return future
+
+    def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: Any = None) -> None:
+        def done(future: Future[Any]) -> None:
+            self._request_futures.pop(msg_id, None)
+            with suppress(asyncio.CancelledError):  # as when the session ends: nobody waits
+                callback(future)
+
+        super()._execute_handler(msg_id, handler, done, args, kwargs)
+
+
+def _check_cancellation(message: dict[str, Any]) -> None:
+    """pygls takes any value for a token."""
+    params, name = message.get("params"), CANCELLATIONS[message["method"]]
+    if not isinstance(params, dict) or not is_id(params.get(name)):
+        raise JsonRpcInvalidParams(f"`{name}` must be a number or a string")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _MAX_NAME_CHARACTERS else f"{text[:_MAX_NAME_CHARACTERS]}…"
+
+
+class Endpoint(LanguageServer):
+    """One client's end of the connection.
+
+    Attributes:
+        is_shut_down: whether the client has asked the server to shut down.
+        has_parent: whether the client has started this process, so that the server ends with it.
+    """
+
+    protocol: Protocol
+
+    def __init__(self, inbox: Inbox) -> None:
+        super().__init__("as2fm-lsp", __version__, protocol_cls=Protocol)
+        self.is_shut_down = False
+        self.has_parent = False
+        self._inbox = inbox
+
+    # ------------------------------------------------------------- dispatching
+
+    @property
+    def request_id(self) -> str | int | None:
+        """The id of the request that is being handled; None for a notification."""
+        id_: str | int | None = self.protocol.msg_id
+        return id_
+
+    def on(self, method: str, handler: Callable[..., Any], options: object = None) -> None:
+        """Let `handler` answer a request or take a notification."""
+        self.feature(method, options)(handler)
+
+    def on_command(self, name: str, handler: Callable[..., Awaitable[Any]]) -> None:
+        """Let `handler` do a command of `workspace/executeCommand`. It is given the arguments as they came."""
+
+        async def run(ls: LanguageServer, *arguments: object) -> Any:
+            # pygls looks at names: the first parameter must be `ls`, and then any number of arguments is passed on.
+            return await handler(*arguments)
+
+        self.command(name)(run)
+
+    def cancel_requests(self) -> None:
+        """End what runs for requests but the one that is being handled.
+
+        pygls does the same, but stumbles over a command that runs: cancelling it takes it out of what is iterated.
+        """
+        for id_, future in tuple(self.protocol._request_futures.items()):
+            if id_ != self.protocol.msg_id and not future.done():
+                future.cancel()
+
+    # ----------------------------------------------------------------- serving
+
+    def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
+        self.has_parent = True
+        # A reader of our own: Python's is locked while a thread reads it, and the process could not end.
+        source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
+        self.serve(source, stdout or sys.stdout.buffer)
+
+    def serve_client(self, connection: Connection) -> None:
+        """Serve a client that has connected to a socket."""
+        self._inbox.put(json.dumps(connection.first).encode())
+        with connection.channel:
+            self.serve(connection.source, connection.target)
+
+    def serve(self, source: BinaryIO, target: BinaryIO) -> None:
+        """Serve one client, until it tells the server to exit or has no more to say."""
+        self.protocol.set_writer(StdoutWriter(target))
+        try:
+            asyncio.run(self._handle_messages(source))
+        except BrokenPipeError:
+            log.error("the connection to the client is lost")
+        except (KeyboardInterrupt, SystemExit):
+            pass
+        finally:
+            self.shutdown()  # type: ignore[no-untyped-call]
+
+    async def _handle_messages(self, source: BinaryIO) -> None:
+        asyncio.get_running_loop().set_exception_handler(_report)
+        self._inbox.fill_from(source)
+        async for message in self._inbox:
+            try:
+                self.protocol.receive(message)
+            except BrokenPipeError:
+                raise
+            except JsonRpcException as error:
+                self._refuse(message, error)
+            except Exception as error:  # whatever the client sends, the session goes on
+                log.exception("a message cannot be handled")
+                self._refuse(message, JsonRpcInternalError(f"{type(error).__name__} in the server"))
+            await asyncio.sleep(0)
+
+    def _refuse(self, message: object, error: JsonRpcException) -> None:
+        """A message that is not understood, or not now; whoever waits for an answer gets one."""
+        if is_answered(message):
+            self.protocol._send_data(error_response(message, error))
+        else:
+            log.warning("a message is ignored: %s", error)
+
+    def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
+        """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
+        if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
+            known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
+            log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """What went wrong where nobody waits; that somebody does not wait any more is nothing wrong."""
+    if not isinstance(context.get("exception"), JsonRpcRequestCancelled):
+        loop.default_exception_handler(context)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The faces have no import circles, and one module knows what is private in pygls."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+SERVER = Path(__file__).resolve().parents[1] / "server"
+MODULES = {
+    ".".join(path.relative_to(SERVER).with_suffix("").parts).removesuffix(".__init__"): path
+    for path in sorted((SERVER / "as2fm_lsp").rglob("*.py"))
+    if "templates" not in path.parts
+}
+TRANSPORT = "as2fm_lsp.transport"
+PUBLIC_OF_PYGLS = ("pygls.exceptions", "pygls.uris")
+"""Plain values and functions, which every module may use."""
+
+
+def imported(text: str, known: Mapping[str, object]) -> Iterator[str]:
+    """The modules that a module imports, at its start, in its functions, and for the type checker only."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from (name if name in known else node.module for name in names)
+
+
+def circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
+    """The strongly connected components with more than one module, by Tarjan's algorithm."""
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    components = []
+
+    def visit(module: str) -> None:
+        index[module] = low[module] = len(index)
+        stack.append(module)
+        for other in sorted(graph[module]):
+            if other not in index:
+                visit(other)
+                low[module] = min(low[module], low[other])
+            elif other in stack:
+                low[module] = min(low[module], index[other])
+        if low[module] == index[module]:
+            at = stack.index(module)
+            components.append(set(stack[at:]))
+            del stack[at:]
+
+    for module in graph:
+        if module not in index:
+            visit(module)
+    return [component for component in components if len(component) > 1]
+
+
+def graph_of(texts: Mapping[str, str]) -> dict[str, set[str]]:
+    return {name: {other for other in imported(text, texts) if other in texts} - {name} for name, text in texts.items()}
+
+
+def test_circles_are_seen() -> None:
+    """Also those that exist for the type checker only."""
+    texts = {
+        "a.x": "from a import y",
+        "a.y": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from a.z import Z",
+        "a.z": "def f():\n    import a.x",
+        "a.w": "import a.x",
+    }
+    assert circles(graph_of(texts)) == [{"a.x", "a.y", "a.z"}]
+
+
+def test_there_is_no_circle() -> None:
+    assert circles(graph_of({name: path.read_text(encoding="utf-8") for name, path in MODULES.items()})) == []
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if name != TRANSPORT])
+def test_only_the_transport_knows_what_is_private_in_pygls(name: str) -> None:
+    text = MODULES[name].read_text(encoding="utf-8")
+    assert [m for m in imported(text, {}) if m.partition(".")[0] == "pygls" and not known_to_all(m)] == []
+    if "cli" not in name:  # the command line knows no pygls, and argparse has names of this kind
+        assert list(private(text)) == []
+
+
+def known_to_all(module: str) -> bool:
+    return module in PUBLIC_OF_PYGLS or module == "pygls"
+
+
+def private(text: str) -> Iterator[str]:
+    """Names with an underscore that are taken from anything but an object's own class, `os` and named tuples."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Attribute) and node.attr.startswith("_") and not node.attr.startswith("__"):
+            owner = ast.unparse(node.value)
+            if owner not in ("self", "cls") and (owner, node.attr) != ("os", "_exit") and node.attr != "_replace":
+                yield f"{owner}.{node.attr}"
+
+
+def test_private_names_are_seen() -> None:
+    assert list(private("server.protocol._send_data(self._x, a._replace(b=1))")) == ["server.protocol._send_data"]
