@@ -329,7 +329,7 @@ async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) ->
         assert "traces got stuck and say nothing about the property, so its value is doubtful" in result["warning"]
         (own,) = (message.message for message in client.messages if message.message.startswith("delivered: "))
         assert own.splitlines()[1].endswith(
-            "so its value is doubtful; who waits for whom is shown in a message of its own"
+            "so its value is doubtful; the waiting automata are shown in a message of its own"
         )
         # At the property and at the system.
         assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))

@@ -36,7 +36,7 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
     if stuck is not None:
         still = "" if stuck.time is None else ", time stands still"
         if shown:
-            lines.append(f"{look.level}: the system gets stuck{still}; who waits for whom is shown {shown}")
+            lines.append(f"{look.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
         else:
             lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
             lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
@@ -46,7 +46,7 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
 def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
     """For people, beneath the value that it makes doubtful; `shown` as in `as_text`."""
     if shown:
-        return [f"{level}: {stuck.warning}; who waits for whom is shown {shown}"]
+        return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
     lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
     return [*lines, *(f"  {line}" for line in waiting_lines(stuck, place_of))]
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton): one goal
-is decided on at a time.
+"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton), which
+decides on one goal at a time.
 
-A client is known by its goal id, its place among the clients of the action.
+A client is identified by its goal id, its index among the clients of the action.
 """
 
 from __future__ import annotations
@@ -83,8 +83,8 @@ def _store(parameter: str, origin: Location) -> Statement:
 def _to_client(
     action: Channel, event: Callable[[SystemAutomaton], str], params: tuple[Param, ...], origin: Location
 ) -> Body:
-    """Sends the client with the remembered goal id the event that `event` names for it. (An action that nobody uses has
-    a handler, too.)"""
+    """Sends the client with the stored goal id the event that `event` names for it. (An action without users has a
+    handler as well.)"""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)

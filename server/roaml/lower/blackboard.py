@@ -13,7 +13,7 @@ from roaml.text import Location
 
 
 def blackboard(program: Program) -> Automaton | None:
-    """None if the tree uses no variables."""
+    """The automaton; `None` if the tree uses no variables."""
     system = program.system
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:

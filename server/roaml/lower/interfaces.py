@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events that stand for the parts of ROS interfaces (docs/spec/plain-scxml.md#events), and the fields that they
-carry."""
+"""The events for the parts of ROS interfaces (docs/spec/plain-scxml.md#events), and their fields."""
 
 from __future__ import annotations
 
@@ -100,7 +99,7 @@ class ActionEvents:
 def fields(channel: Channel, part: str, environment: Environment) -> dict[str, Type]:
     """The leaf fields of a part of a service or action as event parameters, in the order of the ROS definition.
 
-    Fields that need not be set (`InterfaceType.optional`) count only if somebody sends them.
+    Fields that need not be set (`InterfaceType.optional`) are included only if an automaton sends them.
     """
     sent = set[str]().union(*(sent_parameters(endpoint, part) for endpoint in channel.endpoints))
     for endpoint in channel.endpoints:

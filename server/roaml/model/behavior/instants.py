@@ -3,10 +3,10 @@
 (docs/spec/semantics.md#time).
 
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
-So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
+So a plugin can wait only for what it triggers itself: its request, the server's own requests, and so on.
 
-Where a part of the system cannot be read that might send what is awaited, it is taken to come at once; so is all that
-comes from a machine of which a part cannot be read that takes events.
+If an unreadable part of the system might send the awaited event, the event is assumed to come at once, and so is
+everything from a machine of which a part that handles events cannot be read.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System
 from roaml.roles import SymbolKind
 
 _PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
-"""What a client receives, and the duty of the server that it comes from."""
+"""The events that a client receives, with the duty of the server that they answer."""
 _KINDS = {
     "message": (SymbolKind.SUBSCRIBER,),
     "request": (SymbolKind.SERVICE_SERVER,),
@@ -44,7 +44,7 @@ _SERVERS = {
     "result": SymbolKind.ACTION_SERVER,
 }
 _ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}
-"""What a server sends that a client receives."""
+"""The events that a server sends and a client receives."""
 
 _Fact = tuple[int, Event]
 
@@ -54,10 +54,10 @@ class Delay:
     """Why an event takes time.
 
     Attributes:
-        automaton: who waits for it.
-        event: what is waited for.
-        promise: for an answer, the one that does not come at once, and `server`, who gives it.
-        next: what that waits for in turn; None for a timer.
+        automaton: the automaton that waits for it.
+        event: the awaited event.
+        promise: for an answer, the one that does not come at once; `server` sends it.
+        next: what that waits for in turn; `None` for a timer.
     """
 
     automaton: Automaton
@@ -99,7 +99,7 @@ class _Solver:
     # -------------------------------------------------------------- who sends
 
     def senders(self, automaton: Automaton, event: Event) -> Iterator[tuple[Automaton, Event]]:
-        """Who may send what comes to `automaton` as `event`, and as what."""
+        """The automata that may send what arrives at `automaton` as `event`, with the event that they send."""
         if event.part == "event":
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
@@ -123,7 +123,7 @@ class _Solver:
 
 
 def channel_of(system: System, automaton: Automaton, event: Event) -> Channel | None:
-    """The topic, service or action that an event of an automaton belongs to."""
+    """The topic, service or action of an event of an automaton."""
     for use in automaton.outline.interfaces:
         if use.handle == event.name and use.kind in _KINDS.get(event.part, ()):
             return system.channel(automaton, use)
@@ -187,7 +187,7 @@ class Instants:
         return False
 
     def _kept(self, server: Endpoint, event: Event) -> Iterator[Promise]:
-        """The promises that the plugin may meet: an only client does not find a server busy with its own goal."""
+        """The promises that the plugin may encounter: a single client does not find a server busy with its own goal."""
         channel = self.system.channel(server.automaton, server.use)
         alone = channel is not None and len(channel.users) == 1
         return (promise for promise in promises(server, event) if not (alone and promise.busy))
@@ -219,14 +219,14 @@ class Instants:
         return Delay(automaton, event)
 
     def _first(self, automaton: Automaton, needs: Needs) -> Event:
-        """The first event that does not come, of the alternative that needs least."""
+        """The first event that does not come, of the alternative with the fewest events."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
 
 
 def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
-    """Whether an event may come from something that cannot be read."""
+    """Whether an event may come from an unreadable part."""
     if event.part == "event":
         return system.may(SENDS, event.name)
     if event.part in ("thread-start", "thread-free"):
@@ -243,7 +243,7 @@ def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
 
 
 def is_readable(system: System, automaton: Automaton) -> bool:
-    """Whether all that an automaton takes and sends can be read; the fields of what it sends do not matter."""
+    """Whether everything that an automaton receives and sends can be read; the fields of sent messages are ignored."""
     return id(automaton) not in system.partly_read
 
 
@@ -287,7 +287,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
     `sent` since. Time may pass meanwhile (docs/spec/semantics.md#time).
 
     Args:
-        chart: its index in the outline; one of several copies of a thread does not hinder the others.
+        chart: its index in the outline; a copy of a thread does not block the other copies.
     """
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
