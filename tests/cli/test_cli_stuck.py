@@ -53,7 +53,8 @@ def test_a_stuck_system_is_told_loudly(command: Command, ward: Path) -> None:
     assert done.out.count("the clock waits") == 1
     assert re.search(
         r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
-        r"warning: the system gets stuck, time stands still; the waiting automata are shown above, beneath `delivered`\n",
+        r"warning: the system gets stuck, time stands still; "
+        r"the waiting automata are shown above, beneath `delivered`\n",
         done.out,
     )
     assert "\nnodes of the behavior tree: bt_1002 is Fetch (tree.xml:5)\n" in done.out

@@ -145,14 +145,14 @@ M|ath.pow  Math|Functions: abs, ceil, cos, floor, log, max, min, pow, random, si
 Math.p|ow  Math.pow(x, y) : float|x to the power of y.
 "|-Math  -number : int or float|The negative.
 a[0] |% 2  number % number : int or float|The remainder of the division.
-1 |? 2  bool ? x : y|The first of both where the condition holds, else the second.
-a.l|ength  length : int|How many elements a has now. Assigning a smaller number shortens it, 0 empties it.
-SUCC|ESS  SUCCESS = 1|An answer of a node of the tree.
-_b|t.status  _bt|  status : int8|The answer of the child.
+1 |? 2  bool ? x : y|The first value if the condition holds, otherwise the second.
+a.l|ength  length : int|The current number of elements of a. Assigning a smaller number shortens it, 0 empties it.
+SUCC|ESS  SUCCESS = 1|The status of a tree node.
+_b|t.status  _bt|  status : int8|The status that the child has returned.
 "|b" t  b : float64|Meant from 0.0 to 9.0 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
-id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · up to 3 elements · starts as []|Read 3 times
+id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · at most 3 elements · starts as []|Read 3 times
 n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Written once
-target="|done  state done|Not defined|From s on the timer t|Nothing leads away
+target="|done  state done|Not defined|From s on the timer t|No transition leads away
 """
 
 

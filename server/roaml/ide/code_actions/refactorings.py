@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Refactorings: changes that nothing asks for, offered where the caret makes them meant."""
+"""Refactorings: changes without a diagnostic, offered where the caret suggests them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.rece
 
 
 def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]:
-    """What can be done with what stands at a place."""
+    """The refactorings at a place."""
     analysis = snapshot.analysis
     machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
     if machine is not None:
@@ -44,7 +44,7 @@ def _edited(analysis: Analysis, path: str, *edits: TextEdit) -> Change:
 
 
 def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[Action]:
-    """A `<bt_halt>` for the state at the caret, and for all states."""
+    """Add a `<bt_halt>` to the state at the caret, or to all states."""
     document, root = analysis.document(path), machine.element
     state = _state_at(machine, place)
     if document is None or state is None:
@@ -59,7 +59,7 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
 
 
 def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[Action]:
-    """Handlers for all results of an action, in the state at the caret."""
+    """Add handlers for all results of an action to the state at the caret."""
     document, state = analysis.document(path), _state_at(machine, place)
     if document is None or state is None or state.id is None or not state.element.complete:
         return
@@ -121,7 +121,7 @@ def _is_unknown(analysis: Analysis, path: str, node: TreeNode) -> bool:
 
 
 def _node_at(analysis: Analysis, path: str, place: Span) -> TreeNode | None:
-    """The node in whose start tag the caret stands."""
+    """The node whose start tag contains the caret."""
     file = analysis.tree(path)
     for tree in file.trees if file else ():
         for node in nodes(tree):

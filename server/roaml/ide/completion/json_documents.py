@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be written in property files and in struct declarations in JSON: keys, operators, names, whole formulas."""
+"""Completion in property files and in struct declarations in JSON: keys, operators, names, whole formulas."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCT
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Item]] | None:
-    """What can be written at a caret, and what it replaces; None in files of other kinds, or where nothing is known."""
+    """The completions at a caret, and what they replace; `None` in other files, or if there are none."""
     kind = next(kind_in(analysis, path, system) for system in systems_of(analysis, path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
@@ -81,7 +81,7 @@ def _place(grammar: JsonGrammar, value: JsonValue, text: str, offset: int) -> _P
 
 
 def _end(member: Member, text: str) -> int:
-    """Where a member ends: one without a value reaches to the next line or bracket."""
+    """The end of a member; one without a value extends to the next line or bracket."""
     if member.value is not None and member.value.end > member.key_end:
         return member.value.end
     end = member.key_end
@@ -175,7 +175,7 @@ def _names(analysis: Analysis, path: str) -> Iterator[Item]:
 
 
 def _operators(grammar: JsonGrammar, kind: str) -> Iterator[Item]:
-    """An object for each operator, with all that it needs."""
+    """An object for each operator, with all its required members."""
     for operator, described in grammar.operators(kind):
         if operator in _ALIASES:
             continue
@@ -227,7 +227,7 @@ _SELDOM = frozenset(
         *("call", "nondet", "der"),
     )
 )
-"""Operators that hardly any property has."""
+"""Operators that are rarely used in properties."""
 
 
 def _property(label: str, detail: str, path: Callable[[Snippet], Snippet]) -> Item:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ports of tree nodes: which there are, and what they may hold."""
+"""The ports of tree nodes, and their possible values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class Port:
-    """A port that a node may set. `about` leads to its documentation."""
+    """A port that a node may set. `about` refers to its documentation."""
 
     key: str
     type: str
@@ -38,7 +38,7 @@ class Port:
 
 
 def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Port, ...]:
-    """The ports of the plugin called `name`, or of the node of BehaviorTree.CPP that `type_` describes."""
+    """The ports of the plugin with this name, or of the node of BehaviorTree.CPP that `type_` describes."""
     if type_ is not None and type_.node and type_.name == name:
         found = []
         for attribute in type_.ports:
@@ -66,7 +66,7 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
 
 
 def node_name(element: Element) -> str:
-    """What a node is an instance of."""
+    """The plugin of a node."""
     if element.name in (*EXPLICIT, *SUBTREES):
         id_ = element.get("ID")
         return id_.value if id_ else ""
@@ -78,7 +78,8 @@ def _type_of(request: Request, name: str) -> ElementType | None:
 
 
 def port_values(request: Request, subject: Subject, key: str) -> list[Item]:
-    """What the port `key` of a node may hold: blackboard variables, and constants where its type tells them."""
+    """The possible values of the port `key` of a node: blackboard variables, and constants if its type determines
+    them."""
     element = subject.element
     if element is None or not _in_tree(subject):
         return []
@@ -145,7 +146,7 @@ def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> I
 
 
 def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:
-    """As attributes: each port that is not set, and all that must be set at once."""
+    """As attributes: each port that is not set, and all required ones at once."""
     element = subject.element
     assert element is not None
     given = {attribute.name for attribute in element.attributes}
@@ -167,5 +168,5 @@ def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:
 
 
 def add_port(snippet: Snippet, port: Port) -> None:
-    """`key="…"`; an output goes to a variable of its own name unless told otherwise."""
+    """`key="…"`; the default of an output is a variable with its own name."""
     snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction == "out" else [port.default]).text('"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an attribute's value, or the text of an element, may be: as its roles in the schema say."""
+"""The possible values of an attribute, or of the text of an element, according to their roles in the schema."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EXPRESSIONS = ("expression", "location")
 
 
 def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[Item]] | None:
-    """What the value of the attribute `name` may be, and what of `span`, the value, is replaced."""
+    """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
     known = subject.type.attributes.get(name)
     if known is not None and known.value in _EXPRESSIONS:
         return in_expression(request, subject, name, span.start)
@@ -38,7 +38,7 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
 
 
 def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[Item]:
-    """What the whole value of an attribute may be."""
+    """The possible whole values of an attribute."""
     for choice in attribute.simple.choices:
         about = Symbol(
             f"{subject.key}/{attribute.name}", SymbolKind.ENUMERATION_VALUE, choice.value, request.file.grammar.schema
@@ -55,7 +55,7 @@ def candidates(request: Request, subject: Subject, attribute: AttributeType) -> 
 
 
 def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[Item]] | None:
-    """What the text of an element may be."""
+    """The possible texts of an element."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
         return in_expression(request, subject, type_.name, span.start)
@@ -101,7 +101,7 @@ def types(request: Request) -> Iterator[Item]:
 
 
 def ros_types(request: Request, kind: str) -> Iterator[Item]:
-    """All ROS types of a kind that can be found; those that the file's systems use go first."""
+    """All ROS types of a kind that can be found; those that the file's systems use, first."""
     if kind not in ("msg", "srv", "action"):
         return
     ros_kind: Kind = kind  # type: ignore[assignment]
@@ -115,22 +115,22 @@ def ros_types(request: Request, kind: str) -> Iterator[Item]:
 
 
 def _constants(request: Request, subject: Subject) -> Iterator[Item]:
-    """What a variable may begin with."""
+    """Typical initial values of a variable."""
     yield from initial_values(_data_type(request, subject))
 
 
 def _bounds(request: Request, subject: Subject) -> Iterator[Item]:
-    """The least and the greatest value of an integer type."""
+    """The smallest and the greatest value of an integer type."""
     inner, _ = unwrap(_data_type(request, subject))
     for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
         yield Item(str(number), ItemKind.VALUE, detail=str(inner))
 
 
 def _data_type(request: Request, subject: Subject) -> Type:
-    """The declared type of the variable that a value is for."""
+    """The declared type of the variable of a value."""
     element = subject.element
     if subject.type.name != "data" and subject.parents:
-        element = subject.parents[-1].element  # `<expr>` stands in the variable
+        element = subject.parents[-1].element  # `<expr>` is inside of the variable
     type_ = type_of(element.get("type")) if element is not None else None
     if type_ is None or type_.name is None:
         return UNKNOWN
@@ -141,7 +141,7 @@ def _data_type(request: Request, subject: Subject) -> Type:
 
 
 def _children(request: Request) -> Iterator[Item]:
-    """The indexes of the children that the plugin's nodes have, and int variables."""
+    """The indices of the children of the plugin's nodes, and integer variables."""
     machine = request.machine
     if machine is None:
         return
@@ -159,7 +159,7 @@ def _children(request: Request) -> Iterator[Item]:
 
 
 def _remaining_probability(subject: Subject) -> Iterator[Item]:
-    """What is missing to 1."""
+    """The remaining probability to 1."""
     if not subject.parents:
         return
     others = [child for child in subject.parents[-1].element.elements if child is not subject.element]
@@ -172,4 +172,4 @@ def _remaining_probability(subject: Subject) -> Iterator[Item]:
             return
     rest = round(1 - given, 9)
     if 0 < rest <= 1:
-        yield Item(f"{rest:g}", ItemKind.VALUE, detail="what is missing to 1", rank=Rank.BEST)
+        yield Item(f"{rest:g}", ItemKind.VALUE, detail="the remaining probability", rank=Rank.BEST)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the thing at a place, as Markdown.
+"""Hover texts, as Markdown.
 
-A name says what it denotes; where none stands, elements, attributes, values, functions and operators say what their
-language says of them.
+A name is described by its symbol; other elements, attributes, values, functions and operators by their description in
+the language.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Hover:
 
 
 def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
-    """What to tell about a place; None if nothing is known of it."""
+    """The hover at a place; `None` if there is none."""
     source = analysis.source(path)
     found = occurrences_at(analysis, path, offset) if source else ()
     known = dict.fromkeys(
@@ -57,7 +57,7 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
 
 
 def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Iterator[tuple[Span, str]]:
-    """What else is known. With a name there, only what adds to what the name says."""
+    """Further information. With a name, only what adds to the description of the name."""
     kind = analysis.kind(path)
     if kind in (FileKind.PROPERTIES, FileKind.JANI_MODEL):
         found = global_variable(analysis, path, offset) or (None if has_name else in_json(analysis, path, offset))
@@ -71,7 +71,7 @@ def _around(analysis: Analysis, path: str, offset: int, has_name: bool) -> Itera
 
 
 def _written(analysis: Analysis, path: str, file: XmlFile, offset: int) -> Iterator[tuple[Span, str]]:
-    """What the language says of what is written."""
+    """The description of a part of the language."""
     found = in_expression(analysis, path, file, offset) or listed_file(analysis, path, offset)
     if found is not None and found[1]:
         yield found
@@ -93,7 +93,7 @@ def _written(analysis: Analysis, path: str, file: XmlFile, offset: int) -> Itera
 
 
 def _value(analysis: Analysis, path: str, element: Element, attribute: Attribute, known: AttributeType) -> str:
-    """What is known of a value; of its attribute, if nothing is."""
+    """The description of a value; if there is none, that of its attribute."""
     system = analysis.system_file(path)
     chosen = next((each for each in known.simple.choices if each.value == attribute.value.strip()), None)
     said = ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the parts of an expression that are no names: functions, operators, event variables."""
+"""Hover texts for the parts of an expression that are not names: functions, operators, event variables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from roaml.text import Span
 
 
 def in_expression(analysis: Analysis, path: str, file: XmlFile, offset: int) -> tuple[Span, str] | None:
-    """What the language says of a part of an expression; None outside of expressions and where it says nothing."""
+    """The description of a part of an expression; `None` outside of expressions and if there is none."""
     expression = expression_at(file, offset)
     if expression is None:
         return None
@@ -69,7 +69,7 @@ def _name(analysis: Analysis, path: str, name: str, offset: int) -> str:
 
 
 def _known(analysis: Analysis, path: str, offset: int) -> dict[str, Type]:
-    """The event variables at a place."""
+    """The event variables available at a place."""
     machine = analysis.machine(path)
     handler = handler_at(machine, offset) if machine else None
     if machine is None or handler is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a place in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
+"""Hover texts in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NODE = re.compile(r"bt_(\d{1,9})_")
 
 
 def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """The global variable whose name stands at a place, in each system of the file."""
+    """The global variable at a place, in each system of the file."""
     value = analysis.json(path)
     found = value_at(value[0], offset) if value else None
     if not isinstance(found, JsonString) or not found.content_span.contains(offset):
@@ -38,13 +38,13 @@ def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, s
 
 
 def node_of(system: System, variable: str) -> Automaton | None:
-    """The node of the tree that a global variable is about."""
+    """The node of the tree of a global variable."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """What the syntax of properties says of a key or an operator; the formula of a property."""
+    """The description of a key or an operator in the syntax of properties; the formula of a property."""
     value = analysis.json(path)
     if value is None:
         return None
@@ -94,7 +94,7 @@ def value_at(value: JsonValue, offset: int) -> JsonValue | None:
 
 
 def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObject, Member]]:
-    """The members around an offset, innermost first, with their objects and what the schema says of these."""
+    """The members around an offset, innermost first, with their objects and their declarations in the schema."""
     found: list[tuple[Schema, JsonObject, Member]] = []
     schema, inner = PROPERTIES.root, value
     while True:
@@ -120,4 +120,4 @@ def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObj
 
 
 _OF_FORMULAS = ("op", "constant", "distribution")
-"""What has one of these is a formula wherever it stands, also in the parts of a model that are no properties."""
+"""Keys that only formulas have, also in the parts of a model that are not properties."""

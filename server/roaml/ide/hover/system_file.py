@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the values in a system file: files, and parameters in readable units."""
+"""Hover texts for the values in a system file: files, and parameters in readable units."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from roaml.xml_syntax import Attribute, Element
 
 
 def listed_file(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """The file that a path at a place names: what it is and what is in it."""
+    """The file of a path at a place: its kind and its content."""
     system, tree = analysis.system_file(path), analysis.tree(path)
     written = [entry.src for entry in system.inputs] if system else []
     written += [include.path for include in tree.includes] if tree else []
@@ -32,7 +32,7 @@ def listed_file(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] 
 
 
 def content(analysis: Analysis, system: str, path: str) -> str:
-    """What a file of a system is, and what is in it; "" if it cannot be read."""
+    """The kind and the content of a file of a system; "" if it cannot be read."""
     if analysis.source(path) is None:
         return ""
     machine, tree = analysis.machine(path), analysis.tree(path)
@@ -65,7 +65,7 @@ def _properties(analysis: Analysis, path: str) -> str:
 
 
 def parameter(element: Element, attribute: Attribute) -> str:
-    """What a parameter of the translation amounts to; "" if that says nothing new."""
+    """The meaning of a parameter of the translation; "" if it is obvious."""
     if attribute.name not in ("value", "unit"):
         return ""
     written = element.get("value")
@@ -78,5 +78,5 @@ def parameter(element: Element, attribute: Attribute) -> str:
         case "bt_tick_rate":
             return rate(text)
         case "max_array_size" if text:
-            return f"Arrays without a bound hold up to {name(text)} elements"
+            return f"Arrays without a bound have at most {name(text)} elements"
     return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node of a tree becomes where its tree is executed."""
+"""Hover texts for nodes of a tree: their names in the translation, where the tree is executed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roaml.text import Span
 
 
 def node_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """What the node whose name or plugin stands at a place becomes; None if no such stands there."""
+    """The description of the node whose name or plugin is at a place; `None` if there is none."""
     file = analysis.tree(path)
     for tree in file.trees if file else ():
         if not tree.element.span.contains(offset):
@@ -23,6 +23,6 @@ def node_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | No
 
 
 def name_at(node: TreeNode, offset: int) -> Span | None:
-    """The tag, the plugin or the name of a node, if it stands at a place."""
+    """The tag, the plugin or the name of a node at a place."""
     spans = [node.element.name_span, *(each.span for each in (node.plugin, node.name) if each)]
     return next((span for span in spans if span.contains(offset)), None)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a place to all places that mean the same thing.
+"""From a place to all places with the same meaning.
 
-A file may belong to several systems, and its characters may mean something else in each. Everything that any of them
-ties together is one `Thing`: whoever renames one of its places must rename them all.
+A file may be part of several systems, and its names may have another meaning in each. Everything that any of them
+connects is one group: renaming one of its places renames all.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
-"""Kinds of symbols that only their own file can name."""
+"""Kinds of symbols that only their own file can use."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +54,13 @@ class Thing:
 
 
 def systems_of(analysis: Analysis, path: str) -> tuple[str | None, ...]:
-    """The systems in which a file is looked at; (None) if it is in none."""
+    """The systems in which a file is analysed; (None) if it is in none."""
     return analysis.memberships.get(path, ()) or (None,)
 
 
 def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
-    """What stands at a caret, in each system; a name that begins there goes before one that ends there."""
+    """The occurrences at a caret, in each system; a name that begins there takes precedence over one that ends
+    there."""
     found = dict.fromkeys(
         each
         for system in systems_of(analysis, path)
@@ -86,7 +87,7 @@ def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
         for path, uses_ in where(analysis, symbol):
             for occurrence in uses_.by_symbol.get(symbol, ()):
                 place = (path, occurrence.span)
-                # Of several at one place the definition says most, then that of what was asked about.
+                # Of several at one place, the definition is the most specific, then the requested one.
                 if place not in found or (occurrence.defines and not found[place].occurrence.defines):
                     found[place] = Use(path, occurrence)
                 for other in _sharing(analysis, path, occurrence.span):
@@ -103,7 +104,7 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
 
 
 def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
-    """The files that can name a symbol, as they are in the systems that matter."""
+    """The files that can use a symbol, as they are in the relevant systems."""
     if symbol.kind in _IN_ONE_FILE:
         for system in systems_of(analysis, symbol.path):
             yield symbol.path, uses(analysis, symbol.path, system)
