@@ -39,11 +39,11 @@ tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
 a.ascxml         |transition             x         there is no name here
 a.ascxml         id="|p" type            n         a variable `n` already exists
 a.ascxml         id="|p" type            p         its name is already `p`
-a.ascxml         id="|p" type            _msg      what received data are called
-a.ascxml         id="|p" type            a b       cannot name a variable
+a.ascxml         id="|p" type            _msg      the name of received data
+a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      divides the parts of names
-a.ascxml         event="|go" target      topic_x   the translation calls its own events so
+a.ascxml         event="|go" target      topic_x   the translation uses it for its own events
 types.xml        id="|Pose"              int32     cannot name a struct
 types.xml        id="|Pose"              true      cannot name a struct
 types.xml        id="|x"                 false     cannot name a member
