@@ -21,8 +21,8 @@ from lsprotocol import types
 from as2fm_lsp.buffer import MARK, edited
 from as2fm_lsp.convert import Converter
 from roaml.project.configuration import find_settings
-from roaml.project.discover import is_inside
 from roaml.project.memo import go_on
+from roaml.project.paths import is_below, is_on_disk
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, settings_from
 from roaml.project.workspace import Snapshot, Workspace
 
@@ -55,7 +55,7 @@ class Moment:
     def snapshot(self, path: str) -> Snapshot:
         """Where a file is seen: in the innermost folder around it in which a system names it, else in any folder in
         which one does, else alone in the innermost folder, else outside of all folders."""
-        near = sorted((folder for folder in self._folders if is_inside(path, folder)), key=len, reverse=True)
+        near = sorted((folder for folder in self._folders if is_below(path, folder)), key=len, reverse=True)
         for folder in dict.fromkeys((*near, *self._folders)):
             snapshot = self._frozen(self._folders[folder])
             if path in snapshot.analysis.memberships:
@@ -113,7 +113,7 @@ class Session:
 
     def open(self, path: str, text: str, version: int | None) -> None:
         self._put(path, text, version)
-        if not any(is_inside(path, folder) for folder in self._folders):
+        if not any(is_below(path, folder) for folder in self._folders):
             self._workspace_around(path)  # now, so that problems with the configuration there can be told
 
     def change(self, path: str, changes: Iterable[types.TextDocumentContentChangeEvent], version: int | None) -> None:
@@ -203,17 +203,17 @@ class Session:
 
     def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
         """The folders in which ROS packages are looked for: the nearest first, then the client's others."""
-        outside = [root for root in roots if not is_inside(root, folder)]
-        return tuple(filter(os.path.isabs, dict.fromkeys((folder, *outside, *self._folders))))
+        outside = [root for root in roots if not is_below(root, folder)]
+        return tuple(filter(is_on_disk, dict.fromkeys((folder, *outside, *self._folders))))
 
     def settings_of(self, path: str) -> Settings:
         """The settings that a file is checked with."""
-        near = [folder for folder in self._folders if is_inside(path, folder)]
+        near = [folder for folder in self._folders if is_below(path, folder)]
         return self._settings(max(near, key=len) if near else _surroundings(path))
 
     def _settings(self, folder: str) -> Settings:
         """The configuration in a folder, with the client's settings added."""
-        settings, problems = find_settings(folder) if os.path.isabs(folder) else (Settings(), ())
+        settings, problems = find_settings(folder) if is_on_disk(folder) else (Settings(), ())
         settings, mistakes = settings_from(_kebab(self._client_settings), folder, settings)
         if not settings.origin:  # else they are among the diagnostics of that file
             self.problems += problems
@@ -224,14 +224,14 @@ class Session:
 def _surroundings(path: str) -> str:
     """The folder in which a file outside all folders is checked. Alone is a document without a file, and a file in the
     root of the file system, of which nobody wants all files to be listed."""
-    if not os.path.isabs(path):
+    if not is_on_disk(path):
         return path
     folder = enclosing_root(path) or os.path.dirname(path)
     return path if folder == os.path.dirname(folder) else folder
 
 
 def _roots(folder: str, settings: Settings) -> tuple[str, ...]:
-    return settings.roots or ((folder,) if os.path.isabs(folder) else ())
+    return settings.roots or ((folder,) if is_on_disk(folder) else ())
 
 
 _CLIENT_KEYS = {

@@ -9,12 +9,13 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.facts import Facts
 from roaml.roles import SymbolKind
-from roaml.text import Location, Span, TextEdit
+from roaml.text import Edit, Location, Span, TextEdit, computed
 
 
 class Severity(enum.IntEnum):
@@ -60,18 +61,26 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change of the finding's own file that fixes it. New lines are written with `\\n`.
+    """A change of the finding's own file that mends it. New lines are written with `\\n`.
+
+    A check makes many fixes of which few are chosen, so that edits which take time are computed when they are read.
+    Fixes of one title are equal.
 
     Attributes:
         title: in the imperative.
-        preferred: whether it is the one obvious fix.
-        safe: whether it removes nothing that has an effect and guesses nothing, so it may be applied without a review.
+        plan: the edits, or what computes all of them.
+        preferred: it is the one obvious mend.
+        safe: it takes away nothing that has an effect and guesses nothing, so it may be made without a look.
     """
 
     title: str
-    edits: tuple[TextEdit, ...]
+    plan: tuple[Edit, ...] | Callable[[], tuple[TextEdit, ...]] = field(compare=False)
     preferred: bool = True
     safe: bool = False
+
+    @property
+    def edits(self) -> tuple[TextEdit, ...]:
+        return computed(self.plan) if isinstance(self.plan, tuple) else self.plan()
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ import bisect
 import codecs
 import hashlib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
@@ -63,6 +63,14 @@ class TextEdit(NamedTuple):
 
     span: Span
     new_text: str
+
+
+Edit = TextEdit | Callable[[], TextEdit]
+"""An edit, or what computes it when it is made."""
+
+
+def computed(edits: Iterable[Edit]) -> tuple[TextEdit, ...]:
+    return tuple(edit if isinstance(edit, TextEdit) else edit() for edit in edits)
 
 
 def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
 from pathlib import Path
 
 import pytest
 from command import Command
 
 import clock
+from roaml.project.discover import candidates, is_candidate
+from roaml.project.exclude import Exclude
 
 BOTH = clock.UNHEARD_CLOCK.replace('location="count"', 'location="coutn"')
 """`topic-without-subscriber`, a hint, and `undeclared-variable`, an error."""
@@ -65,28 +69,79 @@ def test_paths_are_relative_to_the_configuration(  # type: ignore[no-untyped-def
 
 
 @pytest.mark.parametrize(
-    ("pattern", "found"),
+    ("patterns", "left"),
     [
-        ("attic/*", ["b", "c/attic"]),
-        ("attic", ["b", "c/attic"]),
-        ("attic/", ["b", "c/attic"]),
-        ("attic/**", ["b", "c/attic"]),
-        ("**/attic", ["b"]),
-        ("**/attic/**", ["b"]),
-        ("*.ascxml", []),
-        ("*/attic/*", ["attic", "b"]),
-        ("at?ic/cl*.ascxml", ["b", "c/attic"]),
-        ("nothing", ["attic", "b", "c/attic"]),
-        ("[b]/*", ["attic", "c/attic"]),
+        (["attic/*"], ["b", "c/attic"]),
+        (["/attic"], ["b", "c/attic"]),
+        (["attic/**"], ["b", "c/attic"]),
+        (["attic"], ["b"]),
+        (["attic/"], ["b"]),
+        (["**/attic"], ["b"]),
+        (["**/attic/**"], ["b"]),
+        (["c/attic"], ["attic", "b"]),
+        (["*.ascxml"], []),
+        (["clock.ascxml"], []),
+        (["c*.ascxml/"], ["attic", "b", "c/attic"]),
+        (["*/attic/*"], ["attic", "b"]),
+        (["*/clock.ascxml"], ["c/attic"]),
+        (["at?ic/cl*.ascxml"], ["b", "c/attic"]),
+        (["nothing", "# attic", ""], ["attic", "b", "c/attic"]),
+        (["[b]/*"], ["attic", "c/attic"]),
+        (["*", "!c/", "!attic/", "!clock.ascxml"], ["attic", "c/attic"]),
+        (["attic", "!attic/clock.ascxml"], ["b"]),
+        (["attic/**", "!attic/clock.ascxml"], ["attic", "b", "c/attic"]),
     ],
 )
-def test_exclude(check: Command, tmp_path: Path, configure, pattern: str, found: list[str]) -> None:  # type: ignore[no-untyped-def]
+def test_exclude(check: Command, tmp_path: Path, configure, patterns: list[str], left: list[str]) -> None:  # type: ignore[no-untyped-def]
+    """Patterns mean what they mean to Git."""
     top = tmp_path / "[x]*"  # characters that patterns give a meaning to
     for folder in ("attic", "b", "c/attic"):
         (top / folder).mkdir(parents=True)
         (top / folder / "clock.ascxml").write_text(clock.WRONG_CLOCK)
-    configure(f'exclude = ["{pattern}"]', top)
-    assert [row["file"] for row in check(top).rows] == [f"[x]*/{folder}/clock.ascxml" for folder in found]
+    configure(f"exclude = {json.dumps(patterns)}", top)
+    assert [row["file"] for row in check(top).rows] == [f"[x]*/{folder}/clock.ascxml" for folder in left]
+    subprocess.run(["git", "init", "-q", top], check=True)
+    (top / ".gitignore").write_text("\n".join(patterns))
+    listed = subprocess.run(
+        ["git", "-C", top, "ls-files", "--others", "--exclude-standard", "*.ascxml"], capture_output=True, check=True
+    )
+    assert listed.stdout.decode().splitlines() == [f"{folder}/clock.ascxml" for folder in left]
+
+
+def test_exclude_in_roots_elsewhere(check: Command, tmp_path: Path, configure) -> None:  # type: ignore[no-untyped-def]
+    """Patterns apply in each root, also in those that are not below the configuration."""
+    for folder in ("shared/models", "shared/attic", "here"):
+        clock.write(tmp_path / folder)
+    (tmp_path / "shared/attic/clock.ascxml").write_text(clock.WRONG_CLOCK)
+    configure('roots = [".", "../shared"]\nexclude = ["/attic"]', tmp_path / "here")
+    assert [row["file"] for row in check("here", "shared/models").rows] == []
+    assert is_candidate(str(tmp_path / "shared/models/clock.ascxml"), [str(tmp_path / "shared")], Exclude(("/attic",)))
+    assert not is_candidate(
+        str(tmp_path / "shared/attic/clock.ascxml"),
+        [str(tmp_path / "shared")],
+        Exclude(("/attic",), str(tmp_path / "here")),
+    )
+
+
+def test_excluded_folders_are_not_entered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock.write(tmp_path / "models")
+    clock.write(tmp_path / "data" / "deep")
+    entered = []
+    scandir = os.scandir
+    monkeypatch.setattr(os, "scandir", lambda path: entered.append(os.path.basename(path)) or scandir(path))
+    exclude = Exclude(("deep/", "data/*"), str(tmp_path))
+    paths = list(candidates([str(tmp_path)], exclude))
+    assert {os.path.basename(os.path.dirname(path)) for path in paths} == {"models"}
+    assert set(candidates([str(tmp_path)], Exclude(("data/",), str(tmp_path)))) == set(paths)
+    assert is_candidate(paths[0], [str(tmp_path)], exclude)
+    assert not is_candidate(str(tmp_path / "data" / "deep" / "main.xml"), [str(tmp_path)], exclude)
+
+
+def test_patterns_are_read_in_time(tmp_path: Path) -> None:
+    """However long the paths are: nobody would wait for this test."""
+    exclude = Exclude(("*a*a*b", "**/a/**/a/**/b"), str(tmp_path))
+    assert not exclude.covers(str(tmp_path / ("a" * 250) / "/".join("a" * 1900)), str(tmp_path))
+    assert exclude.covers(str(tmp_path / "/".join("aab") / "/".join("c" * 1900)), str(tmp_path))
 
 
 def test_roots_are_where_the_systems_of_a_single_file_are_looked_for(  # type: ignore[no-untyped-def]
@@ -141,6 +196,9 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
         ("roots = { a = 1 }", "{ a = 1 }", "`roots` must be a list of strings"),
         ("ros-path = [[]]", "[[]]", "`ros-path` must be a list of strings"),
         ("exclude = 2026-01-01 07:32:00 # day", "2026-01-01 07:32:00", "`exclude` must be a list of strings"),
+        ('exclude = ["a", "!"]', '"!"', "`!` is not a pattern as in `.gitignore` files"),
+        ('exclude = "a*b*c*d*.xml"', '"a*b*c*d*.xml"', "`a*b*c*d*.xml` contains more than 3 `*` without a `/` between"),
+        ('exclude = ["**/a/**/b/**/c/**/d"]', '"**/a/**/b/**/c/**/d"', "`**/a/**/b/**/c/**/d` contains more than 3"),
     ],
 )
 def test_mistakes_in_it_are_diagnostics(  # type: ignore[no-untyped-def]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quantiles against sums and tables; intervals keep what they promise, also when sampling stops early."""
+"""Quantiles against SciPy, sums and tables; intervals keep what they promise, also when sampling stops early."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import random
 from functools import cache
 
 import pytest
+import scipy.special
+import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -38,6 +40,45 @@ def test_incomplete_beta_is_a_tail_of_the_binomial(n: int, data: st.DataObject, 
 @given(st.floats(0.001, 0.999), st.floats(0.5, 5000), st.floats(0.5, 5000))
 def test_quantiles_are_where_the_distribution_says(probability: float, a: float, b: float) -> None:
     assert incomplete_beta(beta_quantile(probability, a, b), a, b) == pytest.approx(probability, abs=1e-7)
+
+
+SHAPES = st.floats(0.5, 5000)
+
+
+@given(st.floats(0, 1), SHAPES, SHAPES)
+def test_incomplete_beta_is_that_of_scipy(x: float, a: float, b: float) -> None:
+    assert incomplete_beta(x, a, b) == pytest.approx(scipy.special.betainc(a, b, x), rel=1e-7, abs=1e-12)
+
+
+@given(st.floats(1e-6, 1 - 1e-6), SHAPES, SHAPES)
+def test_quantiles_are_those_of_scipy(probability: float, a: float, b: float) -> None:
+    assert beta_quantile(probability, a, b) == pytest.approx(scipy.stats.beta.ppf(probability, a, b), abs=1e-8)
+
+
+@given(st.floats(0.51, 1 - 1e-6), st.floats(1, 1e6))
+def test_student_quantiles_are_those_of_scipy(probability: float, freedom: float) -> None:
+    expected = scipy.stats.t.ppf(probability, freedom)
+    assert student_quantile(probability, freedom) == pytest.approx(expected, rel=1e-5, abs=1e-5)
+
+
+@given(st.integers(1, 100_000), st.data(), st.sampled_from([0.5, 0.9, 0.95, 0.99, 0.9999]))
+def test_intervals_are_those_of_scipy(traces: int, data: st.DataObject, confidence: float) -> None:
+    successes = data.draw(st.integers(0, traces))
+    interval = scipy.stats.binomtest(successes, traces).proportion_ci(confidence, method="exact")
+    assert clopper_pearson(successes, traces, confidence) == pytest.approx((interval.low, interval.high), abs=1e-8)
+
+
+@given(st.lists(st.integers(-1000, 1000), min_size=2, max_size=200), st.sampled_from([0.9, 0.95, 0.99]))
+def test_intervals_of_means_are_those_of_scipy(values: list[int], confidence: float) -> None:
+    mean = Mean()
+    for value in values:
+        mean = mean.add(value)
+    error = scipy.stats.sem(values)
+    if len(set(values)) == 1:
+        assert mean.bounds(confidence) == (values[0], values[0])
+    else:
+        expected = scipy.stats.t.interval(confidence, len(values) - 1, sum(values) / len(values), error)
+        assert mean.bounds(confidence) == pytest.approx(expected, rel=1e-6, abs=1e-6)
 
 
 def test_quantiles_of_tables() -> None:

@@ -16,6 +16,7 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.formats.report import Entry
 from as2fm_lsp.cli.output import complain
 from roaml.disk import MAX_DATA, required
+from roaml.project.paths import seen_from
 
 VERSION = 1
 
@@ -43,7 +44,7 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
 
 def _name(entry: Entry, path: str) -> str:
     """The entry's file as seen from the baseline."""
-    return os.path.relpath(entry.diagnostic.path, os.path.dirname(os.path.abspath(path))).replace(os.sep, "/")
+    return seen_from(entry.diagnostic.path, os.path.abspath(path))
 
 
 def _write(path: str, entries: Sequence[Entry]) -> None:

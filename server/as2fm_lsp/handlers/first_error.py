@@ -16,6 +16,7 @@ from as2fm_lsp.handlers.requested_document import RequestedDocument
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import verifiable
+from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
 
 COMMAND = "as2fm.showFirstError"
@@ -67,7 +68,7 @@ def counted(errors: tuple[Diagnostic, ...]) -> str:
 def errors_of(on: RequestedDocument) -> dict[str, tuple[Diagnostic, ...]]:
     """The systems of a file that have errors, with these."""
     systems = on.analysis.memberships.get(on.path, ())
-    found = {system: on.snapshot.checker.errors(system) for system in systems if os.path.isabs(system)}
+    found = {system: on.snapshot.checker.errors(system) for system in systems if is_on_disk(system)}
     return {system: errors for system, errors in found.items() if errors}
 
 

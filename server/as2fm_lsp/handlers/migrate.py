@@ -15,6 +15,7 @@ from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.migrate import Migration
+from roaml.project.paths import seen_from
 from roaml.text import SourceFile, Span
 
 METHOD = "as2fm/migrate"
@@ -30,7 +31,7 @@ class Migrated(TypedDict):
 
 def shown(migration: Migration, system: str) -> str:
     """A file as its system would name it, with its new name."""
-    names = (os.path.relpath(path, os.path.dirname(system)) for path in (migration.path, migration.new_path))
+    names = (seen_from(path, system) for path in (migration.path, migration.new_path))
     return " → ".join(dict.fromkeys(names))
 
 

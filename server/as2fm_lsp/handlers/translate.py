@@ -22,6 +22,7 @@ from roaml.ide.system_names import system_names
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
 from roaml.project.memo import Interrupted
+from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
 
@@ -87,7 +88,7 @@ def register(context: Context) -> None:
 def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:
     """One for a system file that lies on the disk."""
     file = snapshot.analysis.system_file(path)
-    if file is not None and os.path.isabs(path):
+    if file is not None and is_on_disk(path):
         command = types.Command(TITLE, COMMAND, arguments=[convert.uri(path)])
         yield types.CodeLens(convert.range(source, file.element.name_span), command)
 

@@ -36,6 +36,7 @@ from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
+from roaml.project.paths import is_on_disk
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, Asked
 from roaml.smc.pool import WorkersLostError
@@ -136,7 +137,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
     tells = not _shows_hints(context)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
-        if system in broken or not os.path.isabs(system):
+        if system in broken or not is_on_disk(system):
             continue
         uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
         found = verifiable(on.analysis, system)

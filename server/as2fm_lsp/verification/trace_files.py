@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator
 
 from as2fm_lsp.atomic_write import write_file
 from roaml.jani.node import Origin
+from roaml.project.paths import seen_from
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Seen
@@ -140,8 +141,7 @@ def _place(target: Target, origin: Origin | None) -> dict[str, object]:
     if place is None:
         return {}
     path, line, column = place
-    folder = os.path.dirname(os.path.abspath(target.path))
-    return {"file": os.path.relpath(path, folder).replace(os.sep, "/"), "line": line, "column": column}
+    return {"file": seen_from(path, os.path.abspath(target.path)), "line": line, "column": column}
 
 
 def _json(value: object) -> str:

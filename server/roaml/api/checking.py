@@ -12,8 +12,8 @@ from roaml.diagnostics import Diagnostic
 from roaml.disk import Problem
 from roaml.model.kinds import FileKind
 from roaml.project.configuration import find_settings
-from roaml.project.discover import is_inside
 from roaml.project.fixing import fix_all, safe_fix
+from roaml.project.paths import is_below
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import SourceFile
@@ -122,7 +122,7 @@ def _workspace(
     roots = list(folders)
     others = [path for path in kinds if path not in systems]
     for path in others:
-        if not any(is_inside(path, folder) for folder in folders):
+        if not any(is_below(path, folder) for folder in folders):
             roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
     interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
     # A link stands for the file that it leads to.
@@ -140,7 +140,7 @@ def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) 
         found[origin] = None
     for path in named:
         if path not in kinds:
-            inside = [each for each in snapshot.files() if is_inside(each, path)]
+            inside = [each for each in snapshot.files() if is_below(each, path)]
             systems = [each for each in inside if analysis.kind(each) is FileKind.SYSTEM]
             found.update(dict.fromkeys(each for system in systems for each in analysis.files_of(system)))
             found.update(dict.fromkeys(inside))

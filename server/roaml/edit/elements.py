@@ -1,20 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits that add, rename and remove elements.
+"""Elements that edits add, rename and remove.
 
-New elements are on lines of their own, indented like their surroundings. Their lines are given with four spaces for
-each level of nesting, which are replaced by the indentation of the file.
+New ones are on lines of their own, indented like what is around them. Their lines are given with four spaces for each
+level that they are nested; they get what the file has for it.
+
+`after`, `first_in`, `last_in` and `removal` say what is to be done. The edit itself is computed when a fix is made.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterable
+from functools import lru_cache, partial, wraps
+from typing import ParamSpec
 
 from roaml.diagnostics import Fix
-from roaml.text import Span, TextEdit
+from roaml.text import Edit, Span, TextEdit
 from roaml.xml_syntax import Document, Element
 
+P = ParamSpec("P")
+
 _LEVEL = "    "
+
+
+def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]]:
+    """A function that returns what computes the edit."""
+
+    @wraps(function)
+    def plan(*args: P.args, **kwargs: P.kwargs) -> Callable[[], TextEdit]:
+        return partial(function, *args, **kwargs)
+
+    return plan
 
 
 def indent_of(text: str, element: Element) -> str:
@@ -37,22 +52,37 @@ def level_of(document: Document) -> str:
     return _LEVEL
 
 
+@_lazy
 def after(document: Document, element: Element, *lines: str) -> TextEdit:
     """Insert lines after an element, as its next sibling."""
     at = element.span.end
     return TextEdit(Span(at, at), _block(document, indent_of(document.text, element), lines))
 
 
+@_lazy
 def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     """Insert lines into an element, before all its content."""
     if parent.self_closing or not parent.elements:
-        return last_in(document, parent, *lines)
+        return _last_in(document, parent, *lines)
     at = parent.open_span.end
     return TextEdit(Span(at, at), _block(document, _inside(document, parent), lines))
 
 
+@_lazy
 def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     """Insert lines into an element, after all its child elements."""
+    return _last_in(document, parent, *lines)
+
+
+def remove(
+    document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
+) -> Fix:
+    """Remove an element."""
+    plan = (removal(document.text, element.span),)
+    return Fix(title or f"Remove this `<{element.name}>`", plan, preferred or safe, safe)
+
+
+def _last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     text, outer = document.text, indent_of(document.text, parent)
     if parent.elements:
         at = parent.elements[-1].span.end
@@ -67,14 +97,6 @@ def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     if parent.close_span is not None and not text[inside.start : inside.end].strip():
         return TextEdit(inside, f"{new}\n{outer}")
     return TextEdit(Span(inside.start, inside.start), new)
-
-
-def remove(
-    document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
-) -> Fix:
-    """Remove an element."""
-    edit = removal(document.text, element.span)
-    return Fix(title or f"Remove this `<{element.name}>`", (edit,), preferred or safe, safe)
 
 
 def _inside(document: Document, parent: Element) -> str:
@@ -94,6 +116,7 @@ def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
     return "".join(new)
 
 
+@_lazy
 def removal(text: str, span: Span) -> TextEdit:
     """An edit that removes the text at `span`, with the blanks before it and the line break before these."""
     start = span.start
@@ -110,10 +133,10 @@ def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
     return Fix(f"Change to `<{name}>`", tuple(TextEdit(span, name) for span in spans), preferred)
 
 
-def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[TextEdit, ...]:
+def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[Edit, ...]:
     """Add a `<bt_halt>` that leads to the initial state to each of some states that handle ticks but not halts."""
     initial = root.get("initial")
-    edits = []
+    edits: list[Edit] = []
     for state in states:
         ticks = [child for child in state.elements if child.name == "bt_tick"]
         if state.name == "state" and ticks and initial and state.find("bt_halt") is None:

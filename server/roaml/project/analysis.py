@@ -51,8 +51,9 @@ from roaml.model.system_file import (
 from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
-from roaml.project.files import MAX_CHARACTERS, Files, resolve
+from roaml.project.files import MAX_CHARACTERS, Files
 from roaml.project.memo import Memo
+from roaml.project.paths import resolve
 from roaml.roles import SymbolKind
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span

@@ -6,14 +6,14 @@ Folders that hold no sources are passed over; links are followed once. Unreadabl
 
 from __future__ import annotations
 
-import fnmatch
-import glob
 import os
 from collections.abc import Iterable, Iterator
 
 from roaml.disk import Problem, Roots, read, status_of
 from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, FileKind, kind_of
+from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.files import Files
+from roaml.project.paths import is_below, relative
 from roaml.text import decode
 
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
@@ -22,7 +22,7 @@ _HEAD = 65_536
 """Bytes: more than `root_name` looks at, in any encoding but UTF-32."""
 
 
-def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Roots | None = None) -> Iterator[str]:
+def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots | None = None) -> Iterator[str]:
     """All files below the roots that by their name may be ours, sorted within each folder, each once.
 
     Args:
@@ -33,33 +33,29 @@ def candidates(roots: Iterable[str], exclude: tuple[str, ...] = (), within: Root
     for root in roots:
         for folder, names, files in os.walk(root, followlinks=True):
             real = os.path.realpath(folder)
-            if real in seen or (within is not None and not within.hold(folder)):
+            outside = within is not None and not within.hold(folder)
+            if real in seen or outside or exclude.covers_folder(folder, root):
                 names.clear()
                 continue
             seen.add(real)
             names[:] = sorted(name for name in names if not _is_skipped(name))
             for name in sorted(files):
                 path = os.path.join(folder, name)
-                if _may_be_ours(name) and not _is_excluded(path, root, exclude):
+                if _may_be_ours(name) and not exclude.covers(path, root):
                     yield path
                     count += 1
                     if count >= MAX_FILES:
                         return
 
 
-def is_candidate(path: str, roots: Iterable[str], exclude: tuple[str, ...] = ()) -> bool:
+def is_candidate(path: str, roots: Iterable[str], exclude: Exclude = NOTHING) -> bool:
     """Whether `candidates` gives a path if there is such a file."""
     for root in roots:
-        if is_inside(path, root):
-            *folders, name = os.path.relpath(path, root).split(os.sep)
+        if is_below(path, root):
+            *folders, name = relative(path, root).split("/")
             if not any(map(_is_skipped, folders)) and _may_be_ours(name):
-                return not _is_excluded(path, root, exclude)
+                return not exclude.covers(path, root)
     return False
-
-
-def is_inside(path: str, folder: str) -> bool:
-    """Whether a path lies somewhere below a folder."""
-    return path.startswith(os.path.join(folder, ""))
 
 
 def _may_be_ours(name: str) -> bool:
@@ -68,17 +64,6 @@ def _may_be_ours(name: str) -> bool:
 
 def _is_skipped(folder_name: str) -> bool:
     return folder_name in SKIPPED_FOLDERS or folder_name.startswith(".")
-
-
-def _is_excluded(path: str, root: str, exclude: tuple[str, ...]) -> bool:
-    return any(_matches(path, os.path.join(glob.escape(root), pattern)) for pattern in exclude)
-
-
-def _matches(path: str, pattern: str) -> bool:
-    """Whether a pattern means a path or a folder around it. `*` stands for several folders too, `**/` also for none."""
-    pattern = pattern.rstrip("/" + os.sep)
-    forms = {pattern, pattern.replace("**/", "")}
-    return any(fnmatch.fnmatch(path, form) or fnmatch.fnmatch(path, f"{form}/*") for form in forms)
 
 
 class SystemIndex:

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from roaml.diagnostics import Fix
-from roaml.text import SourceFile, Span, TextEdit
+from roaml.text import Edit, SourceFile, Span, TextEdit, computed
 
 _LINE_END = re.compile(r"\r\n|\n|\r")
 
@@ -20,12 +19,12 @@ def line_end_of(source: SourceFile) -> str:
     return "\r\n" if last == "\r\n" else last[-1:] if last[-1:] in ("\n", "\r") else "\n"
 
 
-def in_layout(source: SourceFile, edits: Iterable[TextEdit]) -> Iterator[TextEdit]:
+def in_layout(source: SourceFile, edits: Iterable[Edit]) -> Iterator[TextEdit]:
     """New lines end as the file's lines do; an edit that takes away all that stands on a line takes the line with it.
 
     What stands on a line is seen with all the edits made.
     """
-    edits = sorted(edits)
+    edits = sorted(computed(edits))
     line_end = line_end_of(source) if any(_LINE_END.search(edit.new_text) for edit in edits) else "\n"
     for number, edit in enumerate(edits):
         if edit.new_text or edit.span.start == edit.span.end:
@@ -57,5 +56,5 @@ def _blank_around(source: SourceFile, span: Span) -> Span | None:
 
 
 def laid_out(source: SourceFile, fix: Fix) -> Fix:
-    edits = tuple(in_layout(source, fix.edits))
-    return fix if edits == fix.edits else replace(fix, edits=edits)
+    """The fix with its edits as the file takes them, computed when they are read."""
+    return Fix(fix.title, lambda: tuple(in_layout(source, fix.edits)), fix.preferred, fix.safe)

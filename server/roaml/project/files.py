@@ -83,16 +83,3 @@ class Files:
     def text(self, path: str) -> SourceFile | None:
         source = self.read(path)
         return source if isinstance(source, SourceFile) else None
-
-
-def resolve(base: str, src: str) -> str:
-    """The path that `src`, as written in the file `base`, means. `file://` URLs and `~` are taken as plain names."""
-    return os.path.normpath(os.path.join(os.path.dirname(base), src.replace("\0", "\ufffd")))
-
-
-def relative(base: str, path: str) -> str | None:
-    """How the file `base` writes the path of another file, with `/`; None if that lies on another drive."""
-    try:
-        return os.path.relpath(path, os.path.dirname(base)).replace(os.sep, "/")
-    except ValueError:
-        return None

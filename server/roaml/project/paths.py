@@ -19,12 +19,19 @@ def split_name(path: str) -> tuple[str, str]:
     return os.path.splitext(os.path.basename(path))
 
 
-def inside(folder: str, name: str) -> str:
-    return os.path.join(folder, name)
+def full(folder: str, written: str) -> str:
+    """The path that `written` means in a folder. `file://` URLs and `~` are taken as plain names."""
+    return os.path.normpath(os.path.join(folder, written.replace("\0", "\ufffd")))
+
+
+def resolve(base: str, src: str) -> str:
+    """The path that `src`, as written in the file `base`, means."""
+    return full(os.path.dirname(base), src)
 
 
 def is_below(path: str, folder: str) -> bool:
-    return path.startswith(folder + os.sep)
+    """Whether a path is that of something in a folder, at any depth."""
+    return path.startswith(os.path.join(folder, ""))
 
 
 def is_on_disk(path: str) -> bool:
@@ -32,6 +39,19 @@ def is_on_disk(path: str) -> bool:
     return os.path.isabs(path)
 
 
+def slashed(path: str) -> str:
+    """A path with `/` on every system."""
+    return path.replace(os.sep, "/")
+
+
+def relative(path: str, folder: str) -> str:
+    """A path as seen from a folder, with `/`; in full if it is on another drive."""
+    try:
+        return slashed(os.path.relpath(path, folder))
+    except ValueError:
+        return slashed(path)
+
+
 def seen_from(path: str, base: str) -> str:
     """A path as the file `base` would name it, with `/`."""
-    return os.path.relpath(path, os.path.dirname(base)).replace(os.sep, "/")
+    return relative(path, os.path.dirname(base))

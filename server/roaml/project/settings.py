@@ -7,7 +7,6 @@ that file (`roaml.project.configuration`); what is right is still used.
 
 from __future__ import annotations
 
-import glob
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -17,6 +16,9 @@ from roaml.diagnostics import Severity
 from roaml.model.kinds import CONFIG_FILE
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.project import exclude
+from roaml.project.exclude import NOTHING, Exclude
+from roaml.project.paths import full
 from roaml.rules import BY_CODE
 from roaml.rules.rule import close_names, did_you_mean
 from roaml.toml import Path
@@ -30,8 +32,7 @@ class Settings:
     """Attributes:
     roots: folders in which systems are looked for; empty means the folders that are open or named.
     ros_paths: folders with ROS interface packages.
-    exclude: glob patterns of paths that are passed over, with all that is below them; those that are not absolute are
-        relative to each root.
+    exclude: which files are passed over.
     select: codes to report; empty means all. ignore: codes not to report.
     severities: code -> severity in place of the rule's own.
     scheduler: "uniform" if `verify` is meant to answer for uniform choices, also where a property asks for the minimum
@@ -44,7 +45,7 @@ class Settings:
     roots: tuple[str, ...] = ()
     ros_paths: tuple[str, ...] = ()
     ament_prefixes: tuple[str, ...] = ()
-    exclude: tuple[str, ...] = ()
+    exclude: Exclude = NOTHING
     select: frozenset[str] = frozenset()
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
@@ -105,9 +106,9 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             continue
         name = _FIELDS.get(key, key.replace("-", "_"))
         if key in _FOLDERS:
-            read = tuple(_full(folder, path) for path in read)
+            read = tuple(full(folder, path) for path in read)
         if key == "exclude":
-            read = tuple(os.path.join(glob.escape(folder), pattern) for pattern in read)
+            read = Exclude(read, folder)
         if key in _LIMITS:
             changes["limits"] = replace(changes.get("limits", base.limits), **{_LIMITS[key]: read})
             continue
@@ -121,15 +122,11 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
     for key in _FOLDERS:
         value = table.get(key)
         if isinstance(value, str):
-            yield Folder((key,), value, _full(folder, value))
+            yield Folder((key,), value, full(folder, value))
         elif isinstance(value, list):
             for index, each in enumerate(value):
                 if isinstance(each, str):
-                    yield Folder((key, index), each, _full(folder, each))
-
-
-def _full(folder: str, path: str) -> str:
-    return os.path.normpath(os.path.join(folder, path.replace("\0", "\ufffd")))
+                    yield Folder((key, index), each, full(folder, each))
 
 
 _Reader = Callable[[Path, Any, list[Mistake]], Any]
@@ -145,12 +142,27 @@ def _strings(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...]
     return None
 
 
+def _patterns(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+    read = _strings(path, value, mistakes)
+    if read is None:
+        return None
+    wrong = [exclude.problem(pattern) for pattern in read]
+    for place, problem in zip(_places(path, value), wrong, strict=True):
+        if problem:
+            mistakes.append(Mistake(place, problem))
+    return tuple(pattern for pattern, problem in zip(read, wrong, strict=True) if not problem)
+
+
+def _places(path: Path, value: str | list[str]) -> list[Path]:
+    """The places of strings that `_strings` reads."""
+    return [path] if isinstance(value, str) else [(*path, index) for index in range(len(value))]
+
+
 def _codes(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
     read = _strings(path, value, mistakes)
     if read is None:
         return None
-    places = [path] if isinstance(value, str) else [(*path, index) for index in range(len(read))]
-    for place, code in zip(places, read, strict=True):
+    for place, code in zip(_places(path, value), read, strict=True):
         if code not in BY_CODE:
             mistakes.append(_no_rule(place, code))
     return tuple(code for code in read if code in BY_CODE)
@@ -219,7 +231,7 @@ _FIELDS = {"ros-path": "ros_paths", "severity": "severities", "verify": "schedul
 _KEYS: dict[str, _Reader] = {
     "roots": _strings,
     "ros-path": _strings,
-    "exclude": _strings,
+    "exclude": _patterns,
     "select": _codes,
     "ignore": _codes,
     "severity": _severities,

@@ -8,6 +8,7 @@ from typing import TypedDict
 
 from roaml.jani.model import Model, Variable
 from roaml.project.analysis import Analysis
+from roaml.project.paths import relative
 from roaml.text import Location
 
 
@@ -63,7 +64,7 @@ def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
         source = analysis.source(origin.path)
         assert source is not None
         start = source.lines.position(origin.span.start)
-        file = os.path.relpath(origin.path, folder).replace(os.sep, "/")
+        file = relative(origin.path, folder)
         return {"file": file, "line": start.line + 1, "column": start.column + 1}
 
     def variables(found: tuple[Variable, ...]) -> list[VariablePlace]:

@@ -70,7 +70,7 @@ def beta_quantile(probability: float, a: float, b: float) -> float:
             low = middle
         else:
             high = middle
-        if high - low < 1e-13:
+        if high - low < 1e-13 * high:  # relative: Student's quantiles divide by small ones
             break
     return (low + high) / 2
 

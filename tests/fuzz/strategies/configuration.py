@@ -20,6 +20,7 @@ from fuzz.checked import LIMITS, problems_of_check
 from fuzz.damage import ANY, PIECES
 from fuzz.strategy import Failure, Strategy
 from roaml.project.configuration import find_settings
+from roaml.project.exclude import NOTHING
 
 NAMES = ("as2fm.toml", "pyproject.toml", "package.xml", "msg/Level.msg")
 _KEYS = ("roots", "ros-path", "exclude", "select", "ignore", "severity", "warnings-as-errors", "max-cells", "max-parts")
@@ -88,7 +89,9 @@ class Configured:
             random = Random(self.seed)
             main = str(random.choice([folder, folder / "main.xml"]))
             if os.path.isdir(main) or os.path.isfile(main):
-                yield from problems_of_check(main, {}, settings=replace(settings, limits=LIMITS, roots=(), exclude=()))
+                yield from problems_of_check(
+                    main, {}, settings=replace(settings, limits=LIMITS, roots=(), exclude=NOTHING)
+                )
                 if all(root.startswith(str(folder)) for root in (*settings.roots, *settings.ros_paths)):
                     yield from problems_of_check(main, {}, settings=replace(settings, limits=LIMITS))
         finally:

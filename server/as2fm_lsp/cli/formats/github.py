@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import os
-
 from as2fm_lsp.cli.formats.report import Report
+from roaml.project.paths import slashed
 
 _KINDS = {"error": "error", "warning": "warning", "information": "notice", "hint": "notice"}
 
@@ -14,7 +13,7 @@ def render(report: Report) -> str:
     lines = []
     for entry in report.entries:
         place = entry.place
-        file = entry.file.replace(os.sep, "/")
+        file = slashed(entry.file)
         where = f"file={_property(file)},line={place.line},endLine={place.end_line}"
         if place.line == place.end_line:
             where += f",col={place.column},endColumn={place.end_column}"

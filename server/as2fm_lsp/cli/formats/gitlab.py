@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import json
-import os
 from collections import Counter
 
 from as2fm_lsp.cli.formats.report import Report
+from roaml.project.paths import slashed
 
 _SEVERITIES = {"error": "major", "warning": "minor", "information": "info", "hint": "info"}
 
@@ -26,7 +26,7 @@ def render(report: Report) -> str:
                 # GitLab drops all but one of the entries with one fingerprint.
                 "fingerprint": f"{entry.fingerprint}-{seen[entry.fingerprint]}",
                 "location": {
-                    "path": entry.file.replace(os.sep, "/"),
+                    "path": slashed(entry.file),
                     "lines": {"begin": entry.place.line, "end": entry.place.end_line},
                 },
             }

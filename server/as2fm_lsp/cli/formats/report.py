@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.project.paths import slashed
 from roaml.text import SourceFile, Span
 
 _AROUND = 200
@@ -72,7 +73,7 @@ class Entry:
         stands on the line around the place."""
         at = self.line.start + self.place.column - 1
         around = self.source.text[max(self.line.start, at - _AROUND) : min(self.line.end, at + _AROUND)]
-        parts = (file.replace(os.sep, "/"), self.code, self.message, around.strip())
+        parts = (slashed(file), self.code, self.message, around.strip())
         return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 

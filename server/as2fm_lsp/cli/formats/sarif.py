@@ -14,6 +14,7 @@ from typing import Any
 
 from as2fm_lsp.cli.formats.report import Entry, Place, Report
 from roaml import __version__
+from roaml.project.paths import slashed
 from roaml.rules import BY_CODE, cited, document
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -79,5 +80,5 @@ def _location(file: str, place: Place) -> dict[str, Any]:
         "endLine": place.end_line,
         "endColumn": place.end_column,
     }
-    uri = urllib.parse.quote(os.fsencode(file.replace(os.sep, "/")))  # of bytes: a name may be no valid text
+    uri = urllib.parse.quote(os.fsencode(slashed(file)))  # of bytes: a name may be no valid text
     return {"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}

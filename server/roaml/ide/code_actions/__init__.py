@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 
 from roaml.diagnostics import Diagnostic, Fix
-from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, Action, Change, known, whole
+from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, Action, Change, whole
 from roaml.ide.code_actions.quick_fixes import repairs
 from roaml.ide.code_actions.refactorings import refactorings
 from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
@@ -39,11 +40,15 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str
 def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
     """All fixes of a diagnostic: first those of its rule, then those that change other files."""
     for fix in diagnostic.fixes:
-        yield Action(fix.title, QUICK_FIX, known(Change({path: fix.edits})), diagnostic, fix.preferred)
+        yield Action(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
     titles = {fix.title for fix in diagnostic.fixes}
     for action in repairs(snapshot, diagnostic):
         if action.title not in titles:
             yield action
+
+
+def _made(path: str, fix: Fix) -> Change:
+    return Change({path: fix.edits})
 
 
 def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[Action]:

@@ -11,7 +11,7 @@ from roaml.expr.zero import zero_text
 from roaml.model.name_forms import variable_problem
 from roaml.model.system import safe_name
 from roaml.project.analysis import Analysis
-from roaml.project.paths import inside, seen_from, split_name
+from roaml.project.paths import full, seen_from, split_name
 from roaml.text import SourceFile
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -35,9 +35,9 @@ def file_name(machine: str) -> str:
 def free_path(analysis: Analysis, folder: str, name: str) -> str:
     """A path in a folder at which there is no file."""
     stem, extension = split_name(name)
-    path, number = inside(folder, name), 2
+    path, number = full(folder, name), 2
     while isinstance(analysis.files.read(path), SourceFile):
-        path, number = inside(folder, f"{stem}_{number}{extension}"), number + 1
+        path, number = full(folder, f"{stem}_{number}{extension}"), number + 1
     return path
 
 

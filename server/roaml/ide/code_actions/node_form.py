@@ -10,7 +10,7 @@ from roaml.ide.code_actions.action import REWRITE, Action, Change, known
 from roaml.model.tree import EXPLICIT, SUBTREES, TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
-from roaml.text import Span, TextEdit
+from roaml.text import Span, TextEdit, computed
 
 
 def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[Action]:
@@ -60,7 +60,7 @@ def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]
     elif id_ is None or not name.isidentifier() or name in (*EXPLICIT, *SUBTREES):
         return []
     else:
-        edits = [removal(source.text, id_.span)]
+        edits = [*computed([removal(source.text, id_.span)])]
         tag = name
     names = [element.name_span, *([element.close_name_span] if element.close_name_span else [])]
     return sorted([*edits, *(TextEdit(span, tag) for span in names)])

@@ -214,7 +214,7 @@ def _list_file(
 
 def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
     """Remove a port, and its settings in the trees."""
-    if any(fix.edits for fix in diagnostic.fixes):
+    if diagnostic.fixes:
         return
     machine = snapshot.analysis.machine(diagnostic.path)
     port = next((p for p in machine.ports if p.key and p.key.span == diagnostic.span), None) if machine else None
@@ -226,7 +226,7 @@ def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]
         edits = _settings(snapshot.analysis, machine, diagnostic.path, key)
         source = snapshot.analysis.source(diagnostic.path)
         assert source is not None
-        return Change({**edits, diagnostic.path: (removal(source.text, element.span),)})
+        return Change({**edits, diagnostic.path: _removals(source, element.span)})
 
     yield _action(diagnostic, f"Remove the port `{key}` here and in the tree", make, preferred=True)
 
@@ -234,7 +234,7 @@ def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]
 def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:
     """The edits that remove all settings of a port of a plugin."""
     name = machine.name.value if machine.name else ""
-    found: dict[str, list[TextEdit]] = {}
+    edits: _Edits = {}
     for tree_path in _trees(analysis, path):
         file, source = analysis.tree(tree_path), analysis.source(tree_path)
         if file is None or source is None:
@@ -249,8 +249,8 @@ def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edi
         models = [m for m in file.models if m.id and m.id.value == name]
         spans += [p.element.span for m in models for p in m.ports if p.name and p.name.value == key]
         if spans:
-            found[tree_path] = [removal(source.text, span) for span in spans]
-    return {each: tuple(edits) for each, edits in found.items()}
+            edits[tree_path] = _removals(source, *spans)
+    return edits
 
 
 def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
@@ -303,7 +303,7 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Actio
         return
     used = (n.plugin.value for tree in analysis.tree_paths(system) for n in _all_nodes(analysis, tree) if n.plugin)
     if machine.name.value not in used:
-        change = Change({system: (removal(source.text, listed.input.element.span),)})
+        change = Change({system: _removals(source, listed.input.element.span)})
         yield _action(diagnostic, "Remove this `<input>`", known(change), preferred=True)
 
 
@@ -351,6 +351,10 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
 def _text_at(analysis: Analysis, diagnostic: Diagnostic) -> str:
     source = analysis.source(diagnostic.path)
     return source.text[slice(*diagnostic.span)] if source else ""
+
+
+def _removals(source: SourceFile, *spans: Span) -> tuple[TextEdit, ...]:
+    return tuple(in_layout(source, (removal(source.text, span) for span in spans)))
 
 
 def _attribute(text: str) -> str:

@@ -16,7 +16,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
 from roaml.roles import SymbolKind
-from roaml.text import Span, TextEdit
+from roaml.text import Edit, Span
 from roaml.xml_syntax import Element
 
 _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives == "result")
@@ -35,7 +35,7 @@ def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]
     yield from migrate.actions(snapshot, path, place)
 
 
-def _edited(analysis: Analysis, path: str, *edits: TextEdit) -> Change:
+def _edited(analysis: Analysis, path: str, *edits: Edit) -> Change:
     source = analysis.source(path)
     return Change({path: tuple(in_layout(source, edits))}) if source else Change()
 

@@ -10,7 +10,7 @@ from roaml.ide.completion.request import Request, Subject
 from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
 from roaml.model.machine import Machine
 from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES
-from roaml.project.files import relative
+from roaml.project.paths import seen_from
 
 _BY_SECTION = {
     "data_declarations": (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
@@ -41,9 +41,7 @@ def paths(request: Request, subject: Subject) -> Iterator[Item]:
             machine = analysis.machine(path)
             fitting = plugin is None or machine is None or _is_plugin(machine) == plugin
             rank = Rank.LAST if not fitting else Rank.LIKELY if rank is Rank.USUAL else rank
-        written = relative(request.path, path)
-        if written is not None:
-            yield Item(written, ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
+        yield Item(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
 
 
 def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:

@@ -14,7 +14,7 @@ from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
 from roaml.model.system_file import NANOSECONDS
 from roaml.project.analysis import Analysis
-from roaml.project.files import resolve
+from roaml.project.paths import resolve
 from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, Element

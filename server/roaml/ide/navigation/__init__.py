@@ -15,7 +15,7 @@ from roaml.lower.nodes import node_file
 from roaml.model.system import System
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
-from roaml.project.files import resolve
+from roaml.project.paths import resolve
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 

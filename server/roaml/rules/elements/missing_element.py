@@ -15,7 +15,7 @@ from roaml.model.machine import Chart, Thread
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.children import has_counted_children
-from roaml.text import Span, TextEdit
+from roaml.text import Edit, Span, TextEdit
 from roaml.xml_syntax import Element
 
 
@@ -78,7 +78,7 @@ def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
 def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
     name = chart.initial.value if chart.initial else "initial"
     if chart.element.complete:
-        edits = [last_in(context.document, chart.element, f'<state id="{name}" />')]
+        edits: list[Edit] = [last_in(context.document, chart.element, f'<state id="{name}" />')]
         at = chart.element.name_span.end
         if chart.element.get("initial") is None and not chart.scope:
             edits.append(TextEdit(Span(at, at), f' initial="{name}"'))

@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.machine import Handler, Send
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.removed_events import REMOVED_EVENTS, removed_handlers, removed_sends
-from roaml.text import TextEdit
+from roaml.text import Edit, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -32,7 +32,7 @@ def _handler(handler: Handler, text: str) -> Finding:
     assert event is not None
     attribute = element.get("event")
     assert attribute is not None
-    edits = [TextEdit(element.name_span, event.value), removal(text, attribute.span)]
+    edits: list[Edit] = [TextEdit(element.name_span, event.value), removal(text, attribute.span)]
     if element.close_name_span is not None:
         edits.append(TextEdit(element.close_name_span, event.value))
     new = f"<{event.value}>"

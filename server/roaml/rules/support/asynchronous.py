@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Fix
 from roaml.edit.elements import after, first_in, last_in
 from roaml.model.machine import Handler, ReturnStatus, State, statements
 from roaml.model.value_types import STATUSES
 from roaml.rules.rule import MachineContext, unused
-from roaml.text import TextEdit
+from roaml.text import Edit, TextEdit, computed
 
 RUNNING = '<bt_return_status status="RUNNING" />'
 
@@ -18,7 +18,7 @@ RUNNING = '<bt_return_status status="RUNNING" />'
 def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
     """The edits, if the rewrite is mechanical: the tick only starts something, and all handlers that end it answer and
     lead to the same state."""
-    chart, document = context.machine.chart, context.document
+    chart = context.machine.chart
     states = {state.id.value: state for state in chart.states if state.id}
     if tick.trigger != "bt-tick" or _answers(tick) or not _is_tidy(tick):
         return
@@ -32,11 +32,21 @@ def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
     (goal,) = goals
     if goal not in states or states[goal].entry is not None or states[goal] in region:
         return
+    yield Fix(
+        "Return RUNNING, and the status at a later tick",
+        lambda: computed(_edits(context, tick, region, answering, goal)),
+    )
+
+
+def _edits(
+    context: MachineContext, tick: Handler, region: list[State], answering: list[Handler], goal: str
+) -> Iterable[Edit]:
+    chart, document = context.machine.chart, context.document
     variable = _fresh("answer", {d.id.value for d in chart.data if d.id})
     last = region[-1]
     assert last.id is not None
-    done = _fresh(f"{last.id.value}_done", set(states))
-    edits = [last_in(document, tick.element, RUNNING), _declared(context, variable)]
+    done = _fresh(f"{last.id.value}_done", {state.id.value for state in chart.states if state.id})
+    edits: list[Edit] = [last_in(document, tick.element, RUNNING), _declared(context, variable)]
     edits += (edit for handler in answering for edit in _stored(handler, variable, done))
     for state in region:
         at_once = any(h.effective and h.trigger == "" and h.cond is None for h in state.handlers)
@@ -44,8 +54,7 @@ def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
             edits.append(last_in(document, state.element, *_asked(state.id.value, RUNNING)))
     answered = _asked(goal, f'<bt_return_status status="{variable}" />')
     lines = (f'<state id="{done}">', *(f"    {line}" for line in answered), "</state>")
-    edits.append(after(document, last.element, *lines))
-    yield Fix("Return RUNNING, and the status at a later tick", tuple(edits))
+    return [*edits, after(document, last.element, *lines)]
 
 
 def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
@@ -93,7 +102,7 @@ def _is_tidy(handler: Handler) -> bool:
     return len(handler.targets) == 1 and handler.element.get("target") is not None and handler.element.complete
 
 
-def _declared(context: MachineContext, variable: str) -> TextEdit:
+def _declared(context: MachineContext, variable: str) -> Edit:
     data = f'<data id="{variable}" type="int8" expr="{STATUSES["RUNNING"]}" />'
     root = context.machine.element
     model = root.find("datamodel")

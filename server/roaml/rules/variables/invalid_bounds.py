@@ -12,7 +12,7 @@ from roaml.expr.types import is_number
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression, Value
 from roaml.rules.rule import MachineContext, Rule
-from roaml.text import TextEdit
+from roaml.text import Edit, TextEdit
 
 BOUNDS = ("lower_bound_incl", "upper_bound_incl")
 
@@ -32,7 +32,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield from _order(context, data)
 
 
-def _without_bounds(context: MachineContext, data: Data) -> Iterator[TextEdit]:
+def _without_bounds(context: MachineContext, data: Data) -> Iterator[Edit]:
     spans = [a.span for a in data.element.attributes if a.name in BOUNDS]
     spans += [e.span for e in data.element.elements if e.name in BOUNDS]
     return (removal(context.source.text, span) for span in spans)

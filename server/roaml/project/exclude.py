@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which files the setting `exclude` leaves out. Its patterns mean what they mean in `.gitignore` files
+(https://git-scm.com/docs/gitignore).
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from roaml.project.paths import is_below, relative
+
+if TYPE_CHECKING:
+    from pathspec import GitIgnoreSpec, PathSpec, Pattern
+
+MAX_WILDCARDS = 3
+"""`*` in one part of a pattern, and `**` in a pattern. The time to compare a path grows with its length to this power,
+and a configuration may be a stranger's."""
+MAX_DEPTH = 30
+"""Parts of a path that are compared: a file that is deeper is left out if a folder is that it is in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exclude:
+    """Patterns, the last one that matches decides.
+
+    Attributes:
+        folder: what the patterns are relative to; in a root outside of it, they are relative to that root.
+    """
+
+    patterns: tuple[str, ...] = ()
+    folder: str = ""
+
+    def covers(self, path: str, root: str) -> bool:
+        """Whether the file `path`, which is below the folder `root`, is left out."""
+        return self._covers(path, root, "")
+
+    def covers_folder(self, path: str, root: str) -> bool:
+        """Whether all that is in the folder `path` is left out; it is `root` or below it."""
+        return self._covers(path, root, "/")
+
+    def _covers(self, path: str, root: str, end: str) -> bool:
+        if not self.patterns:
+            return False
+        base = self.folder if self.folder and is_below(path, self.folder) else root
+        if path == base:
+            return False
+        *folders, name = relative(path, base).split("/")
+        parts = [*(f"{folder}/" for folder in folders), name + end][:MAX_DEPTH]
+        return any(_matches(self.patterns, "".join(parts[:count])) for count in range(1, len(parts) + 1))
+
+
+NOTHING = Exclude()
+
+
+def problem(pattern: str) -> str:
+    """Why `pattern` is not a pattern that can be used; "" if it is one."""
+    parts = pattern.split("/")
+    if parts.count("**") > MAX_WILDCARDS:
+        return f"`{pattern}` contains more than {MAX_WILDCARDS} `**`"
+    if any(part.count("*") > MAX_WILDCARDS for part in parts):
+        return f"`{pattern}` contains more than {MAX_WILDCARDS} `*` without a `/` between them"
+    try:
+        _compiled((pattern,))
+    except (ValueError, re.error):
+        return f"`{pattern}` is not a pattern as in `.gitignore` files"
+    return ""
+
+
+@functools.lru_cache(maxsize=10_000)
+def _matches(patterns: tuple[str, ...], path: str) -> bool:
+    """Whether the patterns leave out one path, whatever they say of the folders around it; folders end with `/`."""
+    folders, files = _compiled(patterns)
+    return folders.match_file(path) if path.endswith("/") else files.match_file(path)
+
+
+@functools.lru_cache(maxsize=16)
+def _compiled(patterns: tuple[str, ...]) -> tuple[PathSpec[Pattern], GitIgnoreSpec]:
+    """What decides about folders, where the last pattern that matches decides, and about files, where a pattern of a
+    folder does not bring back what others leave out."""
+    from pathspec import GitIgnoreSpec, PathSpec  # noqa: PLC0415 - most projects exclude nothing
+
+    # pathspec takes `a/**` for the folder `a/` itself, too, which Git does not.
+    contents = [pattern[:-1] if pattern.endswith("/**") else pattern for pattern in patterns]
+    with warnings.catch_warnings():  # of `re`, about `[[`
+        warnings.simplefilter("ignore")
+        return PathSpec.from_lines("gitignore", contents), GitIgnoreSpec.from_lines(patterns)
