@@ -259,7 +259,7 @@ def test_a_file_is_never_overwritten(command: Command, tmp_path: Path) -> None:
     before = read(tmp_path)
     done = command("migrate", ".")
     assert done.status == 2
-    assert done.err.endswith("base.ascxml: there is such a file already; nothing was changed\n")
+    assert done.err.endswith("base.ascxml already exists; nothing was changed\n")
     assert read(tmp_path) == before
 
 

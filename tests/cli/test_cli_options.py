@@ -51,7 +51,7 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["--check"], "--check needs a PATH"),
+        (["--check"], "--check needs at least one PATH"),
         (["--check", "nowhere.xml"], "there is no such file or folder"),
         (["--check", ".", "--select", "no-such-rule"], "there is no rule `no-such-rule`"),
         (["--check", ".", "--ignore", "xml-syntax,no-such-rule"], "there is no rule `no-such-rule`"),
@@ -63,7 +63,7 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
         (["."], "used with --check only"),
         (
             ["main.xml"],
-            "there is no command `main.xml`, and no such file; the commands are `format`, `init`, `migrate`",
+            "there is no command or file `main.xml`; the commands are `format`, `init`, `migrate`",
         ),
         (["verfy", "main.xml", "--expect", "p > 0.5"], "there is no command `verfy`; did you mean `verify`?"),
         (["Translate", "main.xml"], "there is no command `Translate`; did you mean `translate`?"),

@@ -255,7 +255,7 @@ def test_a_trace_that_goes_wrong_after_its_goal_is_told(command: Command, tmp_pa
     done = command("verify", "main.xml")
     assert done.status == 0
     assert "delivered: 1 in" in done.out
-    assert "probability of getting stuck: not known, since a trace that ran on went wrong: " in done.out
+    assert "probability of getting stuck: unknown, because a longer trace failed: " in done.out
 
 
 def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path) -> None:

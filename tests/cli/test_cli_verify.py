@@ -334,7 +334,7 @@ def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
         out, _ = running.communicate(timeout=PATIENCE)
     os.close(ours)
     assert b"heads" in seen
-    assert "interrupted; this is what was known by then" in out
+    assert "interrupted; this is the result so far" in out
 
 
 def endless() -> Json:

@@ -53,7 +53,7 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
     assert done.status == 1
     assert "warning: this is the value under uniform choices, and `Pmin` asks for the minimum" in done.out
-    assert "schedulers reach from 0 " in done.out
+    assert "schedulers range from 0 " in done.out
     assert "expected ≥ 0.9: NOT MET" in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["p"]
     assert row["probability"] == 1
@@ -441,9 +441,9 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
         (("--method", "fixed"), "the method `fixed` needs a number of traces (--max-traces)"),
         (("--epsilon", "1e-300"), "a number from 1e-09 on is expected"),
         (("--epsilon", "1e-300", "--method", "okamoto"), "a number from 1e-09 on is expected"),
-        (("--epsilon", "nan"), "a number between 0 and 1 is expected"),
-        (("--epsilon", "small"), "a number between 0 and 1 is expected"),
-        (("--max-traces", "9" * 5000), "a whole number from 1 on is expected"),
+        (("--epsilon", "nan"), "expected a number between 0 and 1"),
+        (("--epsilon", "small"), "expected a number between 0 and 1"),
+        (("--max-traces", "9" * 5000), "expected a whole number of at least 1"),
         (("--expect", "heads > 2"), "heads is a probability and can only be compared with a number from 0 to 1, not 2"),
         (("--expect", "heads >= -0.5"), "not -0.5"),
         (("--expect", "heads <= inf"), "not inf"),

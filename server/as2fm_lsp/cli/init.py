@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp init DIR`: write a small working system to start from."""
+"""`as2fm-lsp init DIR`: write a small working system as a starting point."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def run(arguments: Sequence[str]) -> int:
     files = dict(template("delivery_robot"))
     for name in files:
         if os.path.exists(os.path.join(folder, name)):
-            complain(f"{os.path.join(folder, name)} exists already; nothing was written")
+            complain(f"{os.path.join(folder, name)} already exists; nothing was written")
             return USAGE
     try:
         for name, text in files.items():
@@ -38,8 +38,8 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def parser() -> ArgumentParser:
-    result = ArgumentParser(prog="as2fm-lsp init", description="Write a small working system to start from.")
-    result.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
+    result = ArgumentParser(prog="as2fm-lsp init", description="Write a small working system as a starting point.")
+    result.add_argument("folder", metavar="DIR", help="the folder to write into; it is created if it does not exist")
     return result
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked for on the command line, and who does it.
+"""The commands of the command line, and the modules that run them.
 
-Without a command the language server runs on standard input and output.
+Without a command, the language server runs on standard input and output.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
 
 
 INTERRUPTED, PIPE_CLOSED = 130, 141
-"""As shells count what a signal has ended: 128 + SIGINT, 128 + SIGPIPE."""
+"""Exit statuses of programs that were ended by a signal, as in shells: 128 + SIGINT, 128 + SIGPIPE."""
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Do what the command line says; the exit status."""
+    """Run the command line; return the exit status."""
     sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - None if it was closed, as by `>&-`
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     try:
@@ -53,7 +53,7 @@ def run(arguments: Sequence[str]) -> int:
         return status
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:  # the reader has seen enough
+    except BrokenPipeError:  # the reader has closed the pipe
         return PIPE_CLOSED
     except Exception as error:
         return _failed(error)
@@ -62,12 +62,12 @@ def run(arguments: Sequence[str]) -> int:
 def _status(arguments: Sequence[str]) -> int:
     try:
         return _dispatch(arguments)
-    except SystemExit as end:  # as argparse ends; what it has printed is not flushed yet
+    except SystemExit as end:  # argparse exits this way; its output is not flushed yet
         return end.code if isinstance(end.code, int) else CLEAN
 
 
 def _failed(error: Exception) -> int:
-    """Tell what has ended the command; the exit status."""
+    """Report the error that has ended the command; return the exit status."""
     if isinstance(error, OSError) and error.filename == STANDARD_OUTPUT:
         complain(f"{STANDARD_OUTPUT}: {error.strerror or error}")
         return USAGE
@@ -77,7 +77,7 @@ def _failed(error: Exception) -> int:
 
 
 COMMANDS = ("format", "init", "migrate", "translate", "verify")
-"""Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
+"""Each is the `run` of a module of `as2fm_lsp.cli`, which is imported only when needed."""
 
 
 def _dispatch(arguments: Sequence[str]) -> int:
@@ -111,17 +111,17 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("check", "explain", "help", "version")
-"""Options that people take for commands."""
+"""Options that users mistake for commands."""
 
 
 def _misused(first: str) -> str:
-    """What is wrong with arguments that begin with `first`, which is no command, and do not ask for a check."""
+    """The error for arguments that begin with `first`, which is not a command, and do not request a check."""
     if first.startswith("-") or os.path.exists(first):
-        return "PATH and the options for checking are used with --check only; see --help"
+        return "PATH and the options for checking need --check; see --help"
     meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
     if meant:
         return f"there is no command `{first}`{did_you_mean(meant)}"
-    return f"there is no command `{first}`, and no such file; the commands are {listing(COMMANDS)}; see --help"
+    return f"there is no command or file `{first}`; the commands are {listing(COMMANDS)}; see --help"
 
 
 def parser() -> ArgumentParser:
@@ -132,8 +132,8 @@ def parser() -> ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
-    result.add_argument("--explain", metavar="CODE", help="print what a rule means and exit")
-    serve = result.add_argument_group("serving an editor")
+    result.add_argument("--explain", metavar="CODE", help="print the document of a rule and exit")
+    serve = result.add_argument_group("language server")
     serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
     serve.add_argument(
         "--tcp",
@@ -141,16 +141,18 @@ def parser() -> ArgumentParser:
         help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
         "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
     )
-    serve.add_argument("--allow-remote", action="store_true", help="with --tcp: let other machines connect, too")
     serve.add_argument(
-        "--socket", metavar="FILE", help="serve one editor on a socket file to which only you can connect"
+        "--allow-remote", action="store_true", help="with --tcp: also accept connections from other machines"
+    )
+    serve.add_argument(
+        "--socket", metavar="FILE", help="serve one editor on a socket file that only its owner can open"
     )
     check = result.add_argument_group("checking")
     check.add_argument("--check", action="store_true", help="check files and exit")
     check.add_argument(
         "--fix",
         action="store_true",
-        help="make all safe fixes first: those that guess nothing and do not change what a model does",
+        help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
     )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
     formats = ("text", "json", "github", "gitlab", "sarif", "junit")
@@ -159,11 +161,11 @@ def parser() -> ArgumentParser:
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
     )
-    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report these rules only")
+    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
     check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
-    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the least severity to report")
-    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings, too")
-    check.add_argument("--statistics", action="store_true", help="count how often each rule is broken")
+    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")
+    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings as well")
+    check.add_argument("--statistics", action="store_true", help="count the findings of each rule")
     check.add_argument(
         "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
     )

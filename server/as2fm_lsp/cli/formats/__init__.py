@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The forms in which diagnostics are written: one module each, all made from `Report`."""
+"""The output formats of diagnostics: one module for each, all created from `Report`."""
 
 from __future__ import annotations
 
