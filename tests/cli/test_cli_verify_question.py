@@ -81,7 +81,7 @@ def test_the_side_that_is_asked_for_decides(command: Command, tmp_path: Path) ->
 def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.4")
     assert done.status == 0
-    assert "all schedulers agree: nothing is left to choose in any of 3 states" in done.out
+    assert "all schedulers agree: there is only one choice in each of 3 states" in done.out
     assert "expected ≤ 0.4: met\n" in done.out
     assert "warning" not in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["heads"]
@@ -231,7 +231,7 @@ def test_too_many_combinations_are_told(command: Command, tmp_path: Path) -> Non
     written = document(*parts, variables=variables, syncs=[["a"] * 64], properties=goals)
     done = command("verify", write(tmp_path, written), "--exact")
     assert (done.status, done.out) == (2, "")
-    assert "in one state there are more than 1,048,576 combinations of edges; leave --exact out to estimate" in done.err
+    assert "in one state there are more than 1,048,576 combinations of edges; omit --exact to estimate" in done.err
 
 
 @pytest.mark.parametrize("way_of_saying", ["configuration", "option"])

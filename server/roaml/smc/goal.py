@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property -> what is asked about each trace, and what is asked about all of them together.
+"""A property -> the question about each trace, and the question about all traces together.
 
 Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
 exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only.
@@ -51,7 +51,7 @@ _MIRRORED = {
     BinaryOperator.GREATER: BinaryOperator.LESS,
     BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
 }
-"""Each comparison -> the same with its sides exchanged."""
+"""Each comparison, with the operator for exchanged sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,21 +66,21 @@ class Threshold:
 
     @property
     def is_lower(self) -> bool:
-        """Whether values above the threshold are the good ones."""
+        """Whether values above the threshold satisfy it."""
         return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is asked about all traces.
+    """The question about all traces.
 
     Attributes:
         name: of the property.
         operator: `Pmin`, `Pmax`, `Emin` or `Emax`.
-        is_reward: whether an expected reward is asked for, not a probability.
-        threshold: what the value is compared with, if it is.
-        variables: what the property reads.
-        is_stuck: whether it is asked whether traces get stuck (`ask_stuck`).
+        is_reward: whether it is about an expected reward, not a probability.
+        threshold: the comparison of the value, if there is one.
+        variables: the variables that the property reads.
+        is_stuck: whether it is about stuck traces (`ask_stuck`).
     """
 
     name: str
@@ -104,20 +104,20 @@ def ask(compilation: Compilation, property_: Property) -> Asked:
     """Compile a property.
 
     Raises:
-        FaultError: it is of a form that sampling cannot answer, or compares with what is not a number.
+        FaultError: it is of an unsupported form, or compares with something that is not a number.
     """
     check_form(property_)
     return _Writer(compilation, property_).asked()
 
 
 STUCK_PROPERTY = "stuck"
-"""The name of the property that every model has: that a trace gets stuck, whatever else is asked about it."""
+"""The name of the property that every model has: that a trace gets stuck."""
 
 
 def ask_stuck(compilation: Compilation) -> Asked:
-    """How probable it is that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
+    """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
     ever change. Every trace runs to its end."""
-    # JANI has no word for it; this is what comes nearest.
+    # JANI has no such predicate; this is the closest one.
     path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
     states = Predicate(StatePredicate.INITIAL)
     formula = Filter(FilterFunction.VALUES, Probability(ProbabilityOperator.PMAX, path), states)
@@ -205,13 +205,13 @@ class _Writer:
         except EvaluationError as error:
             raise FaultError(error.message, error.origin or formula.origin) from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise FaultError("a number is needed here", formula.origin)
+            raise FaultError("a number is required here", formula.origin)
         return value
 
     # ------------------------------------------------------------ paths
 
     def path(self, formula: Formula) -> None:
-        """Write a formula over paths; its value is on top of the stack then."""
+        """Write a formula over paths; its value is then on top of the stack."""
         match formula:
             case UnaryPath(operator=operator, operand=operand):
                 lower, upper = self.bounds(formula)

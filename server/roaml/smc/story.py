@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace as a story: what led to its end.
+"""A trace as a story: the steps that led to its end.
 
-What matters is what the property depends on: the steps that change what it reads, and what these steps have needed,
-back to the start: the last change of each variable that they read, and what woke the automaton that takes them.
+The relevant steps are those that change a variable of the property, and those on which these depend, back to the start:
+the last change of each variable that they read, and the step that triggered the automaton that takes them.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from roaml.smc.standstill import Standstill
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A whole trace, and which of its steps matter.
+    """A whole trace, and its relevant steps.
 
     Attributes:
-        clock: for each step the time in seconds, None where the model has no clock.
-        relevant: the indices of the steps that matter, in their order.
-        variables: what the property reads.
-        automata: of each instance that the steps name.
+        clock: for each step the time in s; `None` if the model has no clock.
+        relevant: the indices of the relevant steps, in their order.
+        variables: the variables that the property reads.
+        automata: for each instance in the steps, its automaton.
         start: the variables of the model before the first step.
         standstill: where it has ended, if it is stuck there.
     """
@@ -44,7 +44,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     """The story of a trace.
 
     Args:
-        clock: the variables that hold the seconds and nanoseconds of the model's time.
+        clock: the variables for the seconds and nanoseconds of the model's time.
     """
     recording = Recording(trace)
     shared = recorder.shared
@@ -103,7 +103,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
 
 
 def _cause(steps: list[TraceStep], own: list[int], part: Part, i: int) -> int | None:
-    """The latest earlier step in which the automaton did something together with another one."""
+    """The latest earlier step in which the automaton took part together with another one."""
     before = [k for k in own if k < i]
     for k in reversed(before):
         if len(steps[k].parts) > 1:
