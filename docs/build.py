@@ -19,8 +19,8 @@ from pathlib import Path
 import node_schema
 
 from as2fm_lsp.cli import format as layout
-from as2fm_lsp.cli import init, migrate, translate, verify
-from as2fm_lsp.cli.main import EXAMPLES, parser
+from as2fm_lsp.cli import init, migrate, simulate, translate, verify
+from as2fm_lsp.cli.main import COMMANDS, EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
 from roaml.language.grammar import AttributeType, ElementType, Grammar
@@ -230,11 +230,13 @@ def demoted(text: str) -> str:
 
 def command_line() -> str:
     """Not argparse's own layout, which differs between versions of Python."""
-    lines = ["# Command line\n", EXAMPLES_TEXT]
+    rows = [f"| `{name}` | {summary} |" for name, summary in COMMANDS.items()]
+    lines = ["# Command line\n", "| command | what it does |", "| --- | --- |", *rows, "", EXAMPLES_TEXT]
+    lines.append("`check`, `explain` and `serve` take the options below without `--check` and `--explain`.\n")
     for group in parser()._action_groups:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)
-    for command in (init, layout, migrate, translate, verify):
+    for command in (init, layout, migrate, simulate, translate, verify):
         each = command.parser()
         lines += options(f"`{each.prog}`", each._actions, f"{each.description}\n")
     return "\n".join(lines)

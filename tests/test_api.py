@@ -32,7 +32,18 @@ ANSWERS = [
     api.Verdict,
     api.Verifier,
 ]
-HEAVY = ("roaml.smc.kernel", "roaml.smc.run", "roaml.verification", "multiprocessing", "asyncio", "lsprotocol", "pygls")
+HEAVY = (
+    "roaml.smc.kernel",
+    "roaml.smc.run",
+    "roaml.verification",
+    "asyncio",
+    "lsprotocol",
+    "multiprocessing",
+    "pygls",
+    "socket",
+    "ssl",
+    "urllib.request",
+)
 """What a check must not import."""
 
 

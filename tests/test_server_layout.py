@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The faces have no import circles, and one module knows what is private in pygls."""
+"""How parts hold together: no import circles in the faces, one module that knows pygls, no chains of classes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
+
+from roaml.smc.assemble import ExpressionAssembler
+from roaml.smc.assign import AssignmentAssembler
+from roaml.smc.cells import CellAssembler
+from roaml.smc.operations import OperatorAssembler
 
 SERVER = Path(__file__).resolve().parents[1] / "server"
 MODULES = {
@@ -99,3 +104,9 @@ def private(text: str) -> Iterator[str]:
 
 def test_private_names_are_seen() -> None:
     assert list(private("server.protocol._send_data(self._x, a._replace(b=1))")) == ["server.protocol._send_data"]
+
+
+def test_assemblers_hold_each_other() -> None:
+    """They are parts of the compiler that write to one tape, not heirs of each other."""
+    for kind in (AssignmentAssembler, ExpressionAssembler, OperatorAssembler, CellAssembler):
+        assert kind.__bases__ == (object,)

@@ -173,7 +173,7 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
     ("text", "at", "complaint"),
     [
         ("ingore = []", "ingore", "there is no setting `ingore`; did you mean `ignore`?"),
-        ("[x]\na = 1", "x", "there is no setting `x`; there are exclude, ignore, "),
+        ("[x]\na = 1", "x", "there is no setting `x`; there are behaviortree-cpp, exclude, "),
         ("ignore = 1", "1", "`ignore` must be a list of strings"),
         ('ignore = ["undeclared-variable", 1]', '["undeclared-variable", 1]', "`ignore` must be a list of strings"),
         ('ignore = ["no-such-rule"]', '"no-such-rule"', "there is no rule `no-such-rule`"),

@@ -11,6 +11,7 @@ from command import Command
 
 import clock
 import roaml.project.checking
+from as2fm_lsp.cli.main import COMMANDS
 from roaml import __version__, api
 from roaml.rules import RULES
 
@@ -63,11 +64,17 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
         (["."], "used with --check only"),
         (
             ["main.xml"],
-            "there is no command or file `main.xml`; the commands are `format`, `init`, `migrate`",
+            "there is no command or file `main.xml`; the commands are `check`, `explain`, `serve`, `format`",
         ),
         (["verfy", "main.xml", "--expect", "p > 0.5"], "there is no command `verfy`; did you mean `verify`?"),
         (["Translate", "main.xml"], "there is no command `Translate`; did you mean `translate`?"),
-        (["check", "main.xml"], "there is no command `check`; did you mean `--check`?"),
+        (["chekc", "main.xml"], "there is no command `chekc`; did you mean `check`?"),
+        (["check"], "check needs a PATH"),
+        (["check", ".", "--frobnicate"], "unrecognized arguments: --frobnicate"),
+        (["explain"], "the following arguments are required: CODE"),
+        (["explain", "unknwon-element"], "there is no rule `unknwon-element`; did you mean `unknown-element`?"),
+        (["serve", "main.xml"], "unrecognized arguments: main.xml"),
+        (["serve", "--tcp", "nonsense"], "--tcp takes HOST:PORT"),
         (["help"], "there is no command `help`; did you mean `--help`?"),
         (["--chekc", "."], "unrecognized arguments: --chekc; did you mean `--check`?"),
         (["verify", ".", "--epsilom=0.1"], "unrecognized arguments: --epsilom=0.1; did you mean `--epsilon`?"),
@@ -109,8 +116,32 @@ def test_help_shows_every_option_with_examples(command: Command) -> None:
     assert done.status == 0
     for word in ("--check", "--ros-path", "--baseline", "--explain", "init", "migrate", "examples:", "exit status:"):
         assert word in done.out
-    for name in ("init", "migrate"):
-        assert command(name, "--help").out.startswith(f"usage: as2fm-lsp {name}")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_each_command_is_listed_and_has_help_with_an_example(command: Command, name: str) -> None:
+    assert f"\n  {name} " in command("--help").out
+    done = command(name, "--help")
+    assert (done.status, done.err) == (0, "")
+    assert done.out.startswith(f"usage: as2fm-lsp {name}")
+    assert f"\n  as2fm-lsp {name}" in done.out
+    assert "exit status" in done.out
+
+
+def test_commands_do_what_the_options_do(command: Command, tmp_path: Path) -> None:
+    clock.write(tmp_path, clock=clock.WRONG_CLOCK)
+    for more in (["main.xml"], ["main.xml", "--format", "json"], [".", "--severity", "error", "--statistics"]):
+        assert command("check", *more) == command("--check", *more)
+    assert command("check", "main.xml").status == 1
+    assert command("explain", "unknown-type") == command("--explain", "unknown-type")
+    assert command("serve", "--allow-remote") == command("--allow-remote")
+
+
+def test_a_folder_named_like_a_command_is_checked(command: Command, tmp_path: Path) -> None:
+    for name in ("check", "serve"):
+        (tmp_path / name).mkdir()
+        clock.write(tmp_path / name, clock=clock.WRONG_CLOCK)
+        assert command(name, "--check").out.splitlines()[-1] == "3 files checked: 1 error"
 
 
 def test_version(command: Command) -> None:

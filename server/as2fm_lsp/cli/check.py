@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp --check PATH...`"""
+"""`as2fm-lsp check PATH...`, or `as2fm-lsp --check PATH...`"""
 
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import sys
 from collections import Counter
@@ -13,9 +14,10 @@ from typing import TextIO
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
-from as2fm_lsp.cli.arguments import unknown_rule
+from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.options import check_options
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
@@ -30,10 +32,38 @@ CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
 """Exit statuses: nothing found; errors found; usage error; internal error."""
 
 
-def run(options: argparse.Namespace) -> int:
+EXAMPLES = """\
+examples:
+  as2fm-lsp check main.xml                 check a system and all of its files
+  as2fm-lsp check models --ros-path msgs --format github
+  as2fm-lsp check . --warnings-as-errors --baseline .as2fm-baseline.json
+  as2fm-lsp check models --fix             make all safe fixes, report the rest
+
+exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    return check(parser().parse_args(arguments), "check")
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
+        prog="as2fm-lsp check",
+        description="Report what is wrong in systems, other files and folders. as2fm-lsp --check does the same.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    check_options(result)
+    return result
+
+
+def check(options: argparse.Namespace, name: str = "--check") -> int:
+    """Check with parsed options; the exit status. `name` is what the user has called it."""
+    logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     stdin = options.stdin_filename
     if not options.paths and stdin is None:
-        return _usage("--check needs at least one PATH")
+        return _usage(f"{name} needs a PATH")
     if stdin is not None and os.path.isdir(stdin):
         return _usage(f"{stdin}: --stdin-filename needs the name of a file")
     if options.fix and stdin is not None:

@@ -1,15 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp --explain CODE`"""
+"""`as2fm-lsp explain CODE`, or `as2fm-lsp --explain CODE`"""
 
 from __future__ import annotations
 
-from as2fm_lsp.cli.arguments import unknown_rule
+import argparse
+from collections.abc import Sequence
+
+from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
 from as2fm_lsp.cli.check import CLEAN, USAGE
 from as2fm_lsp.cli.output import complain, print_text
 from roaml.rules import BY_CODE, cited, document
 
+EXAMPLES = """\
+example:
+  as2fm-lsp explain late-event-data
 
-def run(code: str) -> int:
+exit status: 0 success, 2 there is no such rule
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    return explain(parser().parse_args(arguments).code)
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
+        prog="as2fm-lsp explain",
+        description="Print what a rule means, why it matters, and how to fix what it reports.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    result.add_argument("code", metavar="CODE", help="the name of the rule, as it is shown behind a finding")
+    return result
+
+
+def explain(code: str) -> int:
+    """Print the document of a rule; the exit status."""
     if code not in BY_CODE:
         complain(unknown_rule(code))
         return USAGE

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 from collections.abc import Iterator, Sequence
 
@@ -24,6 +25,15 @@ from roaml.project.discover import candidates
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 from roaml.text import SourceFile, apply_edits
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp format models                  lay out all files of a folder
+  as2fm-lsp format models --check          list those that are not laid out
+  as2fm-lsp format main.xml --diff         show what would change
+
+exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not well-formed, 2 usage error
+"""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -70,9 +80,8 @@ def parser() -> ArgumentParser:
         "space is changed, never the meaning of a file. Plain SCXML, JANI models and files of other tools are "
         "formatted "
         "only if they are named.",
-        epilog="exit status: 0 all files are formatted, 1 with --check or --diff: a file is not formatted; or a "
-        "file is not "
-        "well-formed, 2 usage error",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders that are searched for them")
     mode = result.add_mutually_exclusive_group()

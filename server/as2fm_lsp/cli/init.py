@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import shlex
 from collections.abc import Iterator, Sequence
@@ -14,6 +15,13 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
+
+EXAMPLES = """\
+example:
+  as2fm-lsp init my_robot
+
+exit status: 0 success, 2 usage error, or a file exists already
+"""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -38,7 +46,12 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def parser() -> ArgumentParser:
-    result = ArgumentParser(prog="as2fm-lsp init", description="Write a small working system as a starting point.")
+    result = ArgumentParser(
+        prog="as2fm-lsp init",
+        description="Write a small working system as a starting point.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     result.add_argument("folder", metavar="DIR", help="the folder to write into; it is created if it does not exist")
     return result
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of the command line, and the modules that run them.
+"""What is asked for on the command line, and who does it.
 
-Without a command, the language server runs on standard input and output.
+`--check`, `--explain`, `--stdio` and `--tcp` do what the commands `check`, `explain` and `serve` do. Without anything,
+the language server runs on standard input and output.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib
-import logging
 import os
 import sys
 import traceback
@@ -16,10 +16,23 @@ from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FAILURE, USAGE
+from as2fm_lsp.cli.options import check_options, serve_options
 from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
 from roaml import __version__
-from roaml.project.settings import SEVERITIES
 from roaml.rules.rule import close_names, did_you_mean, listing
+
+COMMANDS = {
+    "check": "report what is wrong in systems, other files and folders",
+    "explain": "print what a rule means",
+    "serve": "serve an editor: the language server",
+    "format": "lay out files",
+    "migrate": "move systems to the current dialect",
+    "translate": "translate a system to JANI and plain SCXML",
+    "verify": "estimate the probabilities of properties",
+    "simulate": "run a system step by step",
+    "init": "write a small working system",
+}
+"""What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
 
 EXAMPLES = """\
 examples:
@@ -31,6 +44,7 @@ examples:
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
+  as2fm-lsp simulate main.xml             one run as a story; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
   as2fm-lsp                               language server on standard input and output
@@ -76,41 +90,40 @@ def _failed(error: Exception) -> int:
     return FAILURE
 
 
-COMMANDS = ("format", "init", "migrate", "translate", "verify")
-"""Each is the `run` of a module of `as2fm_lsp.cli`, which is imported only when needed."""
-
-
 def _dispatch(arguments: Sequence[str]) -> int:
     command = arguments[0] if arguments else ""
-    if command in COMMANDS:
+    asks_for_check = any(len(a) > 2 and "--check".startswith(a) for a in arguments)
+    is_path = asks_for_check and command in _ALSO_OPTIONS and os.path.exists(command)
+    if command in COMMANDS and not is_path:
         module = importlib.import_module(f"as2fm_lsp.cli.{command}")
         status = module.run(arguments[1:])
         assert isinstance(status, int)
         return status
-    if command and not command.startswith("-") and not any(len(a) > 2 and "--check".startswith(a) for a in arguments):
+    if command and not command.startswith("-") and not asks_for_check:
         complain(_misused(command))
         return USAGE
     options = parser().parse_args(arguments)
     if options.explain is not None:
         from as2fm_lsp.cli import explain  # noqa: PLC0415
 
-        return explain.run(options.explain)
+        return explain.explain(options.explain)
     if options.check:
-        logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
         from as2fm_lsp.cli import check  # noqa: PLC0415
 
-        return check.run(options)
+        return check.check(options)
     defaults = vars(parser().parse_args([]))
     if any(value != defaults[name] for name, value in vars(options).items() if name not in _SERVING):
         complain(_misused(command))
         return USAGE
     from as2fm_lsp.cli import serve  # noqa: PLC0415
 
-    return serve.run(options.tcp, options.socket, options.allow_remote)
+    return serve.serve(options.tcp, options.socket, options.allow_remote)
 
 
+_ALSO_OPTIONS = ("check", "explain", "serve")
+"""Commands that are newer than the options that do the same; `--check` still takes folders of these names."""
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
-_ALONE = ("check", "explain", "help", "version")
+_ALONE = ("help", "version")
 """Options that users mistake for commands."""
 
 
@@ -121,61 +134,26 @@ def _misused(first: str) -> str:
     meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
     if meant:
         return f"there is no command `{first}`{did_you_mean(meant)}"
-    return f"there is no command or file `{first}`; the commands are {listing(COMMANDS)}; see --help"
+    return f"there is no command `{first}`, and no such file; the commands are {listing(tuple(COMMANDS))}; see --help"
+
+
+def _listed() -> str:
+    """The commands, as the help shows them."""
+    lines = (f"  {name:<10} {summary}\n" for name, summary in COMMANDS.items())
+    return f"commands (as2fm-lsp COMMAND --help shows the options of each, with examples):\n{''.join(lines)}"
 
 
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp",
         description="Check HL-SCXML models of ROS 2 robots, or serve an editor.",
-        epilog=EXAMPLES,
+        epilog=f"{_listed()}\n{EXAMPLES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
     result.add_argument("--explain", metavar="CODE", help="print the document of a rule and exit")
-    serve = result.add_argument_group("language server")
-    serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
-    serve.add_argument(
-        "--tcp",
-        metavar="HOST:PORT",
-        help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
-        "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
-    )
-    serve.add_argument(
-        "--allow-remote", action="store_true", help="with --tcp: also accept connections from other machines"
-    )
-    serve.add_argument(
-        "--socket", metavar="FILE", help="serve one editor on a socket file that only its owner can open"
-    )
-    check = result.add_argument_group("checking")
-    check.add_argument("--check", action="store_true", help="check files and exit")
-    check.add_argument(
-        "--fix",
-        action="store_true",
-        help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
-    )
-    check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
-    formats = ("text", "json", "github", "gitlab", "sarif", "junit")
-    check.add_argument("--format", default="text", choices=formats, help="format of the diagnostics")
-    check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
-    check.add_argument(
-        "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
-    )
-    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
-    check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
-    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")
-    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings as well")
-    check.add_argument("--statistics", action="store_true", help="count the findings of each rule")
-    check.add_argument(
-        "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
-    )
-    check.add_argument("--stdin-filename", metavar="FILE", help="read the text of FILE from standard input")
+    serve_options(result.add_argument_group("language server"))
+    checking = result.add_argument_group("checking")
+    checking.add_argument("--check", action="store_true", help="check files and exit")
+    check_options(checking)
     return result
-
-
-class _Codes(argparse.Action):
-    """Rule codes, separated by commas, given once or several times."""
-
-    def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
-        known = getattr(namespace, self.dest) or []
-        setattr(namespace, self.dest, [*known, *(code.strip() for code in values.split(",") if code.strip())])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import shutil
 from collections.abc import Sequence
@@ -15,6 +16,14 @@ from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
 from roaml.project.migrate import Migration
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp migrate old_models --diff      show what would change
+  as2fm-lsp migrate old_models/main.xml    change the files of a system
+
+exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 usage error
+"""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -47,7 +56,8 @@ def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp migrate",
         description="Migrate systems of an older dialect to the current one. Comments and layout are kept.",
-        epilog="exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 usage error",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
     result.add_argument("--diff", action="store_true", help="show the changes and write nothing")

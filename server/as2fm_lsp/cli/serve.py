@@ -1,36 +1,65 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp` without a command: the language server."""
+"""`as2fm-lsp serve`, or `as2fm-lsp` without a command: the language server."""
 
 from __future__ import annotations
 
+import argparse
 import logging
 import os
 import secrets
 import socket
 import sys
+from collections.abc import Sequence
 
 from as2fm_lsp import sockets
+from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.options import serve_options
 from as2fm_lsp.server import create
 
 UNEXPECTED_END = 1
 """The exit status that the protocol requires if a server ends without a `shutdown` request."""
 
-SWITCH = 0.001
-"""The interval in s after which a computation yields to the thread that reads the client's messages."""
-
+SWITCH_INTERVAL_S = 0.001
+"""After this time, a computation gives a turn to the thread that reads what the client sends."""
 
 TOKEN = "AS2FM_TOKEN"
 """The environment variable with the token of a client, so that it need not be read from the log."""
 
-SHORTEST_TOKEN = 16
+MIN_TOKEN_CHARACTERS = 16
 
 
 class _UsageError(ValueError):
     """A usage error; the message contains the reason."""
 
 
-def run(tcp: str | None = None, socket_file: str | None = None, allow_remote: bool = False) -> int:
+EXAMPLES = """\
+examples:
+  as2fm-lsp serve                          on standard input and output, as editors start it
+  as2fm-lsp serve --tcp 127.0.0.1:0        on a free port, for one editor that sends the printed token
+  as2fm-lsp serve --socket server.sock     on a socket file to which only you can connect
+
+exit status: 0 the editor has shut the server down, 1 the connection ended before that, 2 usage error
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    options = parser().parse_args(arguments)
+    return serve(options.tcp, options.socket, options.allow_remote)
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
+        prog="as2fm-lsp serve",
+        description="Serve one editor with the Language Server Protocol. as2fm-lsp without a command does the same.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    serve_options(result)
+    return result
+
+
+def serve(tcp: str | None = None, socket_file: str | None = None, allow_remote: bool = False) -> int:
     """Serve one client, on standard input and output, on a port or on a socket file.
 
     Args:
@@ -40,7 +69,7 @@ def run(tcp: str | None = None, socket_file: str | None = None, allow_remote: bo
     """
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server itself logs errors
-    sys.setswitchinterval(SWITCH)
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     server = create()
     try:
         if tcp is not None and socket_file is not None:
@@ -64,8 +93,8 @@ def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
     if not (port.isascii() and port.isdigit() and len(port) < 6 and int(port) < 65536):
         raise _UsageError(f"--tcp needs HOST:PORT, not {tcp}")
     token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe()
-    if len(token) < SHORTEST_TOKEN:
-        raise _UsageError(f"{TOKEN} is too short for a secret; it needs at least {SHORTEST_TOKEN} characters")
+    if len(token) < MIN_TOKEN_CHARACTERS:
+        raise _UsageError(f"{TOKEN} is too short to be a secret; it takes {MIN_TOKEN_CHARACTERS} characters or more")
     host = host.removeprefix("[").removesuffix("]") or "127.0.0.1"
     try:
         with sockets.listening_on(host, int(port), allow_remote) as listeners:

@@ -20,6 +20,7 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, Report
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
@@ -380,13 +381,13 @@ def parser() -> ArgumentParser:
     add("--method", choices=METHODS, default=ADAPTIVE, help="the number of traces: until the interval is narrow enough "
         "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
         "expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
-    add("--max-traces", type=_positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=_positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
+    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
+    add("--max-steps", type=positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
         "undecided (1000000)")  # fmt: skip
-    add("--seed", type=_natural, default=0, metavar="N", help="seed of the random numbers (0)")
+    add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
     add(
         "--jobs",
-        type=_positive,
+        type=positive,
         default=_processors(),
         metavar="N",
         help="number of processes (all processors); does not change the results",
@@ -397,7 +398,7 @@ def parser() -> ArgumentParser:
     add("--exact", action="store_true", help="compute the minimum and the maximum exactly with Storm (needs stormpy)")
     add(
         "--max-states",
-        type=_positive,
+        type=positive,
         default=200_000,
         metavar="N",
         help="with --exact: reject models with more states (200000)",
@@ -410,7 +411,7 @@ def parser() -> ArgumentParser:
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
-    add("--traces-limit", type=_natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
+    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
@@ -442,27 +443,6 @@ def _width(text: str) -> float:
         raise argparse.ArgumentTypeError(
             f"expected a number of at least {LEAST_EPSILON:g}: no run can generate more traces"
         )
-    return value
-
-
-def _whole(text: str) -> int:
-    try:
-        return int(text) if len(text) < 30 else -1
-    except ValueError:
-        return -1
-
-
-def _positive(text: str) -> int:
-    value = _whole(text)
-    if not 1 <= value < 1 << 62:
-        raise argparse.ArgumentTypeError("expected a whole number of at least 1")
-    return value
-
-
-def _natural(text: str) -> int:
-    value = _whole(text)
-    if not 0 <= value < 1 << 63:
-        raise argparse.ArgumentTypeError("expected a whole number from 0 to 2^63 - 1")
     return value
 
 

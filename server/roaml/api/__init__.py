@@ -13,7 +13,7 @@
         print(result.name, result.answer.value, result.answer.bounds, result.is_met)
 
 Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Names
-that only verification needs are imported when they are used, so that a check starts fast.
+that a check does not need are imported when they are used, so that it starts fast.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 from roaml.api.checking import CheckResult, PathError, check, fix
 from roaml.api.jani_files import JaniError, read_jani
 from roaml.api.migrating import SharedFileError, migrate
+from roaml.api.simulating import session
 from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
 from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
 from roaml.diagnostics import Diagnostic, Severity
@@ -31,7 +32,6 @@ from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError
-from roaml.jani.writer import write as write_jani
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.migrate import Migration
@@ -39,10 +39,15 @@ from roaml.project.settings import Settings
 from roaml.project.source_map import SourceMap
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
-from roaml.scxml.writer import write as write_scxml
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
+    from roaml.jani.writer import write as write_jani
+    from roaml.scxml.writer import write as write_scxml
+    from roaml.simulation.choices import Choice, Outcome
+    from roaml.simulation.run import Decision, RunError
+    from roaml.simulation.session import SavedSession, Session
+    from roaml.simulation.state import EventState, MachineState, NodeState, NodeStatus, SystemState
     from roaml.smc.choices import Choices, Extreme
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
@@ -66,6 +71,10 @@ if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
+        "roaml.simulation.choices": ("Choice", "Outcome"),
+        "roaml.simulation.run": ("Decision", "RunError"),
+        "roaml.simulation.session": ("SavedSession", "Session"),
+        "roaml.simulation.state": ("EventState", "MachineState", "NodeState", "NodeStatus", "SystemState"),
         "roaml.smc.choices": ("Choices", "Extreme"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
@@ -88,12 +97,15 @@ else:
         "roaml.views.story": ("Line",),
         "roaml.views.waiting": ("Wait",),
     }
-    _MODULE_OF = {name: module for module, names in _IMPORTED_ON_USE.items() for name in names}
+    _ORIGINS = {name: (module, name) for module, names in _IMPORTED_ON_USE.items() for name in names}
+    _ORIGINS["write_jani"] = ("roaml.jani.writer", "write")
+    _ORIGINS["write_scxml"] = ("roaml.scxml.writer", "write")
 
     def __getattr__(name: str) -> object:
-        if name not in _MODULE_OF:
+        if name not in _ORIGINS:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return getattr(importlib.import_module(_MODULE_OF[name]), name)
+        module, attribute = _ORIGINS[name]
+        return getattr(importlib.import_module(module), attribute)
 
 
 __all__ = [
@@ -104,11 +116,14 @@ __all__ = [
     "Bounds",
     "CheckResult",
     "Checker",
+    "Choice",
     "Choices",
     "ConstantError",
     "Counterexample",
+    "Decision",
     "Diagnostic",
     "End",
+    "EventState",
     "Exact",
     "ExactError",
     "Expectation",
@@ -120,13 +135,17 @@ __all__ = [
     "LoadedSystem",
     "Location",
     "Look",
+    "MachineState",
     "Migration",
     "Model",
     "ModelError",
     "Network",
     "NoThresholdError",
+    "NodeState",
+    "NodeStatus",
     "Options",
     "Origin",
+    "Outcome",
     "Overrides",
     "PathError",
     "Pool",
@@ -139,8 +158,11 @@ __all__ = [
     "Recording",
     "Refusal",
     "Result",
+    "RunError",
     "SampledResult",
+    "SavedSession",
     "Search",
+    "Session",
     "Settings",
     "Severity",
     "SharedFileError",
@@ -150,6 +172,7 @@ __all__ = [
     "Span",
     "Story",
     "Stuck",
+    "SystemState",
     "Tally",
     "Target",
     "Threshold",
@@ -169,6 +192,7 @@ __all__ = [
     "loaded",
     "migrate",
     "read_jani",
+    "session",
     "source_map",
     "target",
     "to_jani",

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
 from roaml.api.systems import LoadedSystem, load, to_jani
-from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
@@ -56,6 +55,8 @@ def target(
         return as_target(load(path, ros_paths, settings, texts, overrides))
     if overrides != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; they are for systems")
+    from roaml.jani.constants import with_constants  # noqa: PLC0415
+
     model, source = read_jani(path)
     try:
         model = with_constants(model, constants)

@@ -18,8 +18,9 @@ from typing import Any, TypeAlias
 
 from lxml import etree
 
-from roaml.language.grammar import AttributeType, ElementType, Grammar, SimpleType
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence, SimpleType
 from roaml.language.resources import schema_path
+from roaml.libraries import UNBOUNDED
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
 from roaml.xml_syntax.escapes import replace_forbidden
@@ -171,6 +172,10 @@ def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
 # ---------------------------------------------------------------- by the tables
 
 
+_ANYTHING = ElementType("", "", {}, {}, {}, Occurrence(0, UNBOUNDED), any_attribute=True, text=True)
+"""An element that the grammar does not know, where any may stand: those below it may be known."""
+
+
 def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Violation]:
     namespaces = dict(document.namespaces)
     stack: list[tuple[Element, ElementType]] = [(root, grammar.elements[root.name])]
@@ -194,6 +199,8 @@ def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Viola
                 else:
                     yield MisplacedElement(child, known, type_)
                     below.append((child, known))
+            elif not type_.any_is_opaque:
+                below.append((child, _ANYTHING))
             counts.setdefault(child.name, []).append(child)
         yield from _counts(element, type_, counts)
         stack.extend(reversed(below))

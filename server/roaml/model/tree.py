@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
-from roaml.xml_syntax import Attribute, Document, Element
+from roaml.xml_syntax import Attribute, Document, Element, Text
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 SUBTREES = ("SubTree", "SubTreePlus")
@@ -68,12 +68,14 @@ class Tree:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortModel:
-    """A port as `<TreeNodesModel>` describes it; `default` is None if it has none."""
+    """A port as `<TreeNodesModel>` describes it; `default` is None if it has none, `type` is the C++ type or ""."""
 
     element: Element
     name: Name | None
     direction: str
     default: str | None
+    type: str = ""
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +84,7 @@ class NodeModel:
     id: Name | None
     kind: str
     ports: tuple[PortModel, ...]
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,8 +184,18 @@ def _model(element: Element) -> NodeModel:
             name = name_of(child.get("name"))
             if name and id_:
                 name = Name(port_key(id_.value, name.value), name.span)
-            ports.append(PortModel(child, name, direction, default.value if default else None))
-    return NodeModel(element, id_, element.name, tuple(ports))
+            type_, text = child.get("type"), _remark(child)
+            value = default.value if default else None
+            ports.append(PortModel(child, name, direction, value, type_.value if type_ else "", text))
+    description = element.find("description")
+    return NodeModel(element, id_, element.name, tuple(ports), _remark(description) if description else "")
+
+
+def _remark(element: Element) -> str:
+    """What a model says about a part of it, in an attribute or in its text."""
+    description = element.get("description")
+    text = description.value if description else "".join(n.value for n in element.nodes if isinstance(n, Text))
+    return " ".join(text.split())
 
 
 def nodes(tree: Tree) -> Iterator[TreeNode]:

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,6 +19,7 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.disk import Problem
 from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.forest.forest import NEWEST, Forest, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
@@ -48,12 +50,13 @@ from roaml.model.system_file import (
     build_system_file,
     wanted_kind,
 )
-from roaml.model.tree import TreeFile, blackboard_variable, build_tree_file, nodes
+from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
 from roaml.project.files import MAX_CHARACTERS, Files
 from roaml.project.memo import Memo
 from roaml.project.paths import resolve
+from roaml.project.settings import folders_above
 from roaml.roles import SymbolKind
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
@@ -107,14 +110,15 @@ class _MachineEnvironment:
 
 
 class Analysis:
-    """The models and systems of the files of one moment.
+    """Everything that is known about the files of one moment.
 
     Args:
         files: the files.
-        registry: resolves ROS types.
+        registry: where ROS types are looked up.
         memo: results of earlier moments.
-        systems: the paths of the system files.
-        overrides: parameters that replace those in system files.
+        systems: the paths of the system files that count.
+        overrides: parameters in place of those that stand in system files.
+        trees: what is configured for trees that belong to no system.
     """
 
     def __init__(
@@ -124,8 +128,10 @@ class Analysis:
         memo: Memo,
         systems: Iterable[str],
         overrides: Overrides = NO_OVERRIDES,
+        trees: TreeSettings = NEWEST,
     ) -> None:
         self.overrides = overrides
+        self.tree_settings = trees
         self.files = files
         self.registry = registry
         self.memo = memo
@@ -367,10 +373,46 @@ class Analysis:
     def includes(self, path: str) -> tuple[str, ...]:
         """The paths that a tree file includes."""
         tree = self.tree(path)
-        return tuple(self.include_path(path, i.path.value) for i in tree.includes if i.path) if tree else ()
+        return tuple(filter(None, map(functools.partial(self.include_path, path), tree.includes))) if tree else ()
 
-    def include_path(self, base: str, written: str) -> str:
-        return resolve(base, written)
+    def include_path(self, base: str, include: Include) -> str | None:
+        """The file that an `<include>` means; None if it has no path, or if its ROS package is not in a folder around
+        the file."""
+        if include.path is None:
+            return None
+        package = include.package.value.strip() if include.package else ""
+        if not package or os.path.isabs(include.path.value):
+            return resolve(base, include.path.value)
+        folder = self._package_folder(base, package)
+        return None if folder is None else os.path.normpath(os.path.join(folder, include.path.value))
+
+    def _package_folder(self, base: str, package: str) -> str | None:
+        """The source folder of a ROS package: the nearest folder of its name, around the file or beside one around
+        it, that has a `package.xml`."""
+        if os.path.basename(package) != package:
+            return None
+        for folder in folders_above(os.path.dirname(base)):
+            places: list[str] = [os.path.join(folder, package)]
+            if os.path.basename(folder) == package:
+                places.insert(0, folder)
+            for place in places:
+                if self.files.text(os.path.join(place, "package.xml")) is not None:
+                    return place
+        return None
+
+    def forest(self, path: str) -> Forest | None:
+        """A tree file that belongs to no system, with what it is seen with."""
+        if self.tree(path) is None:
+            return None
+        models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
+        paths = tuple(dict.fromkeys((*self.trees_from(path), *models)))
+        files = tuple((p, tree) for p in paths if (tree := self.tree(p)) is not None)
+        others = [p for p in self.files.beside(path, ".xml") if p not in paths and self.kind(p) is FileKind.TREE]
+        beside = frozenset(name for p in others for name in self._tree_names(p))
+        targets = (self.include_path(p, i) for p, tree in files for i in tree.includes if i.path)
+        complete = all(target is not None and self.tree(target) is not None for target in targets)
+        key = (files, beside, complete, self.tree_settings)
+        return self.memo.get("forest", path, key, lambda: Forest(path, files, self.tree_settings, beside, complete))
 
     def files_of(self, system: str) -> tuple[str, ...]:
         """The system file and all files of the system, without duplicates.
@@ -527,7 +569,8 @@ class Analysis:
             spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
             spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
             for include in () if tree_path.endswith(PROJECT_EXTENSION) else tree.includes:
-                if include.path and self.tree(self.include_path(tree_path, include.path.value)) is None:
+                target = self.include_path(tree_path, include)
+                if include.path and (target is None or self.tree(target) is None):
                     spans.append(include.path.span)
             clear = clear and not spans
             yield from ((tree_path, span) for span in spans)

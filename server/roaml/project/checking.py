@@ -246,7 +246,8 @@ class _Run:
                 listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
-                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()))
+                forest = None if self.system_path else self.analysis.forest(self.path)
+                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()), forest)
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
@@ -405,7 +406,10 @@ class _Run:
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
         missing, interface = self._missing_includes(), self.analysis.interface
-        return TreeContext(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older)
+        forest = None if self.system_path else self.analysis.forest(self.path)
+        return TreeContext(
+            self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest
+        )
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees with which this file is checked: those of its system, or those that it includes."""
@@ -418,9 +422,15 @@ class _Run:
         file = self.analysis.tree(self.path)
         found: dict[str, str] = {}
         for include in file.includes if file else ():
+            target = self.analysis.include_path(self.path, include)
             if include.path is None:
                 continue
-            target = self.analysis.include_path(self.path, include.path.value)
+            if target is None:
+                if self.system is not None and include.package is not None:
+                    found[include.path.value] = (
+                        f"no folder around this file has the ROS package `{include.package.value}`"
+                    )
+                continue
             source = self.analysis.files.read(target)
             if isinstance(source, Problem):
                 found[include.path.value] = source.value

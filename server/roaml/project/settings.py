@@ -8,11 +8,14 @@ file (`roaml.project.configuration`); the valid settings are still used.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
+from roaml.forest.forest import NEWEST, TreeSettings
+from roaml.libraries import LIBRARIES
 from roaml.model.kinds import CONFIG_FILE
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.model.system_file import NO_OVERRIDES, Overrides
@@ -39,6 +42,7 @@ class Settings:
         or maximum over all schedulers; else empty.
     limits: how large a system may be to be translated.
     overrides: parameters in place of those in system files; not read from a configuration.
+    trees: what is configured for trees that belong to no system.
     origin: path of the configuration file that they were read from, "" if there is none.
     """
 
@@ -53,6 +57,7 @@ class Settings:
     scheduler: str = ""
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
+    trees: TreeSettings = NEWEST
     origin: str = ""
 
 
@@ -109,6 +114,11 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             read = tuple(full(folder, path) for path in read)
         if key == "exclude":
             read = Exclude(read, folder)
+        if key in _TREES:
+            if key == "tree-models":
+                read = tuple(full(folder, path) for path in read)
+            changes["trees"] = replace(changes.get("trees", base.trees), **{_TREES[key]: read})
+            continue
         if key in _LIMITS:
             changes["limits"] = replace(changes.get("limits", base.limits), **{_LIMITS[key]: read})
             continue
@@ -224,7 +234,31 @@ def _scheduler(path: Path, value: Any, mistakes: list[Mistake]) -> str | None:
     return scheduler
 
 
+def _libraries(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+    read = _strings(path, value, mistakes)
+    if read is None:
+        return None
+    places = [path] if isinstance(value, str) else [(*path, index) for index in range(len(read))]
+    for place, name in zip(places, read, strict=True):
+        if name not in LIBRARIES:
+            close = close_names(name, LIBRARIES)
+            known = did_you_mean(close) or f"; there is {', '.join(f'`{library}`' for library in LIBRARIES)}"
+            mistakes.append(Mistake(place, f"there is no tree library `{name}`{known}", instead=close))
+    return tuple(name for name in read if name in LIBRARIES)
+
+
+def _version(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[int, int] | None:
+    match = _VERSION.match(value) if isinstance(value, str) else None
+    if match is None:
+        mistakes.append(Mistake(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
+        return None
+    return 4, int(match[1])
+
+
+_VERSION = re.compile(r"4\.([0-9]{1,3})(?:\.[0-9]+)?\Z", re.ASCII)
+
 _SETS = ("select", "ignore")
+_TREES = {"tree-models": "models", "tree-libraries": "libraries", "behaviortree-cpp": "version"}
 _LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _FOLDERS = ("roots", "ros-path")
 _FIELDS = {"ros-path": "ros_paths", "severity": "severities", "verify": "scheduler"}
@@ -239,6 +273,9 @@ _KEYS: dict[str, _Reader] = {
     "verify": _scheduler,
     "max-cells": _count,
     "max-parts": _count,
+    "tree-models": _strings,
+    "tree-libraries": _libraries,
+    "behaviortree-cpp": _version,
 }
 
 

@@ -140,7 +140,7 @@ class Workspace:
         new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
-        analysis = Analysis(files, registry, memo, systems, self.settings.overrides)
+        analysis = Analysis(files, registry, memo, systems, self.settings.overrides, self.settings.trees)
         return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
 from roaml.facts import Facts
+from roaml.forest.forest import Forest
 from roaml.interfaces.registry import NotFound
 from roaml.jani.properties import Property
 from roaml.json_syntax import JsonValue
@@ -82,8 +83,8 @@ class MachineContext:
 
 @dataclass(frozen=True, slots=True)
 class TreeContext:
-    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` are the
-    facts that unreadable parts of this file may contain."""
+    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` is what
+    the tree may say where this file cannot be read. `forest` is there if the file belongs to no system."""
 
     source: SourceFile
     document: Document
@@ -94,6 +95,7 @@ class TreeContext:
     interface: Callable[[str, str], InterfaceType | NotFound]
     gaps: tuple[PlacedGap, ...]
     older: bool = False
+    forest: Forest | None = None
 
 
 @dataclass(frozen=True, slots=True)

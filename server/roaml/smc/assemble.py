@@ -32,6 +32,7 @@ from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.types import ArrayType
 from roaml.smc import shapes
+from roaml.smc.cells import CellAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Meaning, Names, Storage, unsupported
 from roaml.smc.opcodes import FaultCode, Op
@@ -42,8 +43,13 @@ from roaml.smc.shapes import kind_of
 _LOGICAL = (BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES)
 
 
-class Assembler(OperatorAssembler):
-    """Writes code for expressions as well."""
+class ExpressionAssembler:
+    """Writes expressions."""
+
+    def __init__(self, cells: CellAssembler) -> None:
+        self.tape = cells.tape
+        self.cells = cells
+        self.operators = OperatorAssembler(cells)
 
     # ------------------------------------------------------------ pieces of code
 
@@ -60,7 +66,7 @@ class Assembler(OperatorAssembler):
     def real_register(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
         """Code that returns the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)
-        value = self.as_real(self.value(expression, names))
+        value = self.cells.as_real(self.value(expression, names))
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
         return start
 
@@ -72,20 +78,20 @@ class Assembler(OperatorAssembler):
             case Integer():
                 if abs(node.value) > MOST:
                     raise FaultError("this number does not fit into 64 bits", node.origin)
-                return self.moved(self.tape.constant(INT, node.value), into)
+                return self.cells.moved(self.tape.constant(INT, node.value), into)
             case Boolean():
-                return self.moved(self.tape.constant(BOOL, node.value), into)
+                return self.cells.moved(self.tape.constant(BOOL, node.value), into)
             case Real():
-                return self.moved(self.tape.constant(REAL, node.value), into)
+                return self.cells.moved(self.tape.constant(REAL, node.value), into)
             case NamedNumber():
-                return self.moved(self.tape.constant(REAL, node.constant.number), into)
+                return self.cells.moved(self.tape.constant(REAL, node.constant.number), into)
             case Name(identifier):
                 meaning = names.meaning(node)
                 if isinstance(meaning, Region) or (isinstance(meaning, Storage) and meaning.shape):
                     raise FaultError(f"`{identifier}` is an array, a single value is needed here", node.origin)
                 if isinstance(meaning, Storage):
                     meaning = Operand(meaning.kind, meaning.base)
-                return self.moved(meaning, into)
+                return self.cells.moved(meaning, into)
             case Unary():
                 return self.unary(node, names, into)
             case Binary():
@@ -96,7 +102,7 @@ class Assembler(OperatorAssembler):
                 region = self.element(node, names)
                 if region.shape:
                     raise FaultError("this is an array, a single value is needed here", node.origin)
-                return self.load(region, into)
+                return self.cells.load(region, into)
             case Call():
                 body, inner = self.called(node, names)
                 return self.value(body, inner, into)
@@ -111,12 +117,12 @@ class Assembler(OperatorAssembler):
             return self.value(node, names, into)
         if shapes.kind(node, names) == REAL:
             return self.value(node, names, into)
-        return self.as_real(self.value(node, names), into)
+        return self.cells.as_real(self.value(node, names), into)
 
     def unary(self, node: Unary, names: Names, into: int) -> Operand:
         if node.operator is UnaryOperator.NOT:
             return self.boolean(node, names, into)
-        return self.applied(node, self.value(node.operand, names), into)
+        return self.operators.applied(node, self.value(node.operand, names), into)
 
     def binary(self, node: Binary, names: Names, into: int) -> Operand:
         op = node.operator
@@ -126,7 +132,7 @@ class Assembler(OperatorAssembler):
         if isinstance(left, Binary) and left.operator is op and op in ARITHMETIC:
             return self.chain(node, names, into)
         first = self.value(left, names)
-        return self.computed(node, first, self.value(right, names), into)
+        return self.operators.computed(node, first, self.value(right, names), into)
 
     def chain(self, node: Binary, names: Names, into: int) -> Operand:
         """`a + b + c ...`, of any length."""
@@ -135,7 +141,7 @@ class Assembler(OperatorAssembler):
             parts.append(parts[-1].left)
         result = self.value(parts[-1].left, names)
         for part in reversed(parts):
-            result = self.computed(part, result, self.value(part.right, names), into if part is node else -1)
+            result = self.operators.computed(part, result, self.value(part.right, names), into if part is node else -1)
         return result
 
     def conditional(
@@ -151,7 +157,7 @@ class Assembler(OperatorAssembler):
         self.tape.mark(no)
         self.stored(otherwise, kind, names, register)
         self.tape.mark(end)
-        return self.moved(Operand(kind, register), into)
+        return self.cells.moved(Operand(kind, register), into)
 
     def boolean(self, node: Expression, names: Names, into: int) -> Operand:
         register = self.tape.temporary(BOOL)
@@ -162,7 +168,7 @@ class Assembler(OperatorAssembler):
         self.tape.mark(no)
         self.tape.emit(Op.MOVE, register, self.tape.constant(INT, 0).register)
         self.tape.mark(end)
-        return self.moved(Operand(BOOL, register), into)
+        return self.cells.moved(Operand(BOOL, register), into)
 
     # ------------------------------------------------------------ conditions
 
@@ -219,7 +225,7 @@ class Assembler(OperatorAssembler):
         if op.signature is Signature.EQUALITY and (shapes.shape(left, names) or shapes.shape(right, names)):
             self.array_comparison(node, names, label, when)
             return
-        self.compared(op, self.value(left, names), self.value(right, names), label, when)
+        self.operators.compared(op, self.value(left, names), self.value(right, names), label, when)
 
     def array_comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
         equal = node.operator is BinaryOperator.EQUAL
@@ -265,7 +271,7 @@ class Assembler(OperatorAssembler):
             if index.value is not None:
                 if not 0 <= index.value < length:
                     value = int(index.value)
-                    self.failing(access, FaultCode.INDEX, INT, max(min(value, 2**31 - 1), -(2**31)), length)
+                    self.cells.failing(access, FaultCode.INDEX, INT, max(min(value, 2**31 - 1), -(2**31)), length)
                 else:
                     fixed += int(index.value) * size
                 continue
@@ -307,12 +313,12 @@ class Assembler(OperatorAssembler):
         match node:
             case ArrayValue(elements):
                 if len(elements) > into.shape[0]:
-                    self.failing(node, FaultCode.INDEX, INT, into.shape[0], into.shape[0])
+                    self.cells.failing(node, FaultCode.INDEX, INT, into.shape[0], into.shape[0])
                     return
                 for position in range(into.shape[0]):
-                    part = self.part(into, position)
+                    part = self.cells.part(into, position)
                     if position >= len(elements):
-                        self.clear(part, watch)
+                        self.cells.clear(part, watch)
                     elif part.shape:
                         self.fill(elements[position], part, names, watch)
                     else:
@@ -320,9 +326,9 @@ class Assembler(OperatorAssembler):
             case ArrayConstructor(variable, _, body):
                 size = shapes.length(node, names)
                 for position in range(into.shape[0]):
-                    part = self.part(into, position)
+                    part = self.cells.part(into, position)
                     if position >= size:
-                        self.clear(part, watch)
+                        self.cells.clear(part, watch)
                         continue
                     inner = names.bound({variable: self.tape.constant(INT, position)})
                     if part.shape:
@@ -341,14 +347,14 @@ class Assembler(OperatorAssembler):
                 body, inner = self.called(node, names)
                 self.fill(body, into, inner, watch)
             case _:
-                self.copy(self.region(node, names), into, watch, node)
+                self.cells.copy(self.region(node, names), into, watch, node)
 
     def put(self, node: Expression, cell: Region, names: Names, watch: int) -> None:
         """Store a scalar into a single cell."""
         if watch < 0 and cell.offset < 0:
             self.stored(node, cell.kind, names, cell.base)
             return
-        self.write(self.stored(node, cell.kind, names), cell, watch)
+        self.cells.write(self.stored(node, cell.kind, names), cell, watch)
 
     # ------------------------------------------------------------ functions
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Conditional, Expression, Name
 from roaml.jani.node import Origin
-from roaml.smc.assemble import Assembler
+from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Names, Storage, unsupported
 from roaml.smc.opcodes import Op
@@ -27,23 +27,28 @@ class Later(NamedTuple):
     watch: int
 
 
-class AssignmentAssembler(Assembler):
-    """Writes code for assignments as well."""
+class AssignmentAssembler:
+    """Writes assignments."""
+
+    def __init__(self, expressions: ExpressionAssembler) -> None:
+        self.tape = expressions.tape
+        self.cells = expressions.cells
+        self.expressions = expressions
 
     def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
         """`target := value`, at once."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
-        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
+        place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         self.tape.place(value.origin or target.origin or origin)
         if place.shape:
             self.assign_array(value, place, names, storage.watch)
         elif storage.bounds != (None, None):
-            operand = self.stored(value, storage.kind, names)
+            operand = self.expressions.stored(value, storage.kind, names)
             self.check_bounds(operand, storage)
-            self.write(operand, place, storage.watch)
+            self.cells.write(operand, place, storage.watch)
         else:
-            self.put(value, place, names, storage.watch)
+            self.expressions.put(value, place, names, storage.watch)
 
     def assigned(self, target: Expression, names: Names) -> tuple[Storage, list[ArrayAccess]]:
         accesses: list[ArrayAccess] = []
@@ -63,16 +68,16 @@ class AssignmentAssembler(Assembler):
 
     def assign_array(self, value: Expression, place: Region, names: Names, watch: int) -> None:
         if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
-            self.fill(value, place, names, watch)
+            self.expressions.fill(value, place, names, watch)
             return
         # The stored value may depend on the current one.
-        copy = self.materialized(value, place.kind, place.shape, names)
+        copy = self.expressions.materialized(value, place.kind, place.shape, names)
         self.write_early(place, copy.base, watch)
 
     def write_early(self, place: Region, register: int, watch: int) -> None:
         is_real = place.kind == REAL
         if not place.shape:
-            self.write(Operand(place.kind, register), place, watch)
+            self.cells.write(Operand(place.kind, register), place, watch)
         elif place.offset < 0:
             self.tape.emit(Op.COPY_REAL if is_real else Op.COPY, place.base, register, watch, place.size)
         else:
@@ -85,16 +90,18 @@ class AssignmentAssembler(Assembler):
         """Compute the value and the target of an assignment; `finish` assigns it."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
-        place = self.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
+        place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         if place.offset >= 0:
             offset = self.tape.room(INT, 1)
             self.tape.emit(Op.MOVE, offset, place.offset)
             place = Region(place.kind, place.shape, place.base, offset)
         self.tape.place(value.origin or target.origin or origin)
         if place.shape:
-            return Later(place, self.materialized(value, storage.kind, place.shape, names).base, storage.watch)
+            return Later(
+                place, self.expressions.materialized(value, storage.kind, place.shape, names).base, storage.watch
+            )
         register = self.tape.room(storage.kind, 1)
-        operand = self.stored(value, storage.kind, names, register)
+        operand = self.expressions.stored(value, storage.kind, names, register)
         self.check_bounds(operand, storage)
         return Later(place, register, storage.watch)
 
@@ -106,7 +113,7 @@ class AssignmentAssembler(Assembler):
         for i in range(product(storage.shape)):
             cells: Sequence[Number] = self.tape.reals if storage.kind == REAL else self.tape.ints
             value = self.tape.constant(storage.kind, cells[storage.base + i])
-            self.write(value, Region(storage.kind, (), storage.base + i), storage.watch)
+            self.cells.write(value, Region(storage.kind, (), storage.base + i), storage.watch)
 
     def check_bounds(self, operand: Operand, storage: Storage) -> None:
         low, high = storage.bounds

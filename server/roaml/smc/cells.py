@@ -12,8 +12,8 @@ from roaml.smc.registers import INT, REAL, Operand, Region, Tape, product
 class CellAssembler:
     """Writes code that copies computed values. `watch` is the number of a variable that is written, or -1."""
 
-    def __init__(self) -> None:
-        self.tape = Tape()
+    def __init__(self, tape: Tape) -> None:
+        self.tape = tape
 
     def end(self) -> None:
         """The end of a piece of code whose result is not used."""

@@ -11,13 +11,16 @@ from roaml.jani.expressions import Real
 from roaml.jani.model import Assignment, Destination, Edge, Model, ModelType
 from roaml.jani.node import Origin
 from roaml.jani.properties import Formula, identifiers
+from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.assign import AssignmentAssembler
+from roaml.smc.cells import CellAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
 from roaml.smc.layout import Layout, lay_out
 from roaml.smc.names import Names, Storage
 from roaml.smc.network import Network, Slot, Step, root
 from roaml.smc.program import Ints, Program
+from roaml.smc.registers import Tape
 
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
@@ -50,8 +53,10 @@ class Compilation:
         if model.type not in SUPPORTED:
             raise FaultError(f"models of type {model.type.value} are not supported; dtmc and mdp are", model.origin)
         self.model = model
-        self.assembler = AssignmentAssembler()
-        self.tape = self.assembler.tape
+        self.tape = Tape()
+        self.cells = CellAssembler(self.tape)
+        self.expressions = ExpressionAssembler(self.cells)
+        self.assignments = AssignmentAssembler(self.expressions)
         self.layout = lay_out(model, self.tape)
         self.int_count, self.real_count = len(self.tape.ints), len(self.tape.reals)
         self.network = Network(model, self.layout)
@@ -133,7 +138,7 @@ class Compilation:
         number, _ = self.network.locations[location]
         instance = self.layout.instances[number]
         names = instance.names
-        self.guard.append(-1 if step.guard is None else self.assembler.condition(step.guard, names, step.edge.origin))
+        self.guard.append(-1 if step.guard is None else self.expressions.condition(step.guard, names, step.edge.origin))
         total = 0.0
         for way in step.ways:
             destination = way.destination
@@ -149,7 +154,7 @@ class Compilation:
             if way.probability is None:
                 clause = destination.probability
                 exp = Real(1.0) if clause is None else clause.exp
-                chance = self.assembler.real_register(exp, names, destination.origin or step.edge.origin)
+                chance = self.expressions.real_register(exp, names, destination.origin or step.edge.origin)
             else:
                 total += way.probability
             self.way_chance.append(chance)
@@ -166,16 +171,15 @@ class Compilation:
     def _write_assignments(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> int:
         if not assignments:
             return -1
-        assembler = self.assembler
         start = self.tape.begin(origin)
         for group in _by_index(assignments):
             if len(group) == 1 or not self._has_hazard(group, names):
                 for assignment in group:
-                    assembler.assign(assignment.target, assignment.value, names, assignment.origin)
+                    self.assignments.assign(assignment.target, assignment.value, names, assignment.origin)
                 continue
-            for later in [assembler.early(each.target, each.value, names, each.origin) for each in group]:
-                assembler.finish(later)
-        assembler.end()
+            for later in [self.assignments.early(each.target, each.value, names, each.origin) for each in group]:
+                self.assignments.finish(later)
+        self.cells.end()
         return start
 
     def _has_hazard(self, group: list[Assignment], names: Names) -> bool:
@@ -188,16 +192,15 @@ class Compilation:
         return False
 
     def _write_phases(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> None:
-        assembler = self.assembler
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
             self.phase_read.append(self.tape.begin(origin))
-            computed = [assembler.early(each.target, each.value, names, each.origin) for each in group]
-            assembler.end()
+            computed = [self.assignments.early(each.target, each.value, names, each.origin) for each in group]
+            self.cells.end()
             self.phase_write.append(self.tape.begin(origin))
             for later in computed:
-                assembler.finish(later)
-            assembler.end()
+                self.assignments.finish(later)
+            self.cells.end()
 
     def _write_moves(self) -> None:
         """The changes between the locations of each way."""
@@ -317,7 +320,7 @@ class Compilation:
 
     def _write_transient(self) -> tuple[int, Ints]:
         """Write code that resets transient variables, and for each location the values that they have in it."""
-        model, assembler = self.model, self.assembler
+        model = self.model
         code = [-1] * len(self.network.locations)
         scopes: list[tuple[Names, Iterable[Storage], Mapping[str, bool]]] = [
             (self.layout.names, self.layout.shared, {v.name: v.transient for v in model.variables})
@@ -330,15 +333,15 @@ class Compilation:
             return -1, _ints(code)
         settle = self.tape.begin()
         for storage in transient:
-            assembler.reset(storage)
-        assembler.end()
+            self.assignments.reset(storage)
+        self.cells.end()
         for number, instance in enumerate(self.layout.instances):
             for location in instance.automaton.locations:
                 if location.transient_values:
                     code[self.network.location_of[number][location.name]] = self.tape.begin()
                     for value in location.transient_values:
-                        assembler.assign(value.target, value.value, instance.names, value.origin)
-                    assembler.end()
+                        self.assignments.assign(value.target, value.value, instance.names, value.origin)
+                    self.cells.end()
         return settle, _ints(code)
 
     def _watch_tables(self) -> tuple[Ints, Ints, Ints, Ints, Ints]:

@@ -271,7 +271,7 @@ class _Writer:
                 assert not isinstance(formula, ProperFormula)
                 self.conditions.append(formula)
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
-                return self.compilation.assembler.condition(
+                return self.compilation.expressions.condition(
                     expression, self.names, formula.origin or self.property.origin
                 )
 
@@ -300,7 +300,7 @@ class _Writer:
         assert formula.reach is not None
         assert formula.accumulate is not None
         self.until(TRUE, self.condition(formula.reach), 0, None)
-        code = self.compilation.assembler.real_register(formula.reward, self.names, formula.origin)
+        code = self.compilation.expressions.real_register(formula.reward, self.names, formula.origin)
         return (
             code if Accumulation.STEPS in formula.accumulate else -1,
             code if Accumulation.EXIT in formula.accumulate else -1,

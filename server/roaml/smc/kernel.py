@@ -213,6 +213,10 @@ class Kernel:
         """Why a trace would end here if nothing changed any more, whatever is known of the goal."""
         return self._reason(0 if self.enabled_count == 0 else 1)
 
+    def close(self) -> int:
+        """What is known of the goal if the trace ends in this state, in which no step changes anything."""
+        return self._finish(self._ends(0 if self.enabled_count == 0 else 1))
+
     def open_ways(self, instance: int) -> list[int]:
         """The first way of each edge of an instance whose guard holds."""
         location = self.place[instance]

@@ -42,8 +42,12 @@ ARITHMETIC = {
 }
 
 
-class OperatorAssembler(CellAssembler):
-    """Writes code for operators as well."""
+class OperatorAssembler:
+    """Writes operators whose operands are computed already."""
+
+    def __init__(self, cells: CellAssembler) -> None:
+        self.tape = cells.tape
+        self.cells = cells
 
     def applied(self, node: Unary, value: Operand, into: int) -> Operand:
         """An operator to its one operand."""
@@ -51,14 +55,14 @@ class OperatorAssembler(CellAssembler):
         is_int = value.kind != REAL
         kind = value.kind if op is UnaryOperator.ABS else INT if op.signature is Signature.ROUNDING else REAL
         if value.value is not None:
-            return self.moved(self.folded(node, (value,), kind), into)
+            return self.cells.moved(self.folded(node, (value,), kind), into)
         if op is UnaryOperator.ABS:
             self.tape.place(node.origin)
-            register = self.target(value.kind, into)
+            register = self.cells.target(value.kind, into)
             self.tape.emit(Op.ABS if is_int else Op.ABS_REAL, register, value.register)
             return Operand(value.kind, register)
         if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
-            return self.moved(value, into)
+            return self.cells.moved(value, into)
         return self.call(node, op, (value,), kind, into)
 
     def computed(self, node: Binary, first: Operand, second: Operand, into: int) -> Operand:
@@ -68,13 +72,13 @@ class OperatorAssembler(CellAssembler):
             is_real = True
         kind = REAL if is_real else INT
         if first.value is not None and second.value is not None:
-            return self.moved(self.folded(node, (first, second), kind), into)
+            return self.cells.moved(self.folded(node, (first, second), kind), into)
         if op in ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real) or op is BinaryOperator.DIVIDE:
             if is_real:
-                first, second = self.as_real(first), self.as_real(second)
+                first, second = self.cells.as_real(first), self.cells.as_real(second)
             code = ARITHMETIC[op][is_real] if op in ARITHMETIC else Op.DIVIDE if is_real else Op.REM
             self.tape.place(node.origin)
-            register = self.target(kind, into)
+            register = self.cells.target(kind, into)
             self.tape.emit(code, register, first.register, second.register)
             return Operand(kind, register)
         return self.call(node, op, (first, second), kind, into)
@@ -93,7 +97,7 @@ class OperatorAssembler(CellAssembler):
                 first, second = second, first
             self.tape.jump(code, label, first.register, second.register)
             return
-        first, second = self.as_real(first), self.as_real(second)
+        first, second = self.cells.as_real(first), self.cells.as_real(second)
         if swapped:
             first, second = second, first
         if when:
@@ -108,7 +112,7 @@ class OperatorAssembler(CellAssembler):
     def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
         for argument in arguments:
             self.tape.emit(Op.ARGUMENT_REAL if argument.kind == REAL else Op.ARGUMENT, a=argument.register)
-        register = self.target(kind, into)
+        register = self.cells.target(kind, into)
         self.tape.place(node.origin)
         code = Op.CALL_REAL if kind == REAL else Op.CALL_INT
         self.tape.emit(code, register, c=self.tape.function(op))
@@ -129,10 +133,10 @@ class OperatorAssembler(CellAssembler):
         try:
             result = evaluate(plain, {})
         except DivisionByZeroError:
-            return self.failing(node, FaultCode.DIVISION, kind)
+            return self.cells.failing(node, FaultCode.DIVISION, kind)
         except EvaluationError:
-            return self.failing(node, FaultCode.DOMAIN, kind)
+            return self.cells.failing(node, FaultCode.DOMAIN, kind)
         assert isinstance(result, (bool, int, float))
         if kind == INT and abs(result) > MOST:
-            return self.failing(node, FaultCode.OVERFLOW, kind)
+            return self.cells.failing(node, FaultCode.OVERFLOW, kind)
         return self.tape.constant(kind, float(result) if kind == REAL else result)

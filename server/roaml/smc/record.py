@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
-from roaml.jani.model import Destination, Edge
+from roaml.jani.model import Destination, Edge, System
 from roaml.smc.batch import Problem
 from roaml.smc.compile import Legend
 from roaml.smc.end import End
@@ -126,6 +126,17 @@ class StepReader:
             found.append(Change(variable, _value(storage, before), _value(storage, after)))
         return tuple(found)
 
+    def standstill(self, system: System) -> Standstill:
+        """The present state, for those who ask who waits for whom."""
+        kernel, legend = self._kernel, self.legend
+        instances = legend.layout.instances
+        return Standstill(
+            tuple(instance.automaton for instance in instances),
+            tuple(legend.locations[kernel.location(number)][1] for number in range(len(instances))),
+            tuple(tuple(legend.ways[way][0] for way in kernel.open_ways(n)) for n in range(len(instances))),
+            system,
+        )
+
 
 class Recorder:
     """Simulates single traces of a question."""
@@ -186,14 +197,7 @@ class Recorder:
 
     def standstill(self) -> Standstill:
         """The state in which the last walk ended."""
-        kernel, legend = self._kernel, self.legend
-        instances = legend.layout.instances
-        return Standstill(
-            tuple(instance.automaton for instance in instances),
-            tuple(legend.locations[kernel.location(number)][1] for number in range(len(instances))),
-            tuple(tuple(legend.ways[way][0] for way in kernel.open_ways(n)) for n in range(len(instances))),
-            self.system,
-        )
+        return self._steps.standstill(self.system)
 
     def reads(self, part: Part) -> set[Variable]:
         """The variables on which a part of a step depends."""

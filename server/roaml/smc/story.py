@@ -7,7 +7,7 @@ the last change of each variable that they read, and the step that triggered the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.jani.model import Automaton
@@ -27,6 +27,7 @@ class Story:
         automata: for each instance in the steps, its automaton.
         start: the variables of the model before the first step.
         standstill: where it has ended, if it is stuck there.
+        is_whole: whether all of it is to be shown, not only what matters.
     """
 
     property: str
@@ -38,6 +39,7 @@ class Story:
     automata: tuple[Automaton, ...]
     start: Mapping[str, Plain]
     standstill: Standstill | None = None
+    is_whole: bool = False
 
 
 def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -49,18 +51,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     recording = Recording(trace)
     shared = recorder.shared
     start = dict(zip((storage.name for storage in shared), recorder.initial(shared), strict=True))
-    steps: list[TraceStep] = []
-    times: list[float | None] = []
-    seconds = nanoseconds = 0.0
-    for step in recorder.walk(recording):
-        for change in step.changes:
-            if clock is not None and change.variable.instance < 0 and isinstance(change.after, (int, float)):
-                if change.variable.name == clock[0]:
-                    seconds = change.after
-                elif change.variable.name == clock[1]:
-                    nanoseconds = change.after
-        steps.append(step)
-        times.append(None if clock is None else seconds + nanoseconds / 1e9)
+    steps = list(recorder.walk(recording))
     variables = recorder.asked.question.variables
     relevant = _relevant(recorder, steps, variables)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
@@ -68,13 +59,30 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         recorder.asked.question.name,
         recording,
         tuple(steps),
-        tuple(times),
+        tuple(clock_times(steps, clock)),
         tuple(relevant),
         variables,
         automata,
         start,
         recorder.standstill() if recording.end is End.STUCK else None,
     )
+
+
+def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> Iterator[float | None]:
+    """The time after each step, in seconds; None if the model has no clock.
+
+    Args:
+        clock: the variables that hold the seconds and nanoseconds.
+    """
+    seconds = nanoseconds = 0.0
+    for step in steps:
+        for change in step.changes:
+            if clock is not None and change.variable.instance < 0 and isinstance(change.after, (int, float)):
+                if change.variable.name == clock[0]:
+                    seconds = change.after
+                elif change.variable.name == clock[1]:
+                    nanoseconds = change.after
+        yield None if clock is None else seconds + nanoseconds / 1e9
 
 
 def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...]) -> list[int]:

@@ -14,6 +14,7 @@ from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Change, Plain
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
+from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
 LONGEST = 60
@@ -49,7 +50,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[Line]:
 
 def _told(story: Story, place_of: PlaceOf) -> list[Line]:
     told = turns(story)
-    folded = range(FIRST, len(told) - LAST)
+    folded = _folded(story, told)
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
         found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
@@ -113,6 +114,8 @@ def heading(story: Story) -> str:
         text = f"{story.property}: trace {story.recording.trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):
         text += f" ({story.recording.end.text})"
+    if story.is_whole:
+        return text
     text += f", of which {len(story.relevant):,} matter"
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
@@ -124,7 +127,7 @@ def as_mermaid(story: Story, place_of: PlaceOf) -> str:
 
 def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
     told = turns(story)
-    folded = range(FIRST, len(told) - LAST)
+    folded = _folded(story, told)
     lanes = {turn.instance for turn in told}
     names: dict[str, str] = {}
     body: list[str] = []
@@ -206,6 +209,11 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 """
 
 
+def _folded(story: Story, told: Sequence[Turn]) -> range:
+    """The turns that are not shown."""
+    return range(0) if story.is_whole else range(FIRST, len(told) - LAST)
+
+
 def _more(folded: range) -> str:
     return f"… {len(folded):,} more …"
 
@@ -241,7 +249,7 @@ def _chance(probability: Clause | None) -> str:
 
 
 def _message(message: Message) -> str:
-    values = ", ".join(f"{name}: {_plain(value)}" for name, value in message.values.items())
+    values = ", ".join(f"{name}: {shown_value(value)}" for name, value in message.values.items())
     return f"{message.name}({_short(values)})" if values else message.name
 
 
@@ -251,28 +259,8 @@ def _change(change: Change) -> str:
 
 def _shown(before: Plain, after: Plain) -> str:
     if isinstance(before, list) and isinstance(after, list):
-        return f"→ {_short(_plain(after))}"
-    return f"{_plain(before)} → {_plain(after)}"
-
-
-def _plain(value: Plain) -> str:
-    match value:
-        case bool():
-            return "true" if value else "false"
-        case list():
-            return _text(value) or f"[{', '.join(map(_plain, value))}]"
-        case float():
-            return f"{value:g}"
-        case _:
-            return str(value)
-
-
-def _text(value: list[Plain]) -> str:
-    """A string, which is an array of bytes padded with zeros in JANI; "" for other values."""
-    while value and value[-1] == 0:
-        value = value[:-1]
-    printable = all(isinstance(each, int) and 32 <= each < 127 for each in value)
-    return repr("".join(chr(each) for each in value if isinstance(each, int))) if value and printable else ""
+        return f"→ {_short(shown_value(after))}"
+    return f"{shown_value(before)} → {shown_value(after)}"
 
 
 def _short(text: str) -> str:

@@ -95,8 +95,8 @@ def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Act
     include = next((i for i in file.includes if i.path and i.path.span == diagnostic.span), None) if file else None
     if include is None or include.path is None:
         return
-    target = analysis.include_path(diagnostic.path, include.path.value)
-    if not isinstance(analysis.files.read(target), SourceFile):
+    target = analysis.include_path(diagnostic.path, include)
+    if target is not None and not isinstance(analysis.files.read(target), SourceFile):
         trees = (p for p in snapshot.listed if analysis.kind(p) is FileKind.TREE and p != diagnostic.path)
         trees = (p for p in trees if diagnostic.path not in analysis.trees_from(p))
         yield from _other_files(analysis, diagnostic, target, trees)

@@ -32,8 +32,9 @@ def _named(analysis: Analysis, path: str) -> Iterator[Link]:
                 yield Link(listed.input.src.span, listed.path)
     elif kind is FileKind.TREE and (tree := analysis.tree(path)):
         for include in tree.includes:
-            if include.path is not None and include.package is None:
-                yield Link(include.path.span, analysis.include_path(path, include.path.value))
+            target = analysis.include_path(path, include)
+            if include.path is not None and target is not None:
+                yield Link(include.path.span, target)
 
 
 def _is_file(analysis: Analysis, path: str) -> bool:

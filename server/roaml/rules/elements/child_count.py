@@ -7,10 +7,11 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.libraries import UNBOUNDED
+from roaml.forest.forest import Forest
+from roaml.language import BEHAVIOR_TREE
+from roaml.libraries import UNBOUNDED, NodeKind
 from roaml.model.gaps import ANYTHING, TREE
 from roaml.model.outline import MachineOutline
-from roaml.model.system import builtin_plugins
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext
 
@@ -22,7 +23,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield from _subtree(context, node)
             elif node.plugin is None:
                 continue
-            elif node.plugin.value in builtin_plugins():
+            elif context.forest is not None:
+                yield from _known(context, node, context.forest)
+            elif node.plugin.value in BEHAVIOR_TREE.elements:
                 yield from _builtin(context, node)
             elif context.system is not None:
                 _, plugin = context.system.plugin(node.plugin.value)
@@ -39,20 +42,34 @@ def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
 
 def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
     """Check a node of BehaviorTree.CPP, whose number of children the schema defines."""
-    if node.type is None or node.plugin is None:
+    if node.type is not None:
+        allowed = node.type.any_child
+        yield from _counted(context, node, *((allowed.least, allowed.most) if allowed else (0, 0)))
+
+
+def _known(context: TreeContext, node: TreeNode, forest: Forest) -> Iterator[Finding]:
+    """Without a system, libraries and models say how many; otherwise only the kind that the node is written as."""
+    known = forest.known_node(node)
+    if known is not None:
+        yield from _counted(context, node, *known.children)
+    elif not node.compact and not forest.is_version_3:
+        yield from _counted(context, node, *NodeKind(node.element.name.lower()).children)
+
+
+def _counted(context: TreeContext, node: TreeNode, least: int, most: int) -> Iterator[Finding]:
+    if node.plugin is None:
         return
-    allowed, count, name = node.type.any_child, len(node.children), node.plugin.value
-    if allowed is None:
+    count, name = len(node.children), node.plugin.value
+    if most == 0:
         if count:
             yield RULE.at(
                 node.children[0].element.name_span, f"`{name}` allows no children", _without(context, node, 0)
             )
-    elif count > allowed.most:
-        message = f"`{name}` allows only {_children(allowed.most)}"
-        extra = node.children[allowed.most].element.name_span
-        yield RULE.at(extra, message, _without(context, node, allowed.most))
-    elif count < allowed.least:
-        yield _too_few(node, allowed.least, allowed.most)
+    elif count > most:
+        message = f"`{name}` has {_children(most)}: this is one more"
+        yield RULE.at(node.children[most].element.name_span, message, _without(context, node, most))
+    elif count < least:
+        yield _too_few(node, least, most)
 
 
 def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:

@@ -23,11 +23,19 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue  # unsupported-scxml-element reports this with more detail
         if has_counted_children(parent):
             continue
+        if element.name in _PORTS and "inout_port" in parent.children:
+            instead = _PORTS[element.name]
+            message = f"there is no element `<{element.name}>`; a port that is read and written is an `<{instead}>`"
+            yield RULE.at(element.name_span, message, rename_tag(element, instead))
+            continue
         close = close_names(element.name, parent.children) or close_names(element.name, context.grammar.elements)
         fits = [name for name in close if name in parent.children]
         fixes = [rename_tag(element, name, preferred=name in fits[:1]) for name in close]
         hint = did_you_mean(tuple(f"<{name}>" for name in close))
         yield RULE.at(element.name_span, f"unknown element `<{element.name}>`{hint}", *fixes)
 
+
+_PORTS = {"bidirectional_port": "inout_port"}
+"""Names of ports in models that BehaviorTree.CPP does not know, with the right ones."""
 
 RULE = Rule("unknown-element", Severity.ERROR, "An element is not known in the language.", file=check)

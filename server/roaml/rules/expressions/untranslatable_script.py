@@ -13,7 +13,7 @@ from roaml.xml_syntax import Attribute
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    for tree in context.file.trees:
+    for tree in context.file.trees if context.forest is None else ():
         for node in nodes(tree):
             for script in node.scripts:
                 if script.has_value:

@@ -51,7 +51,7 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
             yield RULE.at(tree.element.name_span, "if there are several trees, each needs an `ID`", fix)
         return
     same = known.get(tree.id.value, ()) or [t for f in context.files for t in f.trees if t.id == tree.id.value]
-    if len(same) > 1:
+    if len(same) > 1 and not (context.forest is not None and _is_first(context, tree)):
         here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
         elsewhere = [Symbol(t.path, SymbolKind.TREE, t.id) for t in same if t.path != context.source.path]
         related = [Related(span, "another one") for span in here]
@@ -59,6 +59,12 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
         name = unused(tree.id.value, known)
         rename = Fix(f"Rename this one to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
         yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
+
+
+def _is_first(context: TreeContext, tree: Tree) -> bool:
+    """Whether a tree is the first of its name, the one that keeps it."""
+    assert context.forest is not None
+    return tree.id is not None and context.forest.trees[tree.id.value][1] is tree
 
 
 def _subtree(
@@ -69,9 +75,35 @@ def _subtree(
         around = _around(own, uses)
         yield from _no_tree(context, name, [other for other in uses if other not in around])
     elif name.value in circular and own in circular:
+        if context.forest is not None and (own, name.value) not in _closing(context, uses):
+            return
         cycle = _cycle(own, name.value, uses)
         if cycle:
             yield RULE.at(name.span, f"a tree cannot contain itself: {' → '.join(cycle)}")
+
+
+def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tuple[str, str]]:
+    """The uses that close cycles, when the trees are gone through from the executed one, or the first, on."""
+    main = context.file.main
+    first = (main.value,) if main is not None and main.value in uses else ()
+    closing: set[tuple[str, str]] = set()
+    entered: set[str] = set()
+    left: set[str] = set()
+    for start in (*first, *uses):
+        stack = [(start, iter(uses[start]))] if start not in entered else []
+        entered.add(start)
+        while stack:
+            name, inner = stack[-1]
+            below = next(inner, None)
+            if below is None:
+                left.add(name)
+                stack.pop()
+            elif below in entered and below not in left:
+                closing.add((name, below))
+            elif below in uses and below not in entered:
+                entered.add(below)
+                stack.append((below, iter(uses[below])))
+    return closing
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
@@ -83,10 +115,12 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
         return
     close = close_names(name.value, known)
     message = f"there is no tree `{name.value}`{did_you_mean(close)}"
-    if context.system is not None:
+    forest = context.forest
+    if forest is None or (forest.complete and close):
         yield RULE.at(name.span, message, *replacements(name.span, close))
-    elif close:
-        yield RULE.at(name.span, message, *replacements(name.span, close), severity=Severity.WARNING)
+    elif name.value not in forest.trees and name.value not in forest.beside:
+        elsewhere = "" if close else " in this file, the files that it includes, or its folder"
+        yield RULE.at(name.span, f"{message}{elsewhere}", *replacements(name.span, close), severity=Severity.WARNING)
 
 
 def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:

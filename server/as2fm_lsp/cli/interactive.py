@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A simulation on a terminal: what can happen next is listed, one line of input says what does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TextIO
+
+from as2fm_lsp.atomic_write import write_file
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import flush, print_text
+from roaml.model.system_file import duration
+from roaml.simulation import Choice, Outcome, Session
+from roaml.verification.target import Target
+from roaml.views.values import shown_value
+
+HELP = """\
+  Enter        take the step that the seed decides
+  2            take choice 2; 2b: with its outcome b
+  t            go on until a machine has handled an event      k   go on for one tick of the tree
+  b, b 10      go back one step, ten steps                     g 40, g 3 s   go to a step, or on to a time
+  e            go on until the property is decided             u NAME   go on until a topic or event NAME is sent
+  s            show the state                                  w FILE   write the run, for --script
+  ?            this help                                       q   quit
+"""
+
+
+class Terminal:
+    """Shows a session, and moves it as the input says."""
+
+    def __init__(self, session: Session, target: Target) -> None:
+        self._session = session
+        self._target = target
+
+    def run(self, lines: TextIO) -> None:
+        """Until the input ends or asks to quit."""
+        print_text(HELP)
+        self._show_choices()
+        while True:
+            print_text("> ")
+            flush()
+            line = lines.readline()
+            if not line or line.strip() in ("q", "quit"):
+                print_text("\n" if not line else "")
+                return
+            self._do(line.strip())
+
+    def _do(self, line: str) -> None:
+        command, _, rest = line.partition(" ")
+        rest = rest.strip()
+        before = self._session.position
+        message = ""
+        match command:
+            case "?":
+                print_text(HELP)
+                return
+            case "s":
+                print_text("".join(f"  {text}\n" for text in self._state()))
+                return
+            case "w":
+                message = self._save(rest)
+            case "" if not rest:
+                self._session.step()
+            case "t":
+                self._session.turn()
+            case "k":
+                if not self._session.tick():
+                    message = "the tree was not ticked again"
+            case "e":
+                self._session.until_decided()
+                message = f"{self._session.save().property}: {self._session.verdict}"
+            case "b":
+                self._session.back(int(rest) if rest.isdecimal() else 1)
+            case "g":
+                message = self._go(rest)
+            case "u":
+                message = self._until(rest)
+            case _:
+                message = self._choose(line)
+        self._show_steps(before)
+        if message:
+            print_text(f"  {message}\n")
+        self._show_choices()
+
+    def _save(self, path: str) -> str:
+        if not path:
+            return "w needs the name of a file"
+        try:
+            write_file(path, self._session.save().to_json())
+        except OSError as error:
+            return f"{path}: {error.strerror or error}"
+        return f"written to {path}"
+
+    def _go(self, text: str) -> str:
+        time = duration(text)
+        if text.isdecimal():
+            self._session.jump(int(text))
+        elif time is None:
+            return "g needs a step or a time, such as `g 40` or `g 3 s`"
+        elif not self._session.until_time(time / 1e9):
+            return f"the run ends before {text}"
+        return ""
+
+    def _until(self, name: str) -> str:
+        if not self._session.has_event(name):
+            return f"there is no event, topic, service or action `{name}`"
+        return "" if self._session.until_sent(name) else f"`{name}` was not sent again"
+
+    def _choose(self, text: str) -> str:
+        choices = {str(choice.number): choice for choice in self._session.choices()}
+        letter = text[-1:] if text[-1:].isalpha() else ""
+        choice = choices.get(text.removesuffix(letter))
+        if choice is None:
+            return f"`{text}` is neither a choice nor a command; ? lists the commands"
+        outcomes = dict(zip(_LETTERS, choice.outcomes, strict=False))
+        if letter and letter not in outcomes:
+            return f"choice {choice.number} has no outcome {letter}"
+        self._session.step(choice, outcomes.get(letter))
+        return ""
+
+    # ------------------------------------------------------------ output
+
+    def _show_steps(self, before: int) -> None:
+        session = self._session
+        if session.position <= before:
+            return
+        for step in session.steps[before : session.position][-MAX_STEPS_SHOWN:]:
+            changes = ", ".join(
+                f"{change.variable.name}: {shown_value(change.before)} → {shown_value(change.after)}"
+                for change in step.changes
+                if change.variable.instance >= 0 and session.is_machine(change.variable.instance)
+            )
+            if changes:
+                print_text(f"  {step.number:>6}  {changes}\n")
+
+    def _show_choices(self) -> None:
+        session = self._session
+        state = session.state()
+        time = "" if state.time is None else f", {state.time:.3f} s"
+        decided = f", {session.save().property}: {session.verdict}" if session.is_decided else ""
+        print_text(f"step {session.position}{time}{decided}\n")
+        end = session.end
+        if end is not None:
+            print_text(f"  nothing changes any more: {end.text}\n")
+            return
+        for choice in session.choices():
+            print_text("".join(f"{line}\n" for line in self._choice(choice)))
+
+    def _choice(self, choice: Choice) -> Iterator[str]:
+        place = self._target.place(choice.origin)
+        where = "" if place is None else f"  {shown_path(place.path)}:{place.line}"
+        yield f"  {choice.number:>2}  {choice.text}{where}"
+        if len(choice.outcomes) > 1:
+            for letter, outcome in zip(_LETTERS, choice.outcomes, strict=False):
+                yield f"      {letter}  by chance, {outcome.probability:g}: {_effect(outcome)}"
+
+    def _state(self) -> Iterator[str]:
+        state = self._session.state()
+        for machine in state.machines:
+            values = ", ".join(f"{name}: {shown_value(value)}" for name, value in machine.variables.items())
+            handles = f", handles {machine.handles}" if machine.handles else ""
+            yield f"{machine.name}: {machine.state}{handles}{f' ({values})' if values else ''}"
+        for node in state.nodes:
+            yield f"{node.type} (bt_{node.number}): {node.status.value}"
+        for event in state.events:
+            values = ", ".join(f"{name}: {shown_value(value)}" for name, value in event.parameters.items())
+            waiting = ", not received yet" if event.is_waiting else ""
+            yield f"{event.text}{f' ({values})' if values else ''}, step {event.step}{waiting}"
+        for name, value in {**state.blackboard, **state.shared}.items():
+            yield f"{name}: {shown_value(value)}"
+
+
+def _effect(outcome: Outcome) -> str:
+    return outcome.text
+
+
+MAX_STEPS_SHOWN = 40
+"""Steps whose changes are shown after a command."""
+_LETTERS = "abcdefghijklmnoprsuvwxyz"

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whole numbers on the command line."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text) if len(text) < 30 else -1
+    except ValueError:
+        return -1
+
+
+def positive(text: str) -> int:
+    """A whole number from 1 on.
+
+    Raises:
+        argparse.ArgumentTypeError: it is not one.
+    """
+    value = _whole(text)
+    if not 1 <= value < 1 << 62:
+        raise argparse.ArgumentTypeError("expected a whole number of at least 1")
+    return value
+
+
+def natural(text: str) -> int:
+    """A whole number from 0 on.
+
+    Raises:
+        argparse.ArgumentTypeError: it is not one.
+    """
+    value = _whole(text)
+    if not 0 <= value < 1 << 63:
+        raise argparse.ArgumentTypeError("expected a whole number from 0 to 2^63 - 1")
+    return value

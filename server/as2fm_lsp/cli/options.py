@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options that a sub-command shares with the form without a sub-command: `check PATH` and `--check PATH`."""
+
+from __future__ import annotations
+
+import argparse
+
+from roaml.project.settings import SEVERITIES
+
+
+def check_options(check: argparse._ActionsContainer) -> None:
+    """The options of a check."""
+    check.add_argument(
+        "--fix",
+        action="store_true",
+        help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
+    )
+    check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
+    formats = ("text", "json", "github", "gitlab", "sarif", "junit")
+    check.add_argument("--format", default="text", choices=formats, help="format of the diagnostics")
+    check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
+    check.add_argument(
+        "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
+    )
+    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
+    check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
+    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")
+    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings as well")
+    check.add_argument("--statistics", action="store_true", help="count the findings of each rule")
+    check.add_argument(
+        "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
+    )
+    check.add_argument("--stdin-filename", metavar="FILE", help="read the text of FILE from standard input")
+
+
+def serve_options(serve: argparse._ActionsContainer) -> None:
+    """The ways to serve an editor."""
+    serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
+    serve.add_argument(
+        "--tcp",
+        metavar="HOST:PORT",
+        help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
+        "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
+    )
+    serve.add_argument(
+        "--allow-remote", action="store_true", help="with --tcp: also accept connections from other machines"
+    )
+    serve.add_argument(
+        "--socket", metavar="FILE", help="serve one editor on a socket file that only its owner can open"
+    )
+
+
+class _Codes(argparse.Action):
+    """Rule codes, separated by commas, given once or several times."""
+
+    def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
+        known = getattr(namespace, self.dest) or []
+        setattr(namespace, self.dest, [*known, *(code.strip() for code in values.split(",") if code.strip())])

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of a system that are stepped forwards and backwards."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from roaml.api.systems import LoadedSystem
+from roaml.api.verifying import as_target, checker
+from roaml.jani.model import Model
+
+if TYPE_CHECKING:
+    from roaml.simulation.session import SavedSession, Session
+    from roaml.verification.target import Target
+
+
+def session(
+    subject: Target | LoadedSystem | Model,
+    property: str | None = None,  # noqa: A002 - JANI's word
+    seed: int = 0,
+    trace: int = 0,
+    saved: SavedSession | None = None,
+) -> Session:
+    """A run at its start, or where a saved one was.
+
+    Args:
+        subject: what runs.
+        property: the name of the property that the run is watched for; the first one if not given, and `stuck` if the
+            model has none.
+        seed, trace: the run is the trace of this number that `verify` makes with this seed.
+        saved: continue this session; its property, seed and trace override the others.
+
+    Raises:
+        PropertyError: the model has no property of this name.
+        RunError: the decisions that were saved are not possible in this model.
+        FaultError: the model cannot be run, the property cannot be answered, or the run goes wrong.
+    """
+    from roaml.simulation.session import Session  # noqa: PLC0415 - checking and translating start faster without it
+
+    target = as_target(subject)
+    name = property if saved is None else saved.property
+    ready = checker(target.model, None if name is None else [name])
+    if name is not None and name in ready.refused:
+        raise ready.refused[name]
+    return Session(ready, next(iter(ready.asked), ready.stuck), seed, trace, target.clock, saved)

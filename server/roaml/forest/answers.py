@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What nodes may answer, and which children are therefore never ticked (docs/spec/lone-trees.md#answers).
+
+A node that is not known may answer anything.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import TypeAlias
+
+from roaml.forest.forest import Forest
+from roaml.model.tree import TreeNode
+
+S, F, R, K = "SUCCESS", "FAILURE", "RUNNING", "SKIPPED"
+ANYTHING = frozenset((S, F, R, K))
+
+MAX_SUBTREES = 100
+"""Subtrees in each other; those in deeper ones may answer anything."""
+
+_SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence", "PipelineSequence")
+_FALLBACKS = ("Fallback", "AsyncFallback", "ReactiveFallback")
+_CHILD_FIRST = (
+    *("Sequence", "SequenceWithMemory", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse"),
+    *("WhileDoElse", "PipelineSequence", "RecoveryNode"),
+)
+"""Nodes whose first tick ticks their first child and answers RUNNING if that does."""
+_TRANSPARENT = (
+    *("Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout"),
+    "KeepRunningUntilFailure",
+)
+
+Answers: TypeAlias = "frozenset[str]"
+
+
+def _ended(answers: Answers, success: str, failure: str) -> Answers:
+    """The answers of a child with SUCCESS and FAILURE replaced."""
+    return frozenset({S: success, F: failure}.get(answer, answer) for answer in answers)
+
+
+class Possible:
+    """What the nodes of a forest may answer. Each tree is looked at once, and a tree inside itself may answer
+    anything."""
+
+    def __init__(self, forest: Forest) -> None:
+        self.forest = forest
+        self._trees: dict[str, Answers] = {}
+        self._depth = 0
+
+    def answers(self, root: TreeNode) -> dict[TreeNode, Answers]:
+        """The answers of a node and of all nodes below it."""
+        found: dict[TreeNode, Answers] = {}
+        order, stack = [], [root]
+        while stack:
+            node = stack.pop()
+            order.append(node)
+            stack += node.children
+        for node in reversed(order):
+            found[node] = self._conditions(node, self._own(node, [found[child] for child in node.children]))
+        return found
+
+    def _conditions(self, node: TreeNode, own: Answers) -> Answers:
+        more: Answers = frozenset()
+        for attribute, answer in (("_failureIf", F), ("_successIf", S), ("_skipIf", K), ("_while", K)):
+            if node.element.get(attribute) is not None:
+                more |= {answer}
+        return own | more
+
+    def _tree(self, name: str) -> Answers:
+        if name not in self._trees:
+            self._trees[name] = ANYTHING  # while it is looked at
+            _, tree = self.forest.trees[name]
+            if len(tree.roots) == 1 and self._depth < MAX_SUBTREES:
+                self._depth += 1
+                # What follows from a mistake inside the tree is not told where the tree is used.
+                if not any(self.unreached(tree.roots[0])):
+                    self._trees[name] = self.answers(tree.roots[0])[tree.roots[0]]
+                self._depth -= 1
+        return self._trees[name]
+
+    def _own(self, node: TreeNode, below: list[Answers]) -> Answers:
+        name = node.plugin.value if node.plugin else ""
+        if node.is_subtree or self.forest.names_tree(node):
+            return self._tree(name) if name in self.forest.trees else ANYTHING
+        known = self.forest.known_node(node)
+        if known is None or not known.library:
+            return ANYTHING
+        if name in _SEQUENCES:
+            return _in_turn(below, S, F) | ({R} if name.startswith("Async") else frozenset())
+        if name in _FALLBACKS:
+            return _in_turn(below, F, S) | ({R} if name.startswith("Async") else frozenset())
+        if known.kind.value == "decorator":
+            return self._decorator(node, name, below[0] if len(below) == 1 else ANYTHING)
+        if name in ("AlwaysSuccess", "Script", "UnsetBlackboard"):
+            return frozenset((S,))
+        if name == "AlwaysFailure":
+            return frozenset((F,))
+        if name == "Sleep":
+            return frozenset((S, R))
+        if known.kind.value == "condition" or known.running is False:
+            return frozenset((S, F))
+        return ANYTHING - {K} if known.kind.value == "action" else ANYTHING
+
+    def _decorator(self, node: TreeNode, name: str, child: Answers) -> Answers:
+        match name:
+            case "Inverter":
+                return _ended(child, F, S)
+            case "ForceSuccess":
+                return _ended(child, S, S)
+            case "ForceFailure":
+                return _ended(child, F, F)
+            case "KeepRunningUntilFailure":
+                return (child & {F}) | {R}
+            case "Repeat":
+                endless = (child - {S}) | {R}
+                return endless if _number(node, "num_cycles") == "-1" else child | {R, S}
+            case "RetryUntilSuccessful":
+                endless = (child - {F}) | {R}
+                return endless if _number(node, "num_attempts") == "-1" else child | {R, F}
+            case "Delay":
+                return child | {R}
+            case "Timeout":
+                return child | {F}
+        return ANYTHING
+
+    def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
+        """The children that are never ticked: each with the child that ends the node before, and what that never
+        answers.
+
+        Of several in a row, the first. Where the answers of a child follow from such a child inside it, only the inner
+        one.
+        """
+        answers = self.answers(root)
+        has_inner: set[TreeNode] = set()
+        order, stack = [], [root]
+        while stack:
+            node = stack.pop()
+            order.append(node)
+            stack += node.children
+        found = []
+        for node in reversed(order):  # children before their parents
+            stopped = self._stopped(node, answers)
+            if stopped is not None and stopped[1] not in has_inner:
+                found.append(stopped)
+            if stopped is not None or any(child in has_inner for child in node.children):
+                has_inner.add(node)
+        yield from reversed(found)
+
+    def _stopped(self, node: TreeNode, answers: dict[TreeNode, Answers]) -> tuple[TreeNode, TreeNode, str] | None:
+        name = node.plugin.value if node.plugin else ""
+        needed = S if name in _SEQUENCES else F if name in _FALLBACKS else ""
+        if needed and self.forest.known_node(node):
+            for before, child in itertools.pairwise(node.children):
+                if not answers[before] & {needed, K}:
+                    return child, before, needed
+        return None
+
+    def is_running_at_once(self, node: TreeNode) -> bool:
+        """Whether the first tick of a node surely gives RUNNING."""
+        while True:
+            name = node.plugin.value if node.plugin else ""
+            if any(node.element.get(condition) for condition in ("_failureIf", "_successIf", "_skipIf", "_while")):
+                return False
+            if node.is_subtree or self.forest.names_tree(node):
+                return False
+            known = self.forest.known_node(node)
+            if known is None:
+                return False
+            if name in (*_CHILD_FIRST, *_TRANSPARENT) and known.library and node.children:
+                node = node.children[0]
+                continue
+            return known.running is True and not _is_zero(node)
+
+
+def _in_turn(below: list[Answers], goes_on: str, ends: str) -> Answers:
+    """The answers of a node that ticks its children one after the other as long as they answer `goes_on`."""
+    found: set[str] = set()
+    all_skip = True
+    for child in below:
+        found |= child & {ends, R}
+        if not child & {goes_on, K}:
+            return frozenset(found)
+        all_skip = all_skip and K in child
+    may_succeed = any(goes_on in child for child in below)
+    return frozenset(found | ({goes_on} if may_succeed else set()) | ({K} if all_skip else set()))
+
+
+def _number(node: TreeNode, port: str) -> str:
+    attribute = node.element.get(port)
+    return attribute.value.strip() if attribute else ""
+
+
+def _is_zero(node: TreeNode) -> bool:
+    """Whether a time is 0, or in an entry, so that the node may end at once."""
+    return any(_number(node, port).startswith(("0", "{", "=")) for port in ("msec", "delay_msec", "wait_duration"))

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The C++ types of ports, as models write them, and the texts that the library converts to them
+(docs/spec/lone-trees.md#literals)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+STRING, ANY, SCRIPT = "string", "any", "script"
+
+_SAME = {
+    "int": "int", "int32": "int", "integer": "int", "signed": "int",
+    "unsigned": "unsigned", "unsignedint": "unsigned", "uint": "unsigned", "uint32": "unsigned",
+    "short": "int16", "longlong": "int64", "long": "int64", "unsignedlong": "uint64", "unsignedshort": "uint16",
+    "size": "uint64", "boolean": "bool", "float64": "double", "real": "double", "float32": "float",
+    "str": "string", "String": "string", "string_view": "string", "StringView": "string", "char*": "string",
+    "Any": "any", "AnyTypeAllowed": "any", "BlackboardEntry": "any", "undefined": "any",
+}  # fmt: skip
+"""Spellings of types, without `std::`, `BT::`, `_t` and spaces, with one name for each type."""
+
+_RANGES = {
+    "int8": (-(2**7), 2**7 - 1),
+    "int16": (-(2**15), 2**15 - 1),
+    "int": (-(2**31), 2**31 - 1),
+    "int64": (-(2**63), 2**63 - 1),
+    "uint8": (0, 2**8 - 1),
+    "uint16": (0, 2**16 - 1),
+    "unsigned": (0, 2**32 - 1),
+    "uint64": (0, 2**64 - 1),
+}
+_REALS = ("double", "float", "chrono::milliseconds", "chrono::seconds")
+_BOOLS = ("0", "1", "true", "false", "True", "False", "TRUE", "FALSE")
+_STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
+
+_INTEGER = re.compile(r"[+-]?[0-9]+")
+_REAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I)
+_LIST = re.compile(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
+
+
+def normal(written: str) -> str:
+    """One name for the spellings of a type; "" and any template of the library stand for any type."""
+    name = re.sub(r"\b(?:std|BT)::|\bconst\b|[\s&]", "", written)
+    name = re.sub(r"_t\b", "", name)
+    match = _LIST.match(name)
+    if match:
+        return f"vector<{normal(match[1].partition(',')[0])}>"
+    return _SAME.get(name, name) or ANY
+
+
+def element_type(name: str) -> str | None:
+    """The type of the elements of a list; None if the type is not one."""
+    match = _LIST.match(name)
+    return match[1] if match else None
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """Why a text is not of a type. `ignored` tells that the library reads its beginning only."""
+
+    message: str
+    ignored: bool = False
+    instead: str = ""
+
+
+def mismatch(type_name: str, text: str) -> Mismatch | None:
+    """What is wrong with a text for a port of a type, if the library is known to convert it."""
+    name = normal(type_name)
+    if text.startswith("json:"):
+        return None
+    inner = element_type(name)
+    if inner is not None:
+        wrong = (mismatch(inner, item.strip()) for item in text.split(";")) if text.strip() else ()
+        return next(filter(None, wrong), None)
+    text = text.strip()
+    if name in _RANGES:
+        return _integer(name, text)
+    if name in _REALS:
+        return _prefix(_REAL, text, "a number")
+    if name == "bool" and text not in _BOOLS:
+        lower = text.lower()
+        return Mismatch("must be `true` or `false`", instead=lower if lower in ("true", "false") else "")
+    if name == "NodeStatus" and text not in _STATUSES:
+        upper = text.upper()
+        known = ", ".join(f"`{status}`" for status in _STATUSES)
+        return Mismatch(f"must be one of {known}", instead=upper if upper in _STATUSES else "")
+    return None
+
+
+def _integer(name: str, text: str) -> Mismatch | None:
+    wrong = _prefix(_INTEGER, text, "an integer")
+    if wrong is not None:
+        return wrong
+    low, high = _RANGES[name]
+    if len(text) > 25 or not low <= int(text) <= high:
+        return Mismatch("must not be negative" if low == 0 and text.startswith("-") else f"must be {low} to {high}")
+    return None
+
+
+def _prefix(pattern: re.Pattern[str], text: str, noun: str) -> Mismatch | None:
+    match = pattern.match(text)
+    if match is None:
+        return Mismatch(f"must be {noun}")
+    if match.end() < len(text):
+        return Mismatch(f"must be {noun}; the library reads `{match[0]}` and ignores the rest", True, match[0])
+    return None

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The blackboard of trees: which names mean one entry, who reads and who writes it (docs/spec/lone-trees.md#entries).
+
+- Names of different trees are one entry if a `SubTree` remaps one to the other. All uses of a tree are taken together,
+  so an entry is said to be written if it may be.
+- A node whose ports are not known may read and write what its attributes name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.forest.cpp_types import ANY, SCRIPT
+from roaml.forest.forest import Forest, port_type, ports_of
+from roaml.forest.scripts import names_in, scripts_of
+from roaml.libraries import Direction
+from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
+from roaml.text import Span
+
+ROOT = ""
+"""The tree that stands for the blackboard of the executed tree, which `@name` means."""
+
+Key: TypeAlias = tuple[str, str]
+"""A tree and a name in it."""
+
+_NAMING_PORTS = {
+    ("SetBlackboard", "output_key"): "write",
+    ("UnsetBlackboard", "key"): "other",
+    ("WasEntryUpdated", "entry"): "other",
+    ("SkipUnlessUpdated", "entry"): "other",
+    ("WaitValueUpdate", "entry"): "other",
+}
+"""The ports whose text is the name of an entry, also without braces."""
+_NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A place that names an entry.
+
+    Attributes:
+        path: the file.
+        tree: the name of the tree.
+        name: as written, with a leading `@` if there is one.
+        reads, writes: None if it is not known.
+        creates: the entry exists from then on.
+        type: the type of the port, `any` if it is not known.
+        from_library: the type is that of a library, not of a model in a file.
+        script: the use is in a script.
+        span: of the value; for scripts, of the attribute's value.
+    """
+
+    path: str
+    tree: str
+    name: str
+    reads: bool | None
+    writes: bool | None
+    creates: bool
+    type: str
+    from_library: bool
+    script: bool
+    node: TreeNode
+    span: Span
+
+
+@dataclass(frozen=True, eq=False)
+class Entries:
+    """Attributes:
+    uses: in the order of the files and their texts.
+    """
+
+    uses: tuple[Use, ...]
+    _roots: Mapping[Key, Key]
+
+    def entry(self, tree: str, name: str) -> Key:
+        """What stands for the entry that a name in a tree means."""
+        key = (ROOT, name[1:]) if name.startswith("@") else (tree, name)
+        while key in self._roots:
+            key = self._roots[key]
+        return key
+
+    def by_entry(self) -> Mapping[Key, list[Use]]:
+        found: dict[Key, list[Use]] = {}
+        for use in self.uses:
+            found.setdefault(self.entry(use.tree, use.name), []).append(use)
+        return found
+
+
+def entry_of(setting: PortSetting) -> str | None:
+    """The entry that a port is bound to; `{=}` means the one of the port's name."""
+    value = setting.value.value.strip()
+    if value == "=":
+        return setting.attribute.name
+    name = blackboard_variable(value)
+    return setting.attribute.name if name == "=" else name or None
+
+
+def find_entries(forest: Forest) -> Entries:
+    uses = tuple(_uses(forest))
+    return Entries(uses, _joined(forest, uses))
+
+
+def _uses(forest: Forest) -> Iterator[Use]:
+    for path, tree, node in forest.all_nodes():
+        own = tree.id.value if tree.id else ""
+        for use in scripts_of(forest, node):
+            span = use.attribute.value_span
+            for name, operator in names_in(use.attribute.value):
+                reads, writes = operator not in (":=", "="), operator != "read"
+                yield Use(path, own, name, reads, writes, operator == ":=", ANY, False, True, node, span)
+        if node.is_subtree or forest.names_tree(node):
+            yield from _of_subtree(forest, path, own, node)
+        else:
+            yield from _of_ports(forest, path, own, node)
+
+
+def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:
+    known = forest.known_node(node)
+    for setting in ports_of(node):
+        port = known.port(setting.attribute.name) if known else None
+        span, text = setting.value.span, setting.value.value.strip()
+        name = entry_of(setting)
+        role = _NAMING_PORTS.get((known.name if known else "", setting.attribute.name))
+        if role is not None:
+            name = name or (text if _NAME.match(text) else None)
+            if name is not None:
+                reads, writes = (False, True) if role == "write" else (None, None)
+                yield Use(path, own, name, reads, writes, True, ANY, False, False, node, span)
+        elif name is not None and port is not None:
+            if port.type == SCRIPT:
+                continue
+            direction = port.direction
+            reads = direction.reads if direction is not Direction.INOUT else None
+            type_ = port_type(port)
+            assert known is not None
+            library = bool(known.library)
+            yield Use(path, own, name, reads, direction.writes, True, type_, library, False, node, span)
+        elif name is not None:
+            yield Use(path, own, name, None, None, True, ANY, False, False, node, span)
+
+
+def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:
+    """What a subtree is given; a text is written to the subtree's entry."""
+    inner = node.plugin.value if node.plugin else ""
+    known = inner in forest.trees
+    for setting in ports_of(node):
+        name = entry_of(setting)
+        if name is None:
+            key = setting.attribute.name
+            yield Use(path, inner, key, False, True, True, ANY, False, False, node, setting.value.span)
+        elif not known:
+            yield Use(path, own, name, None, None, True, ANY, False, False, node, setting.value.span)
+
+
+def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
+    """A forest of keys (union-find) in which the names of one entry have one root."""
+    roots: dict[Key, Key] = {}
+
+    def find(key: Key) -> Key:
+        top = key
+        while top in roots:
+            top = roots[top]
+        while key in roots:
+            roots[key], key = top, roots[key]
+        return top
+
+    def join(one: Key, other: Key) -> None:
+        first, second = find(one), find(other)
+        if first != second:
+            roots[first] = second
+
+    def key_of(tree: str, name: str) -> Key:
+        return (ROOT, name[1:]) if name.startswith("@") else (tree, name)
+
+    names: dict[str, set[str]] = {}
+    for use in uses:
+        if not use.name.startswith("@"):
+            names.setdefault(use.tree, set()).add(use.name)
+    calls = list(_calls(forest))
+    for outer, inner, node in calls:
+        for setting in ports_of(node):
+            name = entry_of(setting)
+            if name is not None:
+                names.setdefault(outer, set()).add(name)
+                join((inner, setting.attribute.name), key_of(outer, name))
+    changed = True
+    while changed:
+        changed = False
+        for outer, inner, node in calls:
+            if not is_autoremapped(node):
+                continue
+            given = {setting.attribute.name for setting in ports_of(node)}
+            for name in sorted(names.get(inner, ())):
+                if name not in given and not name.startswith("_"):
+                    join((inner, name), (outer, name))
+                    if name not in names.setdefault(outer, set()):
+                        names[outer].add(name)
+                        changed = True
+    used = {inner for _, inner, _ in calls}
+    for tree in forest.trees:
+        if tree not in used:
+            for name in sorted(names.get(tree, ())):
+                join((tree, name), (ROOT, name))
+    return roots
+
+
+def _calls(forest: Forest) -> Iterator[tuple[str, str, TreeNode]]:
+    """The uses of trees that are known: the outer tree, the inner one and the node."""
+    for _, tree, node in forest.all_nodes():
+        is_call = node.is_subtree or forest.names_tree(node)
+        if is_call and node.plugin is not None and node.plugin.value in forest.trees:
+            yield _name(tree), node.plugin.value, node
+
+
+def _name(tree: Tree) -> str:
+    return tree.id.value if tree.id else ""
+
+
+def is_autoremapped(node: TreeNode) -> bool:
+    attribute = node.element.get("_autoremap")
+    return attribute is not None and attribute.value.strip() in ("1", "true", "True", "TRUE")

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""entry-type-conflict: see entry_type_conflict.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.cpp_types import ANY, STRING
+from roaml.forest.entries import Use
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import forest_of
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for uses in entries_of(forest).by_entry().values():
+        typed = [use for use in uses if use.type != ANY]
+        if len({use.type for use in typed}) > 1:
+            for use, first in _conflicts(typed):
+                if use.path == context.source.path:
+                    yield _finding(use, first)
+
+
+def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
+    """The uses of another type than the entry has, each with the one that gives it its type.
+
+    The first port gives it. An entry that was made as a text takes other types, but no second kind of values.
+    """
+    first = typed[0]
+    for use in typed[1:]:
+        if use.type != first.type:
+            if first.type != STRING:
+                yield use, first
+            elif use.writes and (writer := next((u for u in typed if u.writes and u.type != use.type), None)):
+                yield use, writer
+            elif not use.writes:
+                strings = all(u.type == STRING for u in typed if u.writes)
+                if strings and any(u.writes for u in typed) and not use.type.startswith(_CONVERTED):
+                    yield use, first
+
+
+_CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "NodeStatus", "chrono")
+"""Types that the library reads from a text; others may be registered by the program."""
+
+
+def _finding(use: Use, first: Use) -> Finding:
+    related = [Related(first.span, f"`{first.type}` here")] if first.path == use.path else []
+    message = f"the entry `{use.name}` is of type `{first.type}`; this port is `{use.type}`"
+    severity = Severity.ERROR if use.from_library and first.from_library else Severity.WARNING
+    return RULE.at(use.span, message, severity=severity, related=related)
+
+
+RULE = Rule("entry-type-conflict", Severity.ERROR, "Ports of different types use one blackboard entry.", tree=check)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""node-port-value: see node_port_value.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.forest.cpp_types import SCRIPT, mismatch
+from roaml.forest.entries import entry_of
+from roaml.forest.forest import Forest, ports_of
+from roaml.libraries import Direction, Node, Port
+from roaml.model.tree import PortSetting, TreeNode
+from roaml.rules.rule import Rule, TreeContext, replacements
+from roaml.rules.support.forest import forest_of
+from roaml.text import TextEdit
+
+_NAME = re.compile(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for _, node in forest.own_nodes():
+        known = _known(forest, node)
+        for setting in ports_of(node):
+            port = known.port(setting.attribute.name) if known else None
+            if port is not None and port.type == SCRIPT:
+                continue
+            wrong = list(_reference(setting))
+            yield from wrong
+            if known is not None and port is not None and not wrong and entry_of(setting) is None:
+                yield from _literal(known, port, setting)
+    for model in context.file.models:
+        for described in model.ports:
+            default = described.element.get("default")
+            if default is not None and default.value.strip('" ') and not default.value.strip().startswith("{"):
+                problem = mismatch(described.type, default.value.strip('" '))
+                if problem is not None and not problem.ignored and not _is_code(default.value):
+                    name = described.name.value if described.name else ""
+                    message = f"the default of the port `{name}` {problem.message}"
+                    yield RULE.at(default.value_span, message, severity=Severity.WARNING)
+
+
+def _is_code(text: str) -> bool:
+    """Whether a default is written as in C++: models describe it for people."""
+    return any(mark in text for mark in "(:<") or text.endswith("f")
+
+
+def _known(forest: Forest, node: TreeNode) -> Node | None:
+    if node.plugin is not None and (node.is_subtree or forest.names_tree(node)):
+        return forest.subtree_models.get(node.plugin.value)
+    return forest.known_node(node)
+
+
+def _reference(setting: PortSetting) -> Iterator[Finding]:
+    value = setting.value.value
+    inner = value.strip()
+    opens, closes = inner.startswith("{"), inner.endswith("}")
+    if opens and closes:
+        name = inner[1:-1]
+        if not name.strip():
+            yield RULE.at(setting.value.span, "the braces hold no name of a blackboard entry")
+        elif name != name.strip() and "{" not in name:
+            plain = f"{{{name.strip()}}}"
+            message = f"the spaces belong to the name of the entry; write `{plain}`"
+            yield RULE.at(
+                setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
+            )
+    elif opens != closes and inner.count("{") != inner.count("}"):
+        name = inner.strip("{}").strip()
+        fixes = replacements(setting.value.span, (f"{{{name}}}",)) if _NAME.match(name) else ()
+        message = f"`{inner}` has only one of two braces, so it is a text and not an entry"
+        yield RULE.at(setting.value.span, message, *fixes, severity=Severity.WARNING)
+
+
+def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]:
+    text, span = setting.value.value, setting.value.span
+    if port.direction is Direction.OUT:
+        name = text.strip()
+        fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
+        what = f"`{name}` is a text" if name else "nothing is given"
+        message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {what}"
+        yield RULE.at(span, message, *fixes, severity=_severity(known))
+        return
+    problem = mismatch(port.type, text)
+    if problem is not None:
+        severity = Severity.WARNING if problem.ignored else _severity(known)
+        fixes = list(replacements(span, (problem.instead,))) if problem.instead else []
+        shown = f"`{text.strip()}`" if text.strip() else "an empty value"
+        message = f"`{port.name}` of `{known.name}` {problem.message}, not {shown}"
+        if problem.ignored:
+            message = f"`{port.name}` of `{known.name}` {problem.message}"
+        yield RULE.at(span, message, *fixes, severity=severity)
+
+
+def _severity(known: Node) -> Severity:
+    """A model in a file may differ from the node."""
+    return Severity.ERROR if known.library or known.kind.value == "subtree" else Severity.WARNING
+
+
+RULE = Rule("node-port-value", Severity.ERROR, "A port is given a value that it cannot have.", tree=check)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""restarted-node: see restarted_node.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.answers import Possible
+from roaml.forest.forest import Forest
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import forest_of
+
+REFUSED_SINCE = (4, 7)
+"""The version from which on two `AsyncSequence` in a `ReactiveSequence` are refused."""
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    possible = Possible(forest)
+    for _, node in forest.own_nodes():
+        name = node.plugin.value if node.plugin else ""
+        if name in ("ReactiveSequence", "ReactiveFallback") and forest.known_node(node):
+            yield from _refused(forest, node, name)
+            running = [child for child in node.children if possible.is_running_at_once(child)]
+            for child in running[1:]:
+                first = running[0]
+                message = (
+                    f"`{_name(child)}` is halted at the next tick: `{name}` ticks from its first child on, and"
+                    f" `{_name(first)}` is RUNNING again then"
+                )
+                related = [Related(first.element.name_span, "starts again at every tick")]
+                yield RULE.at(child.element.name_span, message, related=related)
+
+
+def _refused(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
+    version = forest.settings.version
+    asynchronous = [child for child in node.children if child.plugin and child.plugin.value == "AsyncSequence"]
+    if name == "ReactiveSequence" and (version is None or version >= REFUSED_SINCE):
+        for child in asynchronous[1:]:
+            message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`"
+            yield RULE.at(child.element.name_span, message, severity=Severity.ERROR)
+
+
+def _name(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin else node.element.name
+
+
+RULE = Rule("restarted-node", Severity.WARNING, "A reactive node has two asynchronous children.", tree=check)

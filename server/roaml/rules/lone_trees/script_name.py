@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""script-name: see script_name.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.forest.entries import Key
+from roaml.forest.forest import Forest
+from roaml.model.tree import Tree
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
+from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import forest_of
+from roaml.rules.support.scripts import scripts
+from roaml.script.tree import Assignment, Name, Script, walk
+from roaml.suggest import nearest_name
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    entries = entries_of(forest)
+    created: set[Key] = set()
+    names: dict[str, list[str]] = {}
+    for key, uses in entries.by_entry().items():
+        if any(use.creates for use in uses):
+            created.add(key)
+            for use in uses:
+                names.setdefault(use.tree, []).append(use.name)
+    for tree, _, script, problems in scripts(context):
+        own = tree.id.value if tree.id else ""
+        for name, operator in _names(script) if not problems else ():
+            plain = name.name.removeprefix("@")
+            if entries.entry(own, name.name) not in created and plain not in forest.host_entries:
+                yield _finding(name, operator, nearest_name(name.name, names.get(own, ())), _is_closed(forest, tree))
+
+
+def _names(script: Script) -> Iterator[tuple[Name, str]]:
+    """The names of a script, each with the operator that assigns to it, or ""."""
+    targets: set[int] = set()
+    for expr in walk(script):
+        if isinstance(expr, Assignment):
+            targets.add(id(expr.target))
+            yield expr.target, expr.operator
+        elif isinstance(expr, Name) and id(expr) not in targets:
+            yield expr, ""
+
+
+def _is_closed(forest: Forest, tree: Tree) -> bool:
+    """Whether it is known which trees a tree is used in: other files may remap its entries."""
+    main = forest.file.main
+    if not forest.complete:
+        return False
+    return len(forest.trees) == 1 or (main is not None and tree.id is not None and main.value in forest.trees)
+
+
+def _finding(name: Name, operator: str, near: str | None, closed: bool) -> Finding:
+    close = (near,) if near else ()
+    fixes = replacements(name.span, close)
+    if operator:
+        hint = did_you_mean(close) or "; write `:=` to create it, or set it in the program"
+        message = f"`{operator}` needs an entry, and nothing creates `{name.name}`{hint}"
+        return RULE.at(name.span, message, *fixes, severity=Severity.WARNING if closed else Severity.INFORMATION)
+    hint = did_you_mean(close) or "; it may be an enumeration constant or an entry of the program"
+    return RULE.at(name.span, f"nothing in the trees creates `{name.name}`{hint}", *fixes)
+
+
+RULE = Rule("script-name", Severity.INFORMATION, "A script uses a name that nothing creates.", tree=check)

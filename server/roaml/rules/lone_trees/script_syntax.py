@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""script-syntax: see script_syntax.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.scripts import fixes, scripts
+from roaml.script.infer import statements_without_effect
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    for _, use, script, problems in scripts(context):
+        for problem in problems:
+            yield RULE.at(
+                problem.span, f"script of `{use.attribute.name}`: {problem.message}", *fixes(context, use, problem)
+            )
+        if not problems:
+            for problem in statements_without_effect(script):
+                yield RULE.at(problem.span, problem.message, severity=Severity.WARNING)
+
+
+RULE = Rule("script-syntax", Severity.ERROR, "A script does not follow the grammar of scripts.", tree=check)

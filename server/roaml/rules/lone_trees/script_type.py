@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""script-type: see script_type.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Finding, Severity
+from roaml.forest.cpp_types import ANY, STRING
+from roaml.forest.entries import Entries, Key
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import forest_of
+from roaml.rules.support.scripts import fixes, scripts
+from roaml.script.infer import Type, check_condition, check_types
+
+_TYPES = {
+    STRING: Type.TEXT, "double": Type.REAL, "float": Type.REAL, "bool": Type.REAL,
+    **dict.fromkeys(("int", "int8", "int16", "int64", "uint8", "uint16", "unsigned", "uint64"), Type.INTEGER),
+}  # fmt: skip
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    entries = entries_of(forest)
+    types = _types(entries)
+    for tree, use, script, problems in scripts(context):
+        own = tree.id.value if tree.id else ""
+
+        def lookup(name: str, own: str = own) -> Type:
+            return types.get(entries.entry(own, name), Type.UNKNOWN)
+
+        if problems:
+            continue
+        for problem in check_types(script, lookup):
+            yield RULE.at(problem.span, problem.message, *fixes(context, use, problem))
+        if use.is_condition:
+            for problem in check_condition(script, lookup):
+                yield RULE.at(problem.span, f"`{use.attribute.name}` is a condition: {problem.message}")
+
+
+def _types(entries: Entries) -> dict[Key, Type]:
+    """The types of the entries whose ports are all of one type."""
+    found: Mapping[Key, set[str]] = {
+        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry().items()
+    }
+    single = {key: next(iter(types)) for key, types in found.items() if len(types) == 1}
+    return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}
+
+
+RULE = Rule("script-type", Severity.ERROR, "An operation of a script always fails.", tree=check)

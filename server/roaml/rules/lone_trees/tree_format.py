@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tree-format: see tree_format.md."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal, rename_tag
+from roaml.forest.forest import CPP
+from roaml.model.tree import TreeNode, nodes
+from roaml.rules.rule import Rule, TreeContext
+from roaml.text import Edit, Span, TextEdit, computed
+from roaml.xml_syntax import Attribute
+
+CURRENT = "4"
+_YES = ("1", "true", "True", "TRUE")
+_SHARING = ("__shared_blackboard", "__autoremap")
+_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+_PARALLEL = {"success_threshold": "success_count", "failure_threshold": "failure_count", "threshold": "success_count"}
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    if context.forest is None:
+        return
+    root, version = context.file.element, context.file.element.get("BTCPP_format")
+    if context.forest.is_version_3:
+        span = version.value_span if version else root.name_span
+        message = "this file is written for version 3 of BehaviorTree.CPP; version 4 reads it differently"
+        fix = Fix("Convert to version 4", functools.partial(_plan, context), preferred=True)
+        yield RULE.at(span, message, fix)
+    elif version is not None and context.file.format != CURRENT:
+        fix = Fix(f"Change to `{CURRENT}`", (TextEdit(version.value_span, CURRENT),), preferred=True)
+        yield RULE.at(version.value_span, f"the format is `3` or `4`, not `{version.value}`", fix)
+
+
+def _plan(context: TreeContext) -> tuple[TextEdit, ...]:
+    return tuple(sorted(computed(_edits(context))))
+
+
+def _edits(context: TreeContext) -> Iterator[Edit]:
+    """The edits that make a file of version 4 of it."""
+    root = context.file.element
+    version = root.get("BTCPP_format")
+    if version is None:
+        yield TextEdit(Span(root.name_span.end, root.name_span.end), f' BTCPP_format="{CURRENT}"')
+    else:
+        yield TextEdit(version.value_span, CURRENT)
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            yield from _node(context, node)
+
+
+def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
+    name = node.plugin.value if node.plugin else ""
+    renamed = CPP.renamed.get(name)
+    if node.is_subtree:
+        if node.element.name == "SubTreePlus":
+            yield from rename_tag(node.element, "SubTree").edits
+        yield from _subtree(context, node)
+    elif renamed is not None and node.plugin is not None:
+        yield from (
+            rename_tag(node.element, renamed.now).edits if node.compact else (TextEdit(node.plugin.span, renamed.now),)
+        )
+    elif name == "Parallel":
+        for attribute in node.element.attributes:
+            if attribute.name in _PARALLEL:
+                yield TextEdit(attribute.name_span, _PARALLEL[attribute.name])
+
+
+def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
+    """In version 3, the values of a `SubTree` name entries without braces; those of a `SubTreePlus` are as now."""
+    has_current = node.element.get("_autoremap") is not None
+    for attribute in node.element.attributes:
+        if attribute.name in _SHARING:
+            if has_current or attribute.value.strip() not in _YES:
+                yield removal(context.source.text, attribute.span)
+            else:
+                has_current = True
+                yield TextEdit(attribute.name_span, "_autoremap")
+        elif node.element.name == "SubTree" and _is_entry(attribute):
+            yield TextEdit(attribute.value_span, f"{{{attribute.value.strip()}}}")
+
+
+def _is_entry(attribute: Attribute) -> bool:
+    if attribute.name in ("ID", "name") or attribute.name.startswith("_") or ":" in attribute.name:
+        return False
+    return bool(_NAME.match(attribute.value.strip()))
+
+
+RULE = Rule("tree-format", Severity.WARNING, "A tree file is not in the format of version 4.", tree=check)

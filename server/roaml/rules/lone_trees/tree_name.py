@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tree-name: see tree_name.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import remove
+from roaml.forest.forest import CPP, Forest
+from roaml.forest.scripts import AFTERWARDS, CONDITIONS
+from roaml.model.syntax import Name
+from roaml.model.tree import Tree, nodes
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import forest_of
+
+_FORBIDDEN = re.compile(r"[\x00-\x20\x7f<>&\"'/\\:*?|.]")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+_RESERVED_PORTS = ("name", "ID", "_autoremap", *CONDITIONS, *AFTERWARDS)
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for tree in context.file.trees:
+        if tree.id is not None:
+            yield from _id(tree.id, "tree")
+            yield from _like_a_node(forest, tree.id)
+        yield from _instances(tree)
+    yield from _models(context)
+
+
+def _id(name: Name, what: str) -> Iterator[Finding]:
+    text = name.value
+    if not text:
+        yield RULE.at(name.span, f"the name of a {what} must not be empty")
+    elif text in ("Root", "root"):
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {what}")
+    elif match := _FORBIDDEN.search(text):
+        shown = "white space" if match[0].isspace() else f"`{match[0]}`"
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a {what}")
+
+
+def _like_a_node(forest: Forest, name: Name) -> Iterator[Finding]:
+    known = CPP.nodes.get(name.value)
+    if (known is not None and not known.until) or name.value in forest.models:
+        yield RULE.at(name.span, f"there is a node `{name.value}`; a tree needs another name")
+
+
+def _instances(tree: Tree) -> Iterator[Finding]:
+    first: dict[str, Name] = {}
+    for node in nodes(tree):
+        if node.name is None:
+            continue
+        if _CONTROL.search(node.name.value):
+            yield RULE.at(node.name.span, "BehaviorTree.CPP refuses control characters in the name of a node")
+        if node.is_subtree:
+            earlier = first.setdefault(node.name.value, node.name)
+            if earlier is not node.name:
+                message = f"two `SubTree` of one tree must not have the same name `{node.name.value}`"
+                yield RULE.at(node.name.span, message, related=[Related(earlier.span, "the first one")])
+
+
+def _models(context: TreeContext) -> Iterator[Finding]:
+    lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
+    for extra in lists[1:]:
+        message = "a file has one `<TreeNodesModel>`; BehaviorTree.CPP reads only the first"
+        related = [Related(lists[0].name_span, "the first one")]
+        yield RULE.at(extra.name_span, message, related=related, severity=Severity.WARNING)
+    first: dict[str, Name] = {}
+    for model in context.file.models:
+        if model.id is None:
+            continue
+        yield from _id(model.id, "node")
+        earlier = first.setdefault(model.id.value, model.id)
+        if earlier is not model.id:
+            drop = remove(context.document, model.element)
+            message = f"`{model.id.value}` is described twice"
+            related = [Related(earlier.span, "the first one")]
+            yield RULE.at(model.id.span, message, drop, related=related, severity=Severity.WARNING)
+        ports: dict[str, Name] = {}
+        for port in model.ports:
+            if port.name is None:
+                continue
+            if ports.setdefault(port.name.value, port.name) is not port.name:
+                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice"
+                related = [Related(ports[port.name.value].span, "the first one")]
+                yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
+            yield from _port(port.name)
+
+
+def _port(name: Name) -> Iterator[Finding]:
+    text = name.value
+    if text in _RESERVED_PORTS:
+        yield RULE.at(
+            name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a port: it has a meaning of its own"
+        )
+    elif not text[:1].isalpha() or not text[:1].isascii():
+        yield RULE.at(name.span, "the name of a port begins with a letter")
+    elif match := _FORBIDDEN.search(text):
+        shown = "white space" if match[0].isspace() else f"`{match[0]}`"
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a port")
+
+
+RULE = Rule("tree-name", Severity.ERROR, "A name is refused by BehaviorTree.CPP or given twice.", tree=check)

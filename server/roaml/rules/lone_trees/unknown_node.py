@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-node: see unknown_node.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import rename_tag
+from roaml.forest.forest import CPP, Forest
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import forest_of, probably_meant
+from roaml.text import TextEdit
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for _, node in forest.own_nodes():
+        if node.plugin is not None and not node.is_subtree and not forest.names_tree(node):
+            yield from _check(forest, node)
+
+
+def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
+    assert node.plugin is not None
+    name, span = node.plugin.value, node.plugin.span
+    if forest.node(name) is not None or name in forest.beside:
+        return
+    renamed, absent, old = CPP.renamed.get(name), forest.absent(name), CPP.nodes.get(name)
+    if renamed is not None:
+        message = f"`{name}` is the name of `{renamed.now}` in version 3"
+        yield RULE.at(span, message, _renaming(node, renamed.now), severity=Severity.ERROR)
+    elif absent is not None:
+        fixes = (_renaming(node, absent.instead),) if absent.instead else ()
+        yield RULE.at(span, f"`{name}` is not a node: {absent.reason}", *fixes)
+    elif old is not None and old.until:
+        message = f"`{name}` is a node of version 3; version 4 has `Precondition` with a script"
+        yield RULE.at(span, message, severity=Severity.ERROR)
+    elif old is not None:
+        yield RULE.at(
+            span,
+            f"`{name}` exists since version {old.since} of BehaviorTree.CPP; the settings name an older version",
+            severity=Severity.ERROR,
+        )
+    else:
+        yield from _unknown(forest, node, name)
+
+
+def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
+    """A program may register nodes that no model describes; what is nearly the name of a node is told in any case."""
+    assert node.plugin is not None
+    trees = tuple(forest.trees)
+    near = probably_meant(name, (*forest.names, *trees))
+    if near is not None:
+        what = "tree" if near in trees and near not in forest.names else "node"
+        known = forest.node(near)
+        library = f" of {known.library}" if known is not None and known.library else ""
+        message = f"there is no node `{name}`; did you mean the {what} `{near}`{library}?"
+        yield RULE.at(node.plugin.span, message, _renaming(node, near))
+    elif forest.has_own_models or forest.libraries:
+        severity = Severity.WARNING if forest.has_own_models else Severity.INFORMATION
+        message = f"no model describes the node `{name}`; `<TreeNodesModel>` and the setting `tree-models` can"
+        yield RULE.at(node.plugin.span, message, severity=severity)
+
+
+def _renaming(node: TreeNode, name: str) -> Fix:
+    assert node.plugin is not None
+    if node.compact:
+        return rename_tag(node.element, name)
+    return Fix(f"Change to `{name}`", (TextEdit(node.plugin.span, name),), preferred=True)
+
+
+RULE = Rule("unknown-node", Severity.WARNING, "A tree uses a node that is not known.", tree=check)

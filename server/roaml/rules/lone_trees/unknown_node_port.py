@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-node-port: see unknown_node_port.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import removal
+from roaml.forest.forest import ports_of
+from roaml.forest.scripts import AFTERWARDS, CONDITIONS
+from roaml.libraries import Node
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
+from roaml.rules.support.forest import forest_of, probably_meant
+from roaml.suggest import close_names
+
+MAX_PORTS = 8
+"""So many ports of a node are listed."""
+
+_OF_LIBRARY = (*CONDITIONS, *AFTERWARDS, "_autoremap", "_description", "_uid", "_fullpath")
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for _, node in forest.own_nodes():
+        yield from _conditions(node)
+        known = forest.known_node(node)
+        if known is not None:
+            yield from _ports(context, node, known)
+
+
+def _ports(context: TreeContext, node: TreeNode, known: Node) -> Iterator[Finding]:
+    names = [port.name for port in known.ports if not port.alias_of]
+    given = {setting.attribute.name for setting in node.ports}
+    for setting in ports_of(node):
+        attribute = setting.attribute
+        if attribute.name in names:
+            continue
+        alias = known.port(attribute.name)
+        free = [name for name in names if name not in given]
+        close = (alias.alias_of,) if alias and alias.alias_of in free else close_names(attribute.name, free)
+        hint = did_you_mean(close) or _known(names)
+        drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),), preferred=False)
+        fixes = (*replacements(attribute.name_span, close), *(() if close else (drop,)))
+        # A model in a file may be older than the node.
+        severity = Severity.ERROR if known.library else Severity.WARNING
+        message = f"`{known.name}` has no port `{attribute.name}`{hint}"
+        yield RULE.at(attribute.name_span, message, *fixes, severity=severity)
+
+
+def _known(names: list[str]) -> str:
+    if not names:
+        return "; it has no ports"
+    more = " and others" if len(names) > MAX_PORTS else ""
+    return f"; it has {listing(names[:MAX_PORTS])}{more}"
+
+
+def _conditions(node: TreeNode) -> Iterator[Finding]:
+    """The library ignores unknown attributes that begin with `_`."""
+    for attribute in node.element.attributes:
+        if attribute.name.startswith("_") and attribute.name not in _OF_LIBRARY:
+            near = probably_meant(attribute.name, _OF_LIBRARY)
+            if near is not None and node.element.get(near) is None:
+                message = f"`{attribute.name}` is ignored; did you mean `{near}`?"
+                fixes = replacements(attribute.name_span, (near,))
+                yield RULE.at(attribute.name_span, message, *fixes, severity=Severity.WARNING)
+
+
+RULE = Rule("unknown-node-port", Severity.ERROR, "A node sets a port that it does not have.", tree=check)

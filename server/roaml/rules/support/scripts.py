@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The scripts in the trees of a file that belongs to no system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Fix
+from roaml.forest.scripts import ScriptUse, parsed, scripts_of
+from roaml.model.tree import Tree
+from roaml.rules.rule import TreeContext
+from roaml.rules.support.forest import forest_of
+from roaml.script.parse import Problem
+from roaml.script.tree import Script
+from roaml.text import TextEdit
+from roaml.xml_syntax.escapes import escape
+
+
+def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[Problem, ...]]]:
+    """Each script with what is wrong with its form; the places are those of the file."""
+    forest = forest_of(context)
+    if forest is None:
+        return
+    for tree, node in forest.own_nodes():
+        for use in scripts_of(forest, node):
+            yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
+
+
+def fixes(context: TreeContext, use: ScriptUse, problem: Problem) -> Iterator[Fix]:
+    if problem.replacement:
+        quote = context.source.text[use.attribute.value_span.start - 1]
+        edit = TextEdit(problem.span, escape(problem.replacement, quote))
+        yield Fix(f"Change to `{problem.replacement}`", (edit,), preferred=True)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can happen next, in words.
+
+Each combination of enabled edges of a synchronisation vector is a choice; all choices are equally probable if nobody
+decides, as in `verify`. The destinations of a choice are its outcomes, which chance decides.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roaml.jani.expressions import Boolean, Integer, Name, Real
+from roaml.jani.model import Automaton, Destination, Edge
+from roaml.jani.node import Origin
+from roaml.model.translated import CLOCK_ACTION, is_timer, received_by, sent_by
+from roaml.simulation.run import Decision, Enabled, EnabledEdges
+from roaml.simulation.words import CLOCK_NAME, TREE_NAME, resting, tree_text, who
+from roaml.smc.compile import Legend
+from roaml.smc.record import Plain
+from roaml.views.event_words import said
+from roaml.views.events import EventReader
+from roaml.views.values import shown_value
+
+MAX_OUTCOMES = 64
+"""Outcomes of one choice that are listed; chance decides among all of them."""
+MAX_CHOICES = 256
+"""Choices that are listed in one state."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What chance can make of a choice.
+
+    Attributes:
+        probability: within the choice.
+        text: what is special about it; "" if the choice has one outcome.
+        decision: takes the choice with this outcome.
+    """
+
+    probability: float
+    text: str
+    decision: Decision
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A step that can be taken next.
+
+    Attributes:
+        number: from 1, in the order in which they are listed.
+        text: who does what.
+        automata: who takes part, the one that acts first.
+        probability: with which the seed takes this choice.
+        outcomes: at least one; those without probability are left out.
+        origin: the place in the text of what the first one does.
+        is_internal: whether an automaton only executes its next statement, which nobody else sees.
+    """
+
+    number: int
+    text: str
+    automata: tuple[str, ...]
+    probability: float
+    outcomes: tuple[Outcome, ...]
+    origin: Origin | None
+    is_internal: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """An automaton that takes part, with the first way of its edge and the probabilities of its destinations."""
+
+    automaton: Automaton
+    edge: Edge
+    first_way: int
+    probabilities: tuple[float, ...]
+
+
+def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader) -> Iterator[Choice]:
+    """The choices of a state, at most `MAX_CHOICES`.
+
+    Args:
+        events: has read all steps up to this state.
+    """
+    total = sum(vector.ties * math.prod(len(slot.edges) for slot in vector.slots) for vector in enabled)
+    number = 0
+    for vector in enabled:
+        for picks in itertools.product(*(range(len(slot.edges)) for slot in vector.slots)):
+            if number == MAX_CHOICES:
+                return
+            number += 1
+            parts = [_part(legend, slot, pick) for slot, pick in zip(vector.slots, picks, strict=True)]
+            actors = [part for part in parts if not events.is_event(part.automaton.name)]
+            action = legend.vectors[vector.vector][1] or ""
+            yield Choice(
+                number,
+                _text(action, actors, parts, events, legend),
+                tuple(part.automaton.name for part in (*actors, *(p for p in parts if p not in actors))),
+                vector.ties / total,
+                tuple(_outcomes(vector.vector, picks, parts, legend)),
+                (actors or parts)[0].edge.origin if parts else None,
+                len(actors) <= 1 and not sent_by(action) and not received_by(action) and action != CLOCK_ACTION,
+            )
+
+
+def _part(legend: Legend, slot: EnabledEdges, pick: int) -> _Part:
+    first_way, probabilities = slot.edges[pick]
+    edge, _ = legend.ways[first_way]
+    return _Part(legend.layout.instances[slot.instance].automaton, edge, first_way, probabilities)
+
+
+def _outcomes(vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legend: Legend) -> Iterator[Outcome]:
+    ways = [[way for way, chance in enumerate(part.probabilities) if chance > 0] for part in parts]
+    is_certain = all(len(possible) == 1 for possible in ways)
+    for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
+        probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
+        text = "" if is_certain else ", ".join(_effects(parts, taken, legend)) or "nothing changes"
+        yield Outcome(probability, text, Decision(vector, picks, taken))
+
+
+def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> Iterator[str]:
+    """What comes of the destinations that chance decides about."""
+    clients = [instance.automaton.name for instance in legend.layout.instances]
+    for part, way in zip(parts, taken, strict=True):
+        if sum(chance > 0 for chance in part.probabilities) > 1:
+            yield from _consequences(part.automaton, legend.ways[part.first_way + way][1], clients)
+
+
+def _consequences(automaton: Automaton, destination: Destination, clients: Sequence[str]) -> Iterator[str]:
+    """What an automaton does from a destination on, as far as nothing but itself decides."""
+    rest = resting(automaton)
+    name = who(automaton.name)
+    visited: set[str] = set()
+    while True:
+        for assignment in destination.assignments:
+            if isinstance(assignment.target, Name) and isinstance(assignment.value, (Boolean, Integer, Real)):
+                yield f"{assignment.target.identifier} := {shown_value(assignment.value.value)}"
+        location = destination.location
+        following = [edge for edge in automaton.edges if edge.source == location]
+        if location in rest:
+            yield f"{name} enters `{location}`"
+            return
+        if location in visited or len(following) != 1 or len(following[0].destinations) != 1:
+            return
+        visited.add(location)
+        event = sent_by(following[0].action or "")
+        if event:
+            yield f"{name} sends {said(event, '', clients)}"
+        (destination,) = following[0].destinations
+
+
+def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: EventReader, legend: Legend) -> str:
+    names = [who(part.automaton.name) for part in actors]
+    clients = [instance.automaton.name for instance in legend.layout.instances]
+    if action == CLOCK_ACTION:
+        return "time passes"
+    event = sent_by(action)
+    spoken = event or received_by(action)
+    told = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), clients) if names else ""
+    if told:
+        return told
+    if event:
+        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {said(event, '', clients)}"
+    event = received_by(action)
+    if event and is_timer(event):
+        takers = [name for name in names if name != CLOCK_NAME]
+        if not takers:
+            return "a timer ticks"
+        if takers == [TREE_NAME]:
+            return "the tree begins its next tick"
+        return f"{_listed(takers)} {_verb(takers, 'takes', 'take')} {said(event, takers[0], clients, taken=True)}"
+    if event:
+        parameters = _parameters(events.parameters(event))
+        if not names:
+            return f"nobody receives {said(event, '', clients)}{parameters}"
+        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {said(event, names[0], clients)}{parameters}"
+    if not names:
+        names = [who(part.automaton.name) for part in parts]
+    return f"{_listed(names)} {_verb(names, 'goes', 'go')} on"
+
+
+def _parameters(values: Mapping[str, Plain]) -> str:
+    return f" ({', '.join(f'{name}: {shown_value(value)}' for name, value in values.items())})" if values else ""
+
+
+def _listed(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
+
+
+def _verb(names: Sequence[str], singular: str, plural: str) -> str:
+    return singular if len(names) == 1 else plural

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Follows the steps of a run, and knows what of the state the variables do not show: messages, calls, ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from roaml.jani.model import Automaton
+from roaml.jani.node import Origin
+from roaml.model.translated import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
+from roaml.model.value_types import STATUSES
+from roaml.simulation.state import (
+    NODE_AUTOMATON,
+    EventState,
+    MachineState,
+    NodeState,
+    NodeStatus,
+    SystemState,
+)
+from roaml.simulation.words import TREE_EVENT, who
+from roaml.smc.record import Plain, TraceStep, Variable
+from roaml.views.event_words import said
+from roaml.views.events import EventReader
+from roaml.views.turns import is_inner
+
+_STATUS_NAMES = {number: NodeStatus(name) for name, number in STATUSES.items() if name in NodeStatus.__members__}
+
+
+class Follower:
+    """Attributes:
+    position: the number of steps that were read.
+    events: the events as they were sent last.
+    time: of the clock, in seconds; None if the model has none.
+    """
+
+    def __init__(
+        self, automata: Sequence[Automaton], start: Mapping[str, Plain], clock: tuple[str, str] | None
+    ) -> None:
+        self.position = 0
+        self.events = EventReader(automata, start)
+        self.time: float | None = None if clock is None else 0.0
+        self._clock = clock
+        self._clock_values = dict.fromkeys(clock or (), 0.0)
+        self._automata = automata
+        self._names = [automaton.name for automaton in automata]
+        self._holders = {automaton.name: number for number, automaton in enumerate(automata)}
+        self._is_machine = [not (is_generated(a.name) or self.events.is_event(a.name) or is_inner(a)) for a in automata]
+        self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
+        self._status: dict[int, NodeStatus] = {}
+        self._origin: dict[int, Origin | None] = {}
+        self._state: dict[int, str] = {}
+        self._handles: dict[int, str] = {}
+
+    def is_machine(self, instance: int) -> bool:
+        """Whether an instance is a state machine or a plugin, not an automaton that the translation adds."""
+        return self._is_machine[instance]
+
+    def is_named(self, event: str, name: str) -> bool:
+        """Whether people may call an event so: by its name, or by that of its topic, service or action."""
+        if not event:
+            return False
+        return name in (event, self.events.name(event)) or f"`{name}`" in said(event, "", self._names)
+
+    def read(self, step: TraceStep) -> None:
+        """Read the next step."""
+        self.position = step.number
+        self.events.read(step)
+        for change in step.changes:
+            if change.variable.instance < 0 and change.variable.name in self._clock_values:
+                assert isinstance(change.after, (int, float))
+                self._clock_values[change.variable.name] = change.after
+        if self._clock is not None:
+            self.time = self._clock_values[self._clock[0]] + self._clock_values[self._clock[1]] / 1e9
+        actors = self.events.actors(step)
+        received = received_by(step.action or "")
+        for part in actors:
+            self._origin[part.instance] = part.destination.origin or part.edge.origin
+            if received:
+                self._handles[part.instance] = received
+        event = sent_by(step.action or "")
+        if event:
+            sender = actors[0].automaton if actors else ""
+            self._sent.pop(event, None)
+            self._sent[event] = step.number, sender, self.events.parameters(event)
+            self._follow_tree(event)
+
+    def _follow_tree(self, event: str) -> None:
+        match = TREE_EVENT.fullmatch(event)
+        if match is None:
+            return
+        node = int(match[1])
+        match match[2]:
+            case "tick":
+                self._status[node] = NodeStatus.TICKED
+            case "response":
+                status = self.events.parameters(event).get("status")
+                self._status[node] = _STATUS_NAMES.get(status if isinstance(status, int) else 0, NodeStatus.IDLE)
+            case "halt_response":
+                self._status[node] = NodeStatus.IDLE
+
+    def state(
+        self,
+        step: int,
+        locations: Sequence[str],
+        values: Sequence[tuple[Variable, Plain]],
+        resting: Sequence[frozenset[str]],
+    ) -> SystemState:
+        """The state after the steps that were read.
+
+        Args:
+            locations: of each instance.
+            values: of all variables.
+            resting: for each instance, where it waits for events.
+        """
+        own: dict[int, dict[str, Plain]] = {}
+        shared: dict[str, Plain] = {}
+        for (instance, name), value in values:
+            if instance >= 0:
+                if not is_length(name):
+                    own.setdefault(instance, {})[name] = value
+            elif not self.events.carries_event(name) and not is_length(name):
+                shared[name] = value
+        blackboard = self._holders.get(BLACKBOARD)
+        return SystemState(
+            step,
+            self.time,
+            tuple(self._machines(locations, own, resting)),
+            tuple(self._nodes()),
+            tuple(self._events(locations)),
+            {} if blackboard is None else own.get(blackboard, {}),
+            shared,
+        )
+
+    def _machines(
+        self, locations: Sequence[str], own: Mapping[int, dict[str, Plain]], resting: Sequence[frozenset[str]]
+    ) -> Iterator[MachineState]:
+        for number, automaton in enumerate(self._automata):
+            if not self._is_machine[number]:
+                continue
+            location = locations[number]
+            is_resting = location in resting[number]
+            handled = "" if is_resting else self._handles.get(number, "")
+            state = location if is_resting else _state_before(location, resting[number])
+            yield MachineState(
+                who(automaton.name),
+                automaton.name,
+                state,
+                own.get(number, {}),
+                self.events.name(handled) if handled else "",
+                self._origin.get(number, automaton.origin),
+            )
+
+    def _nodes(self) -> Iterator[NodeState]:
+        nodes = [match for name in self._names if (match := NODE_AUTOMATON.fullmatch(name))]
+        for match in sorted(nodes, key=lambda match: int(match[1])):
+            yield NodeState(int(match[1]), match[2], self._status.get(int(match[1]), NodeStatus.IDLE))
+
+    def _events(self, locations: Sequence[str]) -> Iterator[EventState]:
+        for event, (step, sender, parameters) in self._sent.items():
+            if sender == CLOCK or is_timer(event) or TREE_EVENT.fullmatch(event):
+                continue
+            holder = self._holders.get(event)
+            yield EventState(
+                event,
+                self.events.name(event),
+                said(event, "", self._names),
+                who(sender) if sender else "",
+                parameters,
+                step,
+                holder is not None and locations[holder] == RECEIVED,
+            )
+
+
+def _state_before(location: str, resting: frozenset[str]) -> str:
+    """The state whose handler leads through a location: the longest one with which its name begins."""
+    states = [state for state in resting if location.startswith(f"{state}-")]
+    return max(states, key=len, default=location)

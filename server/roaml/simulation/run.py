@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run of a model: its steps, decided by the seed or by hand, of which any prefix can be walked again.
+
+A step that the seed decides is the step that `verify` takes in the trace of this seed and number. Going back walks the
+run again from its start, which costs as much as a trace of that length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.smc.batch import Problem
+from roaml.smc.end import End
+from roaml.smc.goal import Asked
+from roaml.smc.kernel import Kernel
+from roaml.smc.model import Checker
+from roaml.smc.program import FAULTY, UNKNOWN
+from roaml.smc.record import Plain, StepReader, TraceStep, Variable
+from roaml.smc.standstill import Standstill
+
+
+class RunError(ValueError):
+    """A decision cannot be taken in the state in which it is to be taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """A step that is decided by hand.
+
+    Attributes:
+        vector: the number of the synchronisation vector, as `roaml.smc.compile.Legend` counts them.
+        picks: for each automaton that takes part, the number of its edge among its enabled edges for the action.
+        ways: for each of them, the number of the destination.
+    """
+
+    vector: int
+    picks: tuple[int, ...]
+    ways: tuple[int, ...]
+
+
+class EnabledEdges(NamedTuple):
+    """The enabled edges of an automaton for an action: the first way of each, and the probabilities of its ways."""
+
+    instance: int
+    edges: tuple[tuple[int, tuple[float, ...]], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Enabled:
+    """A synchronisation vector that is enabled.
+
+    Attributes:
+        ties: how many choices differ from each combination of edges in nothing that happens.
+        slots: of each automaton that takes part.
+    """
+
+    vector: int
+    ties: int
+    slots: tuple[EnabledEdges, ...]
+
+
+class Run:
+    """A run, and a position in it.
+
+    Args:
+        decisions: for the first steps, None where the seed decides. The seed decides all further steps.
+
+    Attributes:
+        start: the variables of the model before the first step.
+        steps: all steps that were taken, those after the position, too.
+        decisions: for each of them.
+        position: the number of steps before the present state.
+        status: what is known of the property in the present state (`roaml.smc.program`).
+        has_ended: whether no further step changes anything.
+
+    Raises:
+        RunError: one of the decisions cannot be taken.
+        FaultError: something that has no meaning happens, such as a division by zero.
+    """
+
+    def __init__(
+        self,
+        checker: Checker,
+        asked: Asked,
+        seed: int,
+        trace: int = 0,
+        decisions: Iterable[Decision | None] = (),
+    ) -> None:
+        self.checker = checker
+        self.asked = asked
+        self.seed = seed
+        self.trace = trace
+        compiled = checker.compiled(asked)
+        self._program = compiled.program
+        self._kernel = Kernel(compiled.program, compiled.goal)
+        self.legend = checker.legend
+        self._reader = StepReader(self._kernel, self.legend)
+        self.steps: list[TraceStep] = []
+        self.decisions: list[Decision | None] = []
+        self._begin()
+        shared = self.legend.layout.shared
+        self.start = dict(zip((storage.name for storage in shared), self._reader.values(shared), strict=True))
+        for number, decision in enumerate(decisions, 1):
+            if self.advance(decision) is None:
+                raise RunError(f"step {number} cannot be taken: the run has ended before it")
+
+    def _begin(self) -> None:
+        self.position = 0
+        self.status = self._kernel.begin(self.seed, self.trace)
+        self._check()
+        self.has_ended = self._kernel.ended()
+        self._reader.start()
+
+    def _check(self) -> None:
+        if self.status == FAULTY:
+            raise self.checker.fault(Problem(self.trace, *self._kernel.problem()))
+
+    # ------------------------------------------------------------ moving
+
+    def advance(self, decision: Decision | None = None) -> TraceStep | None:
+        """Take a step. If it is not the one that was taken here before, the steps after the position are forgotten.
+
+        Returns:
+            None if no step is possible, or none that changes anything.
+
+        Raises:
+            RunError: the decision cannot be taken here.
+            FaultError: something that has no meaning happens in the step, such as a division by zero.
+        """
+        if self.has_ended:
+            return None
+        if decision is not None:
+            self._check_possible(decision)
+        self._take(decision)
+        if self.position <= len(self.steps) and self.decisions[self.position - 1] == decision:
+            self._reader.start()
+            return self.steps[self.position - 1]
+        del self.steps[self.position - 1 :], self.decisions[self.position - 1 :]
+        self.steps.append(self._reader.read(self.position))
+        self.decisions.append(decision)
+        return self.steps[-1]
+
+    def go_to(self, position: int) -> None:
+        """Go to the state after `position` of the steps that were taken."""
+        if position < self.position:
+            self._begin()
+        while self.position < position:
+            decision = self.decisions[self.position]
+            until = self.position + 1
+            while decision is None and until < position and self.decisions[until] is None:
+                until += 1
+            self._take(decision, until)
+        self._reader.start()
+
+    def _take(self, decision: Decision | None, until: int = 0) -> None:
+        """Take one step by hand, or those that the seed decides up to position `until`; 0 is the next one."""
+        if decision is None:
+            until = until or self.position + 1
+            while self._kernel.outcome()[0] < until:
+                self._learn(self._kernel.advance(until))
+            self.position = until
+        else:
+            self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
+            self._learn(self._kernel.look())
+            self.position += 1
+        self.has_ended = self._kernel.ended()
+        if self.has_ended:
+            self._learn(self._kernel.close())
+
+    def _check_possible(self, decision: Decision) -> None:
+        for enabled in self.enabled():
+            if enabled.vector == decision.vector:
+                fits = len(decision.picks) == len(decision.ways) == len(enabled.slots) and all(
+                    0 <= pick < len(slot.edges) and 0 <= way < len(slot.edges[pick][1]) and slot.edges[pick][1][way] > 0
+                    for pick, way, slot in zip(decision.picks, decision.ways, enabled.slots, strict=True)
+                )
+                if fits:
+                    return
+        raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
+
+    def _learn(self, status: int) -> None:
+        """What a step has shown of the property; what is decided stays so."""
+        if self.status == UNKNOWN or status == FAULTY:
+            self.status = status
+            self._check()
+
+    # ------------------------------------------------------------ the state
+
+    @property
+    def end(self) -> End | None:
+        """Why no further step changes anything; None if one does."""
+        return End(self._kernel.standstill()) if self.has_ended else None
+
+    def standstill(self) -> Standstill:
+        """The state, for those who ask who waits for whom."""
+        return self._reader.standstill(self.checker.model.system)
+
+    def enabled(self) -> list[Enabled]:
+        """What can happen next."""
+        return [Enabled(vector, ties, self._edges(vector, slots)) for vector, ties, slots in self._kernel.choices()]
+
+    def _edges(self, vector: int, slots: Sequence[Sequence[Sequence[float]]]) -> tuple[EnabledEdges, ...]:
+        program = self._program
+        active = program.active_slot[program.active_start[vector] : program.active_start[vector + 1]]
+        return tuple(
+            EnabledEdges(
+                program.slot_instance[slot], tuple(zip(self._first_ways(slot), map(tuple, edges), strict=True))
+            )
+            for slot, edges in zip(active, slots, strict=True)
+        )
+
+    def _first_ways(self, slot: int) -> list[int]:
+        """The first way of each enabled edge of a slot, in the order in which the kernel counts them."""
+        program = self._program
+        instance = program.slot_instance[slot]
+        location = self._kernel.location(instance)
+        group = next(
+            g
+            for g in range(program.group_start[location], program.group_start[location + 1])
+            if program.group_slot[g] == slot
+        )
+        own = range(program.way_start[program.edge_start[group]], program.way_start[program.edge_start[group + 1]])
+        return [way for way in self._kernel.open_ways(instance) if way in own]
+
+    def locations(self) -> tuple[str, ...]:
+        """The name of the location of each instance."""
+        return tuple(
+            self.legend.locations[self._kernel.location(number)][1]
+            for number in range(len(self.legend.layout.instances))
+        )
+
+    def values(self) -> list[tuple[Variable, Plain]]:
+        """All variables with their values: those of the model first, then those of each instance."""
+        storages = [storage for _, storage in self._reader.variables]
+        return list(zip((v for v, _ in self._reader.variables), self._reader.values(storages), strict=True))

@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A position in a run of a system, which moves forwards and backwards."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from roaml.model.translated import TREE_ROOT_PREFIX, received_by, sent_by
+from roaml.simulation.choices import Choice, Outcome, choices
+from roaml.simulation.follow import Follower
+from roaml.simulation.run import Decision, Run
+from roaml.simulation.state import SystemState
+from roaml.simulation.words import resting
+from roaml.smc.end import End
+from roaml.smc.goal import Asked
+from roaml.smc.model import Checker
+from roaml.smc.program import UNKNOWN
+from roaml.smc.record import VERDICTS, Recording, TraceStep
+from roaml.smc.story import Story, clock_times
+
+FORMAT_VERSION = 1
+ENGINE_VERSION = 1
+"""Of the random numbers: sessions of another version take other steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class SavedSession:
+    """What a run is a function of, besides the model.
+
+    Attributes:
+        property: the property that the run is watched for.
+        decisions: of all steps; None where the seed decides.
+        position: the number of steps that were taken.
+    """
+
+    property: str
+    seed: int
+    trace: int
+    position: int
+    decisions: tuple[Decision | None, ...] = ()
+
+    def to_json(self) -> str:
+        """As text. Stretches that the seed decides are written as their length."""
+        rows: list[Any] = []
+        for decision in self.decisions:
+            if decision is not None:
+                rows.append({"vector": decision.vector, "picks": decision.picks, "ways": decision.ways})
+            elif rows and isinstance(rows[-1], int):
+                rows[-1] += 1
+            else:
+                rows.append(1)
+        value = {
+            "format": FORMAT_VERSION,
+            "engine": ENGINE_VERSION,
+            "property": self.property,
+            "seed": self.seed,
+            "trace": self.trace,
+            "position": self.position,
+            "decisions": rows,
+        }
+        return json.dumps(value, indent=2) + "\n"
+
+    @staticmethod
+    def from_json(text: str) -> SavedSession:
+        """Read what `to_json` wrote.
+
+        Raises:
+            ValueError: the text is not a saved session, or one of another version.
+        """
+        try:
+            value = json.loads(text)
+            if value["format"] != FORMAT_VERSION or value["engine"] != ENGINE_VERSION:
+                raise ValueError("this session was saved by another version of the program")
+            decisions: list[Decision | None] = []
+            for row in value["decisions"]:
+                if isinstance(row, int) and 0 < row <= MAX_STEPS - len(decisions):
+                    decisions += [None] * row
+                else:
+                    picks, ways = tuple(map(int, row["picks"])), tuple(map(int, row["ways"]))
+                    decisions.append(Decision(int(row["vector"]), picks, ways))
+            position = int(value["position"])
+            if not 0 <= position <= len(decisions):
+                raise ValueError("the position is outside of the run")
+            return SavedSession(
+                str(value["property"]), int(value["seed"]), int(value["trace"]), position, tuple(decisions)
+            )
+        except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+            raise ValueError(f"this is not a saved session: {error}") from None
+
+
+MAX_STEPS = 10_000_000
+"""Steps of a run."""
+
+
+class Session:
+    """A position in a run.
+
+    Args:
+        asked: the property that the run is watched for, one of those of `checker`.
+        clock: the variables that hold the seconds and nanoseconds of the model's time.
+        saved: continue this session; it overrides `seed` and `trace`.
+
+    Raises:
+        RunError: the saved decisions are not possible in this model.
+        FaultError: something that has no meaning happens in one of the saved steps.
+    """
+
+    def __init__(
+        self,
+        checker: Checker,
+        asked: Asked,
+        seed: int = 0,
+        trace: int = 0,
+        clock: tuple[str, str] | None = None,
+        saved: SavedSession | None = None,
+    ) -> None:
+        if saved is not None:
+            seed, trace = saved.seed, saved.trace
+        self._run = Run(checker, asked, seed, trace, saved.decisions if saved is not None else ())
+        self._clock = clock
+        self._automata = tuple(instance.automaton for instance in self._run.legend.layout.instances)
+        self._resting = [resting(automaton) for automaton in self._automata]
+        self._follower = Follower(self._automata, self._run.start, clock)
+        self.jump(len(self._run.steps) if saved is None else saved.position)
+
+    # ------------------------------------------------------------ where it is
+
+    @property
+    def position(self) -> int:
+        """The number of steps before the present state."""
+        return self._run.position
+
+    @property
+    def steps(self) -> Sequence[TraceStep]:
+        """All steps that were taken, those after the position, too."""
+        return self._run.steps
+
+    @property
+    def end(self) -> End | None:
+        """Why nothing changes any more; None if something can."""
+        return self._run.end
+
+    @property
+    def verdict(self) -> str:
+        """What is known of the property: `passed`, `failed` or `undecided`."""
+        return VERDICTS[self._run.status]
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether the trace of `verify` ends here or before."""
+        return self._run.status != UNKNOWN
+
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether a step up to here was decided by hand: then the run is not one that `verify` counts."""
+        return any(decision is not None for decision in self._run.decisions[: self.position])
+
+    def choices(self) -> tuple[Choice, ...]:
+        """What can happen next."""
+        return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events))
+
+    def state(self) -> SystemState:
+        """The state of the system."""
+        return self._follower.state(self.position, self._run.locations(), self._run.values(), self._resting)
+
+    def save(self) -> SavedSession:
+        """The run and the position in it."""
+        run = self._run
+        return SavedSession(run.asked.question.name, run.seed, run.trace, self.position, tuple(run.decisions))
+
+    def fork(self) -> Session:
+        """A session of its own with the same run up to the position."""
+        run = self._run
+        decisions = tuple(run.decisions[: self.position])
+        saved = SavedSession(run.asked.question.name, run.seed, run.trace, self.position, decisions)
+        return Session(run.checker, run.asked, clock=self._clock, saved=saved)
+
+    def story(self) -> Story:
+        """The run up to the position, as a story of all turns."""
+        steps = tuple(self._run.steps[: self.position])
+        question = self._run.asked.question
+        end = End.DECIDED if self.is_decided else self.end or End.CUT
+        standstill = self._run.standstill() if end is End.STUCK else None
+        return Story(
+            question.name,
+            Recording(self._run.trace, self._run.status, end),
+            steps,
+            tuple(clock_times(steps, self._clock)),
+            tuple(range(len(steps))),
+            question.variables,
+            self._automata,
+            self._run.start,
+            standstill,
+            is_whole=True,
+        )
+
+    # ------------------------------------------------------------ moving
+
+    def step(self, choice: Choice | None = None, outcome: Outcome | None = None) -> TraceStep | None:
+        """Take one step of the network of automata.
+
+        Args:
+            choice: what is to happen; the seed decides if not given.
+            outcome: of the choice; a hash of seed and position decides if not given.
+
+        Returns:
+            None if nothing changes any more.
+        """
+        decision = None
+        if choice is not None:
+            decision = (outcome or self._drawn(choice)).decision
+        elif self.position < len(self._run.steps):
+            decision = self._run.decisions[self.position]
+        step = self._run.advance(decision)
+        if step is not None:
+            self._follower.read(step)
+        return step
+
+    def _drawn(self, choice: Choice) -> Outcome:
+        chance = random.Random(f"{self._run.seed}:{self._run.trace}:{self.position}")
+        weights = [outcome.probability for outcome in choice.outcomes]
+        return chance.choices(choice.outcomes, weights)[0]
+
+    def go_on(self, is_reached: Callable[[TraceStep], bool], limit: int = MAX_STEPS) -> bool:
+        """Take steps until one is that for which `is_reached` is true.
+
+        Returns:
+            False if nothing changes any more before, or `limit` steps were taken.
+        """
+        for _ in range(limit):
+            step = self.step()
+            if step is None:
+                return False
+            if is_reached(step):
+                return True
+        return False
+
+    def has_event(self, name: str) -> bool:
+        """Whether the system sends an event of this name, or one of a topic, service or action of this name."""
+        return any(self._follower.is_named(sent_by(action or ""), name) for _, action in self._run.legend.vectors)
+
+    def is_machine(self, instance: int) -> bool:
+        """Whether an automaton is a state machine or a plugin, not one that the translation adds."""
+        return self._follower.is_machine(instance)
+
+    def automaton(self, instance: int) -> str:
+        """The name of the automaton of an instance."""
+        return self._automata[instance].name
+
+    def turn(self) -> bool:
+        """Go on until a state machine has handled an event to its end; False if nothing changes any more before.
+
+        The automata that the translation adds, and the nodes of the tree that only tick others, have no turns.
+        """
+        return self.go_on(self._ends_turn)
+
+    def _ends_turn(self, step: TraceStep) -> bool:
+        return any(
+            self._follower.is_machine(part.instance) and part.destination.location in self._resting[part.instance]
+            for part in step.parts
+        )
+
+    def tick(self) -> bool:
+        """Go on until the root of the tree has answered a tick; False if it does not any more."""
+        return self.go_on(
+            lambda step: (
+                bool(received_by(step.action or ""))
+                and any(
+                    part.automaton.startswith(TREE_ROOT_PREFIX) and received_by(step.action or "").endswith("response")
+                    for part in step.parts
+                )
+            )
+        )
+
+    def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
+        """Go on until the clock shows at least `seconds`; False if it never does."""
+        return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
+
+    def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
+        """Go on until an event is sent; it may be named as in plain SCXML or by its topic, service or action."""
+        return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
+
+    def until_decided(self, limit: int = MAX_STEPS) -> bool:
+        """Go on until the property is decided; False if it stays undecided."""
+        return self.is_decided or self.go_on(lambda _: self.is_decided, limit) or self.is_decided
+
+    def back(self, steps: int = 1) -> None:
+        """Take back steps."""
+        self.jump(max(0, self.position - steps))
+
+    def jump(self, position: int) -> None:
+        """Go to the state after `position` steps, which may lie ahead."""
+        self._run.go_to(min(position, len(self._run.steps)))
+        if self._follower.position > self.position:
+            self._follower = Follower(self._automata, self._run.start, self._clock)
+        for step in self._run.steps[self._follower.position : self.position]:
+            self._follower.read(step)
+        while self.position < position and self.step() is not None:
+            pass

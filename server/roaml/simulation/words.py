@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Automata, locations and actions of a translated system in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from roaml.jani.model import Automaton
+from roaml.model.translated import BLACKBOARD, CLOCK, CLOCK_ACTION, TREE_ROOT_PREFIX, received_by
+from roaml.model.value_types import STATUSES
+from roaml.smc.record import Plain
+from roaml.views.turns import name_of
+
+TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
+"""What the nodes of a tree send to each other: the number of the child, and what is said."""
+_STATUS_NAMES = {number: name for name, number in STATUSES.items()}
+CLOCK_NAME, TREE_NAME, BLACKBOARD_NAME = "clock", "tree", "blackboard"
+
+
+def who(automaton: str) -> str:
+    """An automaton as people call it."""
+    if automaton == CLOCK:
+        return CLOCK_NAME
+    if automaton == BLACKBOARD:
+        return BLACKBOARD_NAME
+    return TREE_NAME if automaton.startswith(TREE_ROOT_PREFIX) else name_of(automaton)
+
+
+def resting(automaton: Automaton) -> frozenset[str]:
+    """The locations in which an automaton waits for an event, or that it does not leave. In all other locations it is
+    about to execute the next statement of a handler."""
+    leaving: dict[str, list[str]] = {}
+    for edge in automaton.edges:
+        leaving.setdefault(edge.source, []).append(edge.action or "")
+    return frozenset(
+        location.name
+        for location in automaton.locations
+        if all(action == CLOCK_ACTION or received_by(action) for action in leaving.get(location.name, ()))
+    )
+
+
+def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[str]) -> str:
+    """What a node does when it sends or receives an event of the tree; "" if the event is not one of the tree.
+
+    Args:
+        actor: the node in words.
+        parameters: of the event; those of one that is yet to be sent are not known.
+    """
+    match = TREE_EVENT.fullmatch(event)
+    if match is None:
+        return ""
+    child = next((who(name) for name in automata if name.startswith(f"BT_plugin_{match[1]}_")), f"bt_{match[1]}")
+    match match[2], is_sent:
+        case "tick", True:
+            return f"{actor} ticks {child}"
+        case "tick", False:
+            return f"{actor} is ticked"
+        case "halt", True:
+            return f"{actor} halts {child}"
+        case "halt", False:
+            return f"{actor} is halted"
+        case "response", True:
+            return f"{actor} answers its tick"
+        case "response", False:
+            status = parameters.get("status")
+            answer = _STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
+            return f"{actor} receives {answer} from {child}"
+        case _, True:
+            return f"{actor} answers that it has halted"
+        case _:
+            return f"{actor} receives from {child} that it has halted"

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of variables as people read them."""
+
+from __future__ import annotations
+
+from roaml.smc.record import Plain
+
+
+def shown_value(value: Plain) -> str:
+    """A value in the notation of the models; an array of bytes that holds a string as that string."""
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case list():
+            return _text(value) or f"[{', '.join(map(shown_value, value))}]"
+        case float():
+            return f"{value:g}"
+        case _:
+            return str(value)
+
+
+def _text(value: list[Plain]) -> str:
+    """A string, which JANI represents as an array of bytes that ends in zeros; "" if the array is not a string."""
+    while value and value[-1] == 0:
+        value = value[:-1]
+    printable = all(isinstance(byte, int) and 32 <= byte < 127 for byte in value)
+    return repr("".join(chr(byte) for byte in value if isinstance(byte, int))) if value and printable else ""

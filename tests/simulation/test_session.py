@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sessions: forwards, backwards, by hand, saved; held against the traces that `verify` makes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from smc_models import automaton, document, edge, model, op, variable, way
+
+import conformance
+from roaml import api
+from roaml.smc.record import VERDICTS, Recorder, Recording
+
+ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
+TRACES = 20
+"""Traces of each property that are replayed."""
+
+
+@pytest.fixture(scope="module")
+def robot() -> api.Target:
+    return api.as_target(api.load(str(ROBOT)))
+
+
+SYSTEMS = [ROBOT, *sorted({conformance.ROOT / case["model"] for case in conformance.verified()})]
+
+
+@pytest.mark.parametrize("path", SYSTEMS, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_traces_of_verify_are_replayed_forwards_and_backwards(path: Path) -> None:
+    target = api.as_target(api.load(str(path), [str(conformance.INTERFACES)] if path != ROBOT else []))
+    checker = api.checker(target.model)
+    for asked in checker.asked:
+        name = asked.question.name
+        recorder = Recorder(checker, asked, 1, 2_000)
+        session = api.session(target, name, seed=1)
+        for trace in range(TRACES if asked is checker.asked[0] else 2):
+            recording = Recording(trace)
+            steps = tuple(recorder.walk(recording))
+            session = api.session(target, name, seed=1, trace=trace)
+            session.until_decided(limit=2_000)
+            assert tuple(session.steps[: len(steps)]) == steps
+            assert session.verdict == VERDICTS[recording.verdict]
+        states = {}
+        session.jump(0)
+        for position in range(0, len(session.steps), max(1, len(session.steps) // 7)):
+            session.jump(position)
+            states[position] = session.state()
+        for position in sorted(states, reverse=True):
+            session.jump(position)
+            assert session.state() == states[position]
+
+
+def test_state_in_the_terms_of_the_user(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    assert session.until_time(4)
+    state = session.state()
+    assert state.time == 4
+    arm, *_ = state.machines
+    assert (arm.name, arm.state, arm.variables) == ("Arm", "moving", {"holding": True, "way": 0})
+    assert {node.type: node.status.value for node in state.nodes}["MoveToGoal"] == "RUNNING"
+    command = next(event for event in state.events if event.name == "topic_arm__command_msg")
+    assert (command.text, command.sender, command.parameters) == (
+        "a message on the topic `/arm/command`",
+        "MoveToGoal (bt_1006)",
+        {"data": 2},
+    )
+
+
+def test_a_turn_ends_where_a_machine_waits_again(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    while session.turn():
+        assert any(not machine.handles for machine in session.state().machines)
+    assert session.end is not None
+
+
+def test_a_tick_ends_with_the_answer_of_the_root(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    assert session.tick()
+    assert session.state().nodes[0].status is api.NodeStatus.RUNNING
+    assert session.steps[session.position - 1].action == "bt_1000_response_on_receive"
+
+
+def test_the_other_outcome_of_a_chance(robot: api.Target) -> None:
+    """Back to where the block was dropped by chance; with the other outcome the arm still holds it."""
+    session = next(
+        session
+        for trace in range(100)
+        if (session := api.session(robot, "block_dropped", seed=1, trace=trace)).until_decided()
+        and session.verdict == "passed"
+    )
+    chance: list[api.Choice] = []
+    while not chance:
+        session.back()
+        chance = [choice for choice in session.choices() if len(choice.outcomes) > 1]
+    (choice,) = chance
+    assert [outcome.probability for outcome in choice.outcomes] == [0.5, 0.5]
+    assert any("`/block/dropped`" in outcome.text for outcome in choice.outcomes)
+    kept = next(outcome for outcome in choice.outcomes if "dropped" not in outcome.text)
+    session.step(choice, kept)
+    assert session.is_by_hand
+    session.turn()
+    assert session.state().machines[0].variables["holding"] is True
+
+
+def test_choices_name_who_and_what(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    assert session.until_sent("/arm/command")
+    texts = [choice.text for choice in session.choices()]
+    assert "Arm receives a message on the topic `/arm/command` (data: 1)" in texts
+    assert sum(choice.probability for choice in session.choices()) == pytest.approx(1)
+
+
+def test_a_different_step_forgets_what_came_after(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    session.until_decided()
+    length = len(session.steps)
+    session.jump(0)
+    session.step(session.choices()[-1])
+    assert len(session.steps) == 1 < length
+    session.back()
+    session.step()
+    assert session.is_by_hand, "a step that was taken by hand is taken again"
+
+
+def test_a_fork_goes_its_own_way(robot: api.Target) -> None:
+    session = api.session(robot, "block_placed", seed=3)
+    session.jump(100)
+    fork = session.fork()
+    fork.step(fork.choices()[0])
+    session.step()
+    assert (session.position, fork.position) == (101, 101)
+    assert fork.is_by_hand
+    assert not session.is_by_hand
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.integers(0, 30), max_size=30), st.integers(0, 50))
+def test_a_saved_session_is_the_same_run(robot: api.Target, picks: list[int], position: int) -> None:
+    session = api.session(robot, "block_placed", seed=5, trace=2)
+    for pick in picks:
+        choices = session.choices()
+        session.step(choices[pick % len(choices)] if choices and pick < 20 else None)
+    session.jump(min(position, len(session.steps)))
+    saved = api.SavedSession.from_json(session.save().to_json())
+    again = api.session(robot, saved=saved)
+    assert again.position == session.position
+    assert again.state() == session.state()
+    assert again.steps == session.steps
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        '{"format": 2, "engine": 1}',
+        '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 9, "decisions": [3]}',
+        '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 0, "decisions": [{}]}',
+        '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 0, "decisions": [99999999999]}',
+    ],
+)
+def test_what_is_not_a_saved_session(text: str) -> None:
+    with pytest.raises(ValueError, match=r"session|position"):
+        api.SavedSession.from_json(text)
+
+
+def test_decisions_that_are_not_possible(robot: api.Target) -> None:
+    impossible = api.SavedSession("block_placed", 0, 0, 1, (api.Decision(10**6, (), ()),))
+    with pytest.raises(api.RunError, match="step 1 is not possible"):
+        api.session(robot, saved=impossible)
+
+
+def test_a_fault_is_an_error_with_its_place() -> None:
+    division = way("b", y=op("floor", op("/", 1, "x")))
+    found = model(document(automaton("A", "a b", [edge("a", division)]), variables=[variable("x"), variable("y")]))
+    session = api.session(found)
+    with pytest.raises(api.FaultError, match="division by zero"):
+        session.step()
+
+
+def test_a_model_without_properties_can_run() -> None:
+    found = model(document(automaton("A", "a b", [edge("a", "b")])))
+    session = api.session(found)
+    assert session.step() is not None
+    assert session.step() is None
+    assert session.end is api.End.DEADLOCK

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page about simulation: its program runs, and its tables name the commands that there are."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.interactive import HELP
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/simulation.md").read_text(encoding="utf-8")
+
+
+def test_the_program_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(ROOT)
+    (program,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    exec(program, {})
+    out = capsys.readouterr().out
+    assert out.startswith("Arm moving {'holding': True, 'way': 0}\n")
+    assert "Sequence (bt_1000) ticks RetryUntilSuccessful (bt_1001)" in out
+
+
+def test_the_table_has_the_commands_of_the_help() -> None:
+    table = PAGE[PAGE.index("| input |") : PAGE.index("Going back")]
+    in_help = set(re.findall(r"(?:^  |   )([a-z])(?:[ ,]|$)", HELP, re.MULTILINE)) - {"q"}
+    assert in_help == set(re.findall(r"`([a-z])(?:[` ])", table))
