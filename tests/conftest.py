@@ -8,6 +8,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 import conformance
 from examples import TIMES, examples
 
@@ -26,9 +28,10 @@ def pytest_terminal_summary(terminalreporter) -> None:  # type: ignore[no-untype
         terminalreporter.write_line("conformance cases: not present, so none of them is collected")
 
 
-def pytest_pycollect_makemodule(module_path: Path) -> None:
-    """Set hypothesis up before the first module that may use it. Importing it takes longer than the tests of a rule."""
-    if module_path.parent.name != "rules":
+def pytest_collectstart(collector: pytest.Collector) -> None:
+    """Set hypothesis up before the first module that may use it is imported. That takes longer than the tests of a
+    rule, which do not use it."""
+    if isinstance(collector, pytest.Module) and collector.path.parent.name != "rules":
         _load_profile()
 
 

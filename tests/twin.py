@@ -11,8 +11,8 @@ from typing import Any
 
 import roaml.smc
 from roaml.smc import kernel
-from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 
 
@@ -28,7 +28,9 @@ def plain_kernel() -> Any:
     return module
 
 
-def difference(checker: Checker, asked: Asked, seed: int, traces: int, steps: int, scheduler: int = 0) -> str:
+def difference(
+    checker: ModelChecker, asked: CompiledProperty, seed: int, traces: int, steps: int, scheduler: int = 0
+) -> str:
     """What the two kernels disagree about, "" if nothing: verdict, end, steps, random numbers, rewards, all values,
     faults, and what was done last."""
     compiled = checker.compiled(asked)

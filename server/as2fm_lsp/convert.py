@@ -63,10 +63,10 @@ class Converter:
         (self._marked.add if is_marked else self._marked.discard)(path)
 
     def position(self, source: SourceFile, offset: int) -> types.Position:
-        found = source.lines.position(offset)
-        start = source.lines.line_start(found.line)
-        column = self.units.count(source.text[start : start + found.column])
-        return types.Position(found.line, column + self._hidden(source, found.line))
+        place = source.lines.position(offset)
+        start = source.lines.line_start(place.line)
+        column = self.units.count(source.text[start : start + place.column])
+        return types.Position(place.line, column + self._hidden(source, place.line))
 
     def range(self, source: SourceFile, span: Span) -> types.Range:
         return types.Range(self.position(source, span.start), self.position(source, span.end))

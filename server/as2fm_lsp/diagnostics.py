@@ -35,14 +35,14 @@ log = logging.getLogger(__name__)
 T = TypeVar("T")
 
 TITLE = "Checking models"
-QUICK = 0.5
-"""The duration of work that is not reported, in s."""
+PROGRESS_DELAY_S = 0.5
+"""The time after which work is shown at the client."""
 
-REST = 0.3
-"""The delay after which the user has probably stopped typing, in s."""
+IDLE_DELAY_S = 0.3
+"""The time after which it is likely that nothing more is typed for a while."""
 
-TRIES = 5
-"""The maximum number of times that a computation yields before it is completed."""
+MAX_INTERRUPTIONS = 5
+"""How often a computation gives way to messages before it is completed."""
 
 
 class Diagnostics:
@@ -90,7 +90,7 @@ class Diagnostics:
         self._waiting.clear()
         self._all_waiting = False
         self.finished()
-        await asyncio.sleep(REST)
+        await asyncio.sleep(IDLE_DELAY_S)
         await self._prepare()
 
     async def _prepare(self) -> None:
@@ -112,7 +112,7 @@ class Diagnostics:
         async with AsyncExitStack() as shown:
             told: Progress | None = None
             for number, path in enumerate(there):
-                if told is None and self._all_waiting and time.monotonic() - started > QUICK:
+                if told is None and self._all_waiting and time.monotonic() - started > PROGRESS_DELAY_S:
                     told = await shown.enter_async_context(self._progress.show(TITLE))
                 if told is not None:
                     told.report(number, len(there))
@@ -122,15 +122,15 @@ class Diagnostics:
 
     async def _check(self, moment: Moment, path: str) -> None:
         try:
-            found = await self._giving_way(lambda: self.of(moment, path))
+            diagnostics = await self._giving_way(lambda: self.of(moment, path))
         except Exception:  # a crash in one file must not prevent the check of the others
             log.exception("%s cannot be checked", path)
         else:
-            self._send(path, found, moment.versions.get(path))
+            self._send(path, diagnostics, moment.versions.get(path))
 
     async def _giving_way(self, compute: Callable[[], T]) -> T:
         """A computation between messages. Under a steady stream of messages, it is not interrupted for ever."""
-        for _ in range(TRIES):
+        for _ in range(MAX_INTERRUPTIONS):
             await self._let_messages_by()
             self._gives_way = True
             try:
@@ -147,12 +147,12 @@ class Diagnostics:
         while self._inbox.waiting:
             await asyncio.sleep(0)
 
-    def _send(self, path: str, found: list[types.Diagnostic], version: int | None) -> None:
+    def _send(self, path: str, diagnostics: list[types.Diagnostic], version: int | None) -> None:
         before = self._sent.get(path, (version, []))
-        if before[1] == found and (before[0] == version or not found):
+        if before[1] == diagnostics and (before[0] == version or not diagnostics):
             return
-        self._sent[path] = (version, found)
-        self._client.publish_diagnostics(self.session.convert.uri(path), found, version)
+        self._sent[path] = (version, diagnostics)
+        self._client.publish_diagnostics(self.session.convert.uri(path), diagnostics, version)
 
     # ------------------------------------------------------------------ pull
 
@@ -176,11 +176,11 @@ class Diagnostics:
     def document_report(
         self, path: str, previous: str | None
     ) -> types.RelatedFullDocumentDiagnosticReport | types.RelatedUnchangedDocumentDiagnosticReport:
-        found = self.of(self.session.moment(), path)
-        result = result_id(found)
+        diagnostics = self.of(self.session.moment(), path)
+        result = result_id(diagnostics)
         if previous == result:
             return types.RelatedUnchangedDocumentDiagnosticReport(result)
-        return types.RelatedFullDocumentDiagnosticReport(found, result_id=result)
+        return types.RelatedFullDocumentDiagnosticReport(diagnostics, result_id=result)
 
     async def workspace_report(self, previous: Iterable[types.PreviousResultId]) -> types.WorkspaceDiagnosticReport:
         known = {self.session.convert.path(p.uri): p.value for p in previous}
@@ -189,18 +189,18 @@ class Diagnostics:
         there = moment.files()
         for path in there:
             await self._let_messages_by()
-            found = self.of(moment, path)
-            uri, version, result = self.session.convert.uri(path), moment.versions.get(path), result_id(found)
+            diagnostics = self.of(moment, path)
+            uri, version, result = self.session.convert.uri(path), moment.versions.get(path), result_id(diagnostics)
             if known.get(path) == result:
                 items.append(types.WorkspaceUnchangedDocumentDiagnosticReport(uri, result, version))
             else:
-                items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, found, version, result_id=result))
+                items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, diagnostics, version, result_id=result))
         for path in known.keys() - set(there):
             uri = self.session.convert.uri(path)
             items.append(types.WorkspaceFullDocumentDiagnosticReport(uri, [], None, result_id=result_id([])))
         return types.WorkspaceDiagnosticReport(items)
 
 
-def result_id(found: list[types.Diagnostic]) -> str:
+def result_id(diagnostics: list[types.Diagnostic]) -> str:
     """Equal diagnostics have equal ids."""
-    return hashlib.blake2b(repr(found).encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
+    return hashlib.blake2b(repr(diagnostics).encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()

@@ -13,13 +13,7 @@ from dataclasses import dataclass
 
 from roaml.ide.inlay_hints import HintKind
 
-_ON = {
-    HintKind.TYPES: True,
-    HintKind.PORTS: False,
-    HintKind.TOPICS: True,
-    HintKind.EVENTS: True,
-    HintKind.NODES: True,
-}
+OFF_BY_DEFAULT = frozenset([HintKind.PORTS])
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +31,7 @@ def display_settings(settings: object) -> DisplaySettings:
     Args:
         settings: the client's settings, as received.
     """
-    hints = frozenset(kind for kind, on in _ON.items() if _is_on(settings, "inlayHints", kind.value, on))
+    hints = frozenset(k for k in HintKind if _is_on(settings, "inlayHints", k.value, k not in OFF_BY_DEFAULT))
     references = _is_on(settings, "codeLens", "references", True)
     return DisplaySettings(hints, references, _is_on(settings, "inlayHints", "results", True))
 

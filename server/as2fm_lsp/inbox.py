@@ -28,11 +28,11 @@ _LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNOR
 _FIELD = re.compile(rb"[A-Za-z-]+:")
 """The beginning of a header line."""
 
-LONGEST_MESSAGE = 1 << 28
-"""The maximum size of a message, in bytes. Longer ones are treated as invalid."""
+MAX_MESSAGE_BYTES = 1 << 28
+"""What claims to be longer is no message."""
 
-_LONGEST_LINE = 1 << 16
-_PIECE = 1 << 20
+_MAX_LINE_BYTES = 1 << 16
+_PIECE_BYTES = 1 << 20
 _CHANGES = (types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
 CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CANCEL: "token"}
 
@@ -133,14 +133,14 @@ class Inbox:
 def bodies(stream: BinaryIO) -> Iterator[bytes]:
     """The bodies of the messages in a stream; invalid data are skipped."""
     length = 0
-    for line in iter(partial(stream.readline, _LONGEST_LINE), b""):
+    for line in iter(partial(stream.readline, _MAX_LINE_BYTES), b""):
         match = _LENGTH.fullmatch(line)
         if match:
             length = int(match[1])
         elif line.strip():
             length = length if _FIELD.match(line) else 0  # the header has ended without a length
         elif length:
-            if length <= LONGEST_MESSAGE:
+            if length <= MAX_MESSAGE_BYTES:
                 body = b"".join(_pieces(stream, length))
                 if len(body) < length:
                     return
@@ -150,7 +150,7 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
 
 def _pieces(stream: BinaryIO, length: int) -> Iterator[bytes]:
     """Memory is allocated for received data, not for the announced length."""
-    while length and (piece := stream.read(min(length, _PIECE))):
+    while length and (piece := stream.read(min(length, _PIECE_BYTES))):
         length -= len(piece)
         yield piece
 
@@ -168,8 +168,8 @@ def _cancelled(message: object) -> str | int | None:
     params = _params(message, *CANCELLATIONS)
     if params is None or not isinstance(message, dict):
         return None
-    found = params.get(CANCELLATIONS[message["method"]])
-    return found if is_id(found) else None
+    id_ = params.get(CANCELLATIONS[message["method"]])
+    return id_ if is_id(id_) else None
 
 
 def is_id(value: object) -> TypeGuard[int | str]:

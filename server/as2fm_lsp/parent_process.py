@@ -9,26 +9,26 @@ import threading
 import time
 from collections.abc import Callable
 
-INTERVAL = 1.0
-"""The polling interval in s, on systems without notifications."""
+POLL_INTERVAL_S = 1.0
+"""For systems that do not report the end of a process."""
 
-GRACE = 10.0
-"""The delay in s after which a busy server is killed."""
+EXIT_TIMEOUT_S = 10.0
+"""The time after which a server that is still busy is ended."""
 
 UNEXPECTED_END = 1
 
 
 def watch(process_id: int, ended: Callable[[], None]) -> None:
-    """Wait, in a separate thread, for the end of a process; a process that does not exist has ended.
+    """Wait, in a thread of its own, for the end of a process; a process that is not there has ended.
 
     Args:
-        ended: called in that thread, once. The server then has `GRACE` seconds to end normally.
+        ended: called in that thread, once. The server then has `EXIT_TIMEOUT_S` seconds to end by itself.
     """
 
     def wait() -> None:
         wait_for_end(process_id)
         ended()
-        time.sleep(GRACE)
+        time.sleep(EXIT_TIMEOUT_S)
         os._exit(UNEXPECTED_END)
 
     threading.Thread(target=wait, name="parent", daemon=True).start()
@@ -62,7 +62,7 @@ def _wait_on_linux(process_id: int) -> None:
 
 def _look_again_and_again(process_id: int) -> None:
     while _is_alive(process_id):
-        time.sleep(INTERVAL)
+        time.sleep(POLL_INTERVAL_S)
 
 
 def _is_alive(process_id: int) -> bool:

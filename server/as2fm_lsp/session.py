@@ -28,8 +28,8 @@ from roaml.project.workspace import Snapshot, Workspace
 
 log = logging.getLogger(__name__)
 
-FRESH = 0.5
-"""The interval in s after which the disk is read again, even without notifications."""
+MAX_SNAPSHOT_AGE_S = 0.5
+"""The time after which the disk is looked at again, even if no changes are reported there."""
 
 
 class Moment:
@@ -64,14 +64,14 @@ class Moment:
 
     def files(self) -> tuple[str, ...]:
         """All files that are reported: open files, their systems, and the folders."""
-        found = dict.fromkeys(self.versions)
+        paths = dict.fromkeys(self.versions)
         for path in self.versions:
             analysis = self.snapshot(path).analysis
             for system in analysis.memberships.get(path, ()):
-                found.update(dict.fromkeys(analysis.files_of(system)))
+                paths.update(dict.fromkeys(analysis.files_of(system)))
         for workspace in self._folders.values():
-            found.update(dict.fromkeys(self._frozen(workspace).files()))
-        return tuple(path for path in found if self.snapshot(path).analysis.source(path) is not None)
+            paths.update(dict.fromkeys(self._frozen(workspace).files()))
+        return tuple(path for path in paths if self.snapshot(path).analysis.source(path) is not None)
 
     def _frozen(self, workspace: Workspace) -> Snapshot:
         if id(workspace) not in self._snapshots:
@@ -100,7 +100,7 @@ class Session:
     def moment(self) -> Moment:
         """The current moment. Until something changes, all answers share it."""
         now = time.monotonic()
-        if self._moment is None or now - self._taken > FRESH:
+        if self._moment is None or now - self._taken > MAX_SNAPSHOT_AGE_S:
             self._moment = Moment(self._folders, self._workspace_around, self._versions)
             self._taken = now
         return self._moment
@@ -217,7 +217,7 @@ class Session:
         settings, mistakes = settings_from(_kebab(self._client_settings), folder, settings)
         if not settings.origin:  # otherwise they are among the diagnostics of that file
             self.problems += problems
-        self.problems += [f"In the editor's settings: {each.message}." for each in mistakes]
+        self.problems += [f"In the editor's settings: {mistake.message}." for mistake in mistakes]
         return replace(settings, ament_prefixes=ament_prefixes())
 
 

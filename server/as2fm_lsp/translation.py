@@ -38,14 +38,14 @@ def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
     """
     warnings: list[Diagnostic] = []
     kept: list[Property] = []
-    for each in model.properties:
-        bounds = list(bounds_in(each))
+    for property_ in model.properties:
+        bounds = list(bounds_in(property_))
         for why, bound in bounds:
             assert bound.origin is not None  # The property was read from a file of the system.
-            message = f"the property `{each.name}` is left out of the JANI file: {why}"
+            message = f"the property `{property_.name}` is left out of the JANI file: {why}"
             warnings.append(Diagnostic(bound.origin.path, BOUNDS, Severity.WARNING, bound.origin.span, message))
         if not bounds:
-            kept.append(each)
+            kept.append(property_)
     return replace(model, properties=tuple(kept)), tuple(warnings)
 
 

@@ -78,3 +78,34 @@ ELSEWHERE = frozenset(
 )
 """What no schema says: parts of the languages themselves, ROS types, names on the blackboard, nodes of the executed
 tree, variables of the translation."""
+
+
+class ProtocolPart(RoleValue):
+    """What an element sends or receives: a part of a ROS interface or of the tree protocol, an event, the tick of a
+    timer."""
+
+    BLACKBOARD = "blackboard"
+    BT_HALT = "bt-halt"
+    BT_HALTED = "bt-halted"
+    BT_STATUS = "bt-status"
+    BT_TICK = "bt-tick"
+    CHILD_HALT = "child-halt"
+    CHILD_HALTED = "child-halted"
+    CHILD_STATUS = "child-status"
+    CHILD_TICK = "child-tick"
+    EVENT = "event"
+    FEEDBACK = "feedback"
+    GOAL = "goal"
+    GOAL_ACCEPTED = "goal-accepted"
+    GOAL_REJECTED = "goal-rejected"
+    GOAL_RESPONSE = "goal-response"
+    MESSAGE = "message"
+    REQUEST = "request"
+    RESPONSE = "response"
+    RESULT = "result"
+    THREAD_FREE = "thread-free"
+    THREAD_START = "thread-start"
+    TICK = "tick"
+
+    START = "start"
+    """The start of a machine, before its first event. No schema says this."""

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,14 @@ import pytest
 import roaml.rules
 from roaml.rules import RULES, document
 from roaml.rules.rule import Rule
+
+SCRIPT = """
+import sys, pytest
+class Plugin:
+    def pytest_collection_finish(self):
+        print("imported:", sorted({"roaml.api", "roaml.rules", "hypothesis", "lsprotocol.types"} & sys.modules.keys()))
+pytest.main(["--collect-only", "-q", "-s", "-n", "0", "-k", "missing-file", sys.argv[1]], plugins=[Plugin()])
+"""
 
 
 def test_every_document_belongs_to_a_rule() -> None:
@@ -20,3 +30,12 @@ def test_every_document_belongs_to_a_rule() -> None:
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
 def test_document_begins_with_the_summary(rule: Rule) -> None:
     assert document(rule.code).startswith(f"# {rule.code}\n\n{rule.summary}\n")
+
+
+def test_cases_are_collected_without_the_library() -> None:
+    """So that the tests of one rule start at once. The library is imported when the first test runs."""
+    folder = Path(__file__).parents[1] / "rules"
+    command = [sys.executable, "-c", SCRIPT, str(folder)]
+    output = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder.parents[1]).stdout
+    assert "test_cases.py: " in output
+    assert "imported: []\n" in output

@@ -16,7 +16,7 @@ from roaml.json_syntax import parse
 from roaml.project.workspace import Snapshot
 from roaml.scxml.writer import write as scxml_texts
 from roaml.smc.fault import FaultError
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 
 
 def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
@@ -52,13 +52,13 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     yield from names_of(again)
     restart()
     try:
-        Checker(again, ())
+        ModelChecker(again, ())
     except FaultError as error:
         yield f"verify cannot run it: {error.message}"
         return
     for property_ in again.properties:
         with contextlib.suppress(FaultError):  # the form of a property may be one that is not answered
-            Checker(again, (property_,))
+            ModelChecker(again, (property_,))
 
 
 def names_of(model: Model) -> Iterator[str]:

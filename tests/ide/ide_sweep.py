@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml import api
-from roaml.ide.names.lookup import Thing, systems_of, thing
+from roaml.ide.names.lookup import Thing, thing
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import Refusal, Renaming, prepare, rename
 from roaml.jani.writer import write
@@ -66,7 +66,7 @@ class System:
         """Each thing that can be renamed, once, at the first of its places."""
         analysis, done = self.snapshot.analysis, set()
         for path in self.files:
-            for system in systems_of(analysis, path):
+            for system in analysis.systems_of(path):
                 for each in uses(analysis, path, system).all:
                     if each.symbol in done:
                         continue

@@ -10,7 +10,6 @@ import pytest
 from ide_models import CORNERS, ROBOT, system_file
 
 from fixture import split_files
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import occurrences
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
@@ -66,7 +65,7 @@ def found(snapshot: Snapshot) -> dict[tuple[str, str | None], object]:
     analysis = snapshot.analysis
     files = snapshot.files()
     return {
-        (path, system): occurrences(analysis, path, system) for path in files for system in systems_of(analysis, path)
+        (path, system): occurrences(analysis, path, system) for path in files for system in analysis.systems_of(path)
     }
 
 

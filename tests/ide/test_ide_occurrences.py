@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 from ide_models import found, load, load_marked, system_file
 
+from fixture import split_files
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.in_properties import names
 from roaml.ide.names.occurrences import occurrences, trees_of
+from roaml.project.analysis import Analysis
 
 ALONE = {
     "states and variables": """
@@ -350,6 +352,66 @@ def test_trees_are_walked_as_they_are_expanded(tmp_path: Path) -> None:
         (instance.number, instance.plugin) for instance in system.instances
     ]
     assert set(walked.full_names) >= set(system.blackboard)
+
+
+PLUGIN = """-- walk.ascxml --
+<ascxml name="Walk" version="1.0" initial="s">
+    <bt_declare_port_in key="goal" type="int32" />
+    <bt_declare_port_out key="end" type="int32" />
+    <state id="s"><bt_tick target="s"><bt_return_status status="SUCCESS" /></bt_tick></state>
+</ascxml>
+"""
+
+
+def system_of_trees(tmp_path: Path, trees: str) -> Analysis:
+    main = system_file("behavior_tree bt.cpp-xml tree.xml", "behavior_tree bt-plugin-ascxml walk.ascxml")
+    return load(tmp_path, split_files(f"{PLUGIN}-- main.xml --\n{main}\n{trees}"))
+
+
+def test_variables_are_those_of_the_translation(tmp_path: Path) -> None:
+    """`{=}` hands a variable through `A`, but no node of `A` uses it, so automatic remapping does not lead there."""
+    analysis = system_of_trees(
+        tmp_path,
+        """-- tree.xml --
+<root BTCPP_format="4" main_tree_to_execute="Main">
+    <BehaviorTree ID="Main"><SubTree ID="A" /></BehaviorTree>
+    <BehaviorTree ID="A">
+        <Sequence><SubTree ID="B" x="{=}" /><SubTree ID="C" _autoremap="true" /></Sequence>
+    </BehaviorTree>
+    <BehaviorTree ID="B"><Walk end="{x}" goal="1" /></BehaviorTree>
+    <BehaviorTree ID="C"><Walk end="{x}" goal="{x}" /></BehaviorTree>
+</root>
+""",
+    )
+    main = str(tmp_path / "main.xml")
+    system = analysis.system(main)
+    assert system is not None
+    assert set(system.blackboard) == {"A__x", "A__C__x"}
+    assert set(trees_of(analysis, main, main).full_names) >= set(system.blackboard)
+
+
+def test_trees_of_a_project_are_not_executed(tmp_path: Path) -> None:
+    """A project lists subtrees; a tree there that nobody uses does not make it unclear which tree is executed."""
+    analysis = system_of_trees(
+        tmp_path,
+        """-- tree.xml --
+<root BTCPP_format="4">
+    <BehaviorTree ID="Main"><SubTree ID="Sub" /></BehaviorTree>
+</root>
+-- robot.btproj --
+<root BTCPP_format="4" project_name="robot"><include path="tree.xml" /><include path="other.xml" /></root>
+-- other.xml --
+<root BTCPP_format="4">
+    <BehaviorTree ID="Sub"><Walk end="{x}" goal="1" /></BehaviorTree>
+    <BehaviorTree ID="Unused"><Walk end="{x}" goal="1" /></BehaviorTree>
+</root>
+""",
+    )
+    main = str(tmp_path / "main.xml")
+    system = analysis.system(main)
+    assert system is not None
+    assert set(system.blackboard) == {"Sub__x"}
+    assert set(trees_of(analysis, main, main).full_names) == {"Sub__x"}
 
 
 def test_damaged_documents(tmp_path: Path) -> None:

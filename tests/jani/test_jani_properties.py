@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from jani_strategies import FORMULAS
 
 from roaml.jani.expressions import Binary, Integer, Name, Real
-from roaml.jani.infer import Scope
+from roaml.jani.infer import TypeScope
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import (
     Accumulation,
@@ -205,7 +205,7 @@ def test_names_and_types_of_a_property_are_checked_elsewhere() -> None:
     text, property_ = read(
         "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': {'op': '∧', 'left': 'sen.valid', 'right': 'level'}}}"
     )
-    findings = check_property(property_, Scope({"seen.valid": BOOL, "level": INT}))
+    findings = check_property(property_, TypeScope({"seen.valid": BOOL, "level": INT}))
     assert [(finding.code, text[slice(*finding.span)]) for finding in findings] == [
         ("jani-name", "sen.valid"),
         ("jani-type", "level"),

@@ -25,7 +25,7 @@ from roaml.jani.expressions import (
     Real,
     Unary,
 )
-from roaml.jani.infer import Scope
+from roaml.jani.infer import TypeScope
 from roaml.jani.model import Function, Parameter
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.semantics import EvaluationError, Record, Some, Value, evaluate
@@ -289,7 +289,7 @@ def is_of(value: Value, type_: Type) -> bool:
             return True
 
 
-SCOPE = Scope(
+SCOPE = TypeScope(
     {"x": INT, "y": REAL, "seen.valid": BOOL, "e__p": ArrayType(INT), "a.d1_len": ArrayType(ArrayType(BOOL))},
 )
 SCOPE_STATE: dict[str, Value] = {

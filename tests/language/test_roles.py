@@ -6,7 +6,7 @@ from __future__ import annotations
 from lxml import etree
 
 from roaml.language.resources import schema_path
-from roaml.roles import ELSEWHERE, RoleValue, SymbolKind
+from roaml.roles import ELSEWHERE, ProtocolPart, RoleValue, SymbolKind
 
 SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd")
 ROLES = "{urn:roaml:roles}"
@@ -26,6 +26,10 @@ def written(*places: str) -> set[str]:
 
 def values(*kinds: RoleValue) -> set[str]:
     return {kind.value for kind in kinds}
+
+
+def test_parts() -> None:
+    assert written("sends@part", "receives@part") == values(*ProtocolPart) - values(ProtocolPart.START)
 
 
 def test_symbols() -> None:

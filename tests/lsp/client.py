@@ -22,7 +22,7 @@ from patience import PATIENCE
 
 STARTED = (sys.executable, "-m", "as2fm_lsp")
 """The server as an editor starts it. Tests of anything but its start use `prefork.command()`, which is quick."""
-QUICK = "from as2fm_lsp import __main__, diagnostics; diagnostics.QUICK = {}; __main__.main()"
+QUICK = "from as2fm_lsp import __main__, diagnostics; diagnostics.PROGRESS_DELAY_S = {}; __main__.main()"
 
 REFRESHES = (types.WORKSPACE_CODE_LENS_REFRESH, types.WORKSPACE_INLAY_HINT_REFRESH)
 """Requests to ask again; `Client.refreshed` lists those that have come."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from client import REFRESHES, Client, connect
@@ -10,8 +11,11 @@ from ide_models import ROBOT, load
 from lsprotocol import types
 from test_lsp_navigate import place
 
+from as2fm_lsp.display_settings import OFF_BY_DEFAULT
 from fixture import split_files
+from roaml.ide.inlay_hints import HintKind
 
+EXTENSION = Path(__file__).parents[2] / "vscode-extension"
 MARKDOWN = [types.MarkupKind.Markdown, types.MarkupKind.PlainText]
 WHOLE = types.Range(types.Position(0, 0), types.Position(1000, 0))
 
@@ -37,6 +41,21 @@ async def hints(client: Client, path: Path, range_: types.Range = WHOLE) -> list
 
 def label(hint: types.InlayHint) -> str:
     return hint.label if isinstance(hint.label, str) else "".join(part.value for part in hint.label)
+
+
+def test_every_kind_of_hint_is_a_setting() -> None:
+    """Of the same default in VS Code and in the server."""
+    settings = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["contributes"]["configuration"]
+    texts = json.loads((EXTENSION / "package.nls.json").read_text(encoding="utf-8"))
+    prefix = "as2fm.inlayHints."
+    defaults = {
+        name.removeprefix(prefix): setting["default"]
+        for group in (settings if isinstance(settings, list) else [settings])
+        for name, setting in group["properties"].items()
+        if name.startswith(prefix)
+    }
+    assert defaults == {"results": True} | {kind.value: kind not in OFF_BY_DEFAULT for kind in HintKind}
+    assert all(texts[f"settings.inlayHints.{name}"] for name in defaults)
 
 
 async def test_hints_are_explained_on_demand(tmp_path: Path) -> None:

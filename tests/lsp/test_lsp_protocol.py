@@ -165,7 +165,7 @@ def test_memory_is_taken_for_what_is_there() -> None:
     class Announced(BytesIO):
         def read(self, size: int | None = -1) -> bytes:
             assert size is not None
-            assert size <= inbox.LONGEST_MESSAGE // 100
+            assert size <= inbox.MAX_MESSAGE_BYTES // 100
             return super().read(size)
 
     assert list(bodies(Announced(b"Content-Length: 200000000\r\n\r\n{}"))) == []
@@ -227,7 +227,7 @@ async def test_it_ends_with_the_process_of_its_client() -> None:
 
 
 def test_the_end_of_a_process_is_seen_without_help_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parent_process, "INTERVAL", 0.01)
+    monkeypatch.setattr(parent_process, "POLL_INTERVAL_S", 0.01)
     other = subprocess.Popen([sys.executable, "-c", ""])
     other.wait()
     parent_process._look_again_and_again(other.pid)

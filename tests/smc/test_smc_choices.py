@@ -10,7 +10,7 @@ from roaml.smc import kernel
 from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
 from roaml.smc.explore import Explorer
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import Options
@@ -21,7 +21,7 @@ GOAL = op("F", "done")
 
 
 def looked_at(written: Json, options: Options | None = None) -> Choices:
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     options = options or Options(epsilon=0.03)
     with Pool() as pool:
         answer = checker.answer(checker.asked[0], options, pool)
@@ -93,7 +93,7 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
 
 
 def test_what_is_known_does_not_depend_on_workers() -> None:
-    checker = Checker(model(starving(6000)))
+    checker = ModelChecker(model(starving(6000)))
     found = []
     for pool in (Pool(), Pool(2, patience=0)):
         with pool as used:
@@ -123,7 +123,7 @@ def test_described() -> None:
 
 def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, int]:
     """Verdict and steps of a trace under a scheduler; both kernels must agree."""
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.asked[0])
     found = []
     for module in (kernel, plain_kernel()):
@@ -168,13 +168,13 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
         syncs=[["one", None, "one"], [None, "two", "two"]],
         properties={"p": probability(GOAL, "Pmax")},
     )
-    compiled = Checker(model(written)).compiled(Checker(model(written)).asked[0])
+    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
     assert len(Explorer(compiled).reachable(100)) == 4
     assert {outcomes(written, MEMORY | number)[0] for number in range(1, 40)} == {TRUE, FALSE}
 
 
 def test_limits_of_looking_at_all_states() -> None:
-    checker = Checker(model(chain(100)))
+    checker = ModelChecker(model(chain(100)))
     compiled = checker.compiled(checker.asked[0])
     assert solve(compiled, limit=50) is None
     assert solve(compiled, work=50) is None
@@ -190,7 +190,7 @@ def test_goals_of_several_parts_are_not_solved() -> None:
     written = chain(5)
     both = op("∧", op("F", "done"), op("F", op("=", "c", 2)))
     written["properties"] = [{"name": "p", "expression": probability(both)}]
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     solution = solve(checker.compiled(checker.asked[0]))
     assert solution is not None
     assert (solution.minimum, solution.has_choices, solution.agrees) == (None, False, True)

@@ -13,7 +13,7 @@ import conformance
 from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.run import Options
 
@@ -36,7 +36,7 @@ def load(path: Path) -> Model:
 def test_reference_translations(path: Path) -> None:
     found = load(path)
     wanted = {case["property"]: case for case in CASES if reference(case) == path}
-    checker = Checker(found, [each for each in found.properties if each.name in wanted])
+    checker = ModelChecker(found, [each for each in found.properties if each.name in wanted])
     with Pool() as pool:
         for asked in checker.asked:
             case = wanted[asked.question.name]

@@ -14,7 +14,7 @@ from roaml.jani.writer import write
 from roaml.smc import end, kernel
 from roaml.smc.batch import Task, run
 from roaml.smc.end import End
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Answer, Options, Tally
 from stuck_models import CROSSED, hospital, system
@@ -24,13 +24,13 @@ FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
 GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
 
 
-def answer(checker: Checker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
+def answer(checker: ModelChecker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
     options = Options(method=FIXED, max_traces=traces, max_steps=max_steps)
     with Pool(jobs, patience=0 if jobs > 1 else 1) as pool:
         return checker.answer(checker.asked[0], options, pool)
 
 
-def of_system(folder: Path, files: dict[str, str], *properties: str) -> Checker:
+def of_system(folder: Path, files: dict[str, str], *properties: str) -> ModelChecker:
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
     return api.checker(api.to_jani(api.load(str(folder / "main.xml"))), properties or None)
@@ -70,7 +70,7 @@ LOOP = [edge("s", way("t", x=1)), edge("t", "t")]
 )
 def test_any_model(edges: list[Json], goals: dict[str, Json], reason: End, value: float) -> None:
     written = document(automaton("a", "s t", edges), variables=[variable("x")], properties=goals)
-    found = answer(Checker(model(written)))
+    found = answer(ModelChecker(model(written)))
     assert (counts(found), found.value) == ({reason: 1}, value)
 
 
@@ -80,7 +80,7 @@ def test_reasons_are_counted_with_their_shortest_traces() -> None:
     edges = [edge("s", *ways), edge("two", "end"), edge("three", "four"), edge("four", "end")]
     places = "s goal two three four end"
     written = document(automaton("a", places, edges), variables=[variable("x")], properties=FINALLY)
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     found = answer(checker, traces=500)
     tally = found.tally
     assert sum(counts(found).values()) == tally.traces == 500

@@ -20,7 +20,7 @@ from examples import examples
 from roaml import api
 from roaml.smc import kernel, program
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.opcodes import Op
 from twin import difference, plain_kernel
 
@@ -53,7 +53,7 @@ def test_is_compiled_where_there_is_a_compiler() -> None:
     assert not plain_kernel().compiled()
 
 
-def same_traces(checker: Checker, traces: int, steps: int) -> None:
+def same_traces(checker: ModelChecker, traces: int, steps: int) -> None:
     for asked in checker.asked:
         for scheduler in (0, 5, MEMORY | 3, STARVE | 2, FAVOUR | 1):
             assert difference(checker, asked, 11, traces, steps, scheduler) == ""
@@ -67,7 +67,7 @@ def test_same_traces_of_the_example() -> None:
 @settings(max_examples=examples(60), suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_same_traces_of_random_models(written: dict[str, Any]) -> None:
-    same_traces(Checker(model(written)), traces=4, steps=40)
+    same_traces(ModelChecker(model(written)), traces=4, steps=40)
 
 
 LARGE = (1 << 63) - 1
@@ -94,7 +94,7 @@ def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
         variables=[variable("x", initial=LARGE), variable("y"), variable("one", initial=1)],
         properties={"p": probability(op("F", op("=", "y", 77)))},
     )
-    compiled = Checker(model(written)).compiled(Checker(model(written)).asked[0])
+    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
     for each in (kernel, plain_kernel()):
         found = each.Kernel(compiled.program, compiled.goal)
         assert found.begin(0, 0) == program.UNKNOWN
@@ -127,7 +127,7 @@ def test_random_numbers_are_those_of_splitmix(seed: int, trace: int) -> None:
         variables=[variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.asked[0])
     first, second = (kernel.Kernel(compiled.program, compiled.goal) for _ in range(2))
     second.begin(1, 1)

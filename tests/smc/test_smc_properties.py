@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
 from examples import examples
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Options
 
@@ -154,7 +154,7 @@ def test_thresholds() -> None:
     ):
         found = path_model([0, 1], False, {"p": written})
         found["constants"] = [{"name": "c", "type": "real", "value": 0.75}]
-        (asked,) = Checker(model(found)).asked
+        (asked,) = ModelChecker(model(found)).asked
         assert asked.question.threshold is not None
         assert (asked.question.threshold.relation.symbol, asked.question.threshold.number) == (relation, number)
 
@@ -215,7 +215,7 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
 def test_properties_that_cannot_be_answered(expression: Json, message: str) -> None:
     """Each is refused for a reason of its own, and stops no other."""
     found = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
-    checker = Checker(model(path_model([0, 1], False, found)))
+    checker = ModelChecker(model(path_model([0, 1], False, found)))
     assert [asked.question.name for asked in checker.asked] == ["before", "after"]
     assert checker.names == ("before", "p", "after")
     (refused,) = checker.refused.values()

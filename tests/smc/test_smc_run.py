@@ -17,10 +17,10 @@ from typing import Any
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.smc.batch import Outcome, Task, kernel_of, run
+from roaml.smc.batch import BatchOutcome, Task, kernel_of, run
 from roaml.smc.fault import FaultError
 from roaml.smc.kernel import Kernel
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import ATTEMPTS, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import ADAPTIVE, FIXED, OKAMOTO, SPRT, Answer, Options, Tally
@@ -39,7 +39,7 @@ def coin(p: float = 0.3, extra: int = 0) -> Json:
 
 
 def ask(options: Options, written: Json | None = None, pool: Pool | None = None, **more: Any) -> Answer:
-    checker = Checker(model(written or coin()))
+    checker = ModelChecker(model(written or coin()))
     with pool or Pool() as used:
         return checker.answer(checker.asked[0], options, used, **more)
 
@@ -90,7 +90,7 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
 
 def test_threads_do_not_share_a_kernel() -> None:
     """Else one thread would continue the trace of another."""
-    checker = Checker(model(coin()))
+    checker = ModelChecker(model(coin()))
     payload = checker.payload(checker.asked[0])
     together = Barrier(2)
 
@@ -221,7 +221,7 @@ def test_memory_does_not_grow_with_the_number_of_traces() -> None:
 
 
 def tasks() -> Iterator[Task]:
-    checker = Checker(model(coin()))
+    checker = ModelChecker(model(coin()))
     payload = checker.payload(checker.asked[0])
     first = 0
     while True:
@@ -258,7 +258,7 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
 def test_a_batch_is_a_function_of_its_task() -> None:
     task = next(tasks())
     first, second = run(task), run(task)
-    assert isinstance(first, Outcome)
+    assert isinstance(first, BatchOutcome)
     assert (first.verdicts, first.steps, first.rewards) == (second.verdicts, second.steps, second.rewards)
 
 

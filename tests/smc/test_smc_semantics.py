@@ -22,7 +22,7 @@ from roaml.jani.model import Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.smc.explore import Explorer, StateFaultError
 from roaml.smc.fault import FaultError
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 
 ROOT = Path(__file__).resolve().parents[2]
 VALUES: dict[str, Value] = {"i": 3, "k": -2, "r": 2.5, "z": 0.0, "yes": True, "no": False}
@@ -140,7 +140,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
         expected = error.message
     assume(not isinstance(expected, float) or not math.isnan(expected))
     assume(isinstance(expected, (str, float)) or abs(expected) < 1 << 62)  # type: ignore[arg-type]
-    checker = Checker(found)
+    checker = ModelChecker(found)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     try:
         ((_, (branch,)),) = explorer.choices(explorer.initial)
@@ -161,7 +161,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
 
 def states_of(found: Model, limit: int) -> set[tuple[Any, ...]]:
     """All reachable states by the engine, as the slow explorer tells them."""
-    checker = Checker(found)
+    checker = ModelChecker(found)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     layout = checker.legend.layout
     states = set()

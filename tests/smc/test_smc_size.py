@@ -12,10 +12,10 @@ import pytest
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 
 
-def model(assigned: Any, initial: Any = 0, type_: Any = "int", functions: tuple[Any, ...] = ()) -> Checker:
+def model(assigned: Any, initial: Any = 0, type_: Any = "int", functions: tuple[Any, ...] = ()) -> ModelChecker:
     variables = [
         {"name": "v", "type": "int", "initial-value": 0},
         {"name": "a", "type": type_, "initial-value": initial},
@@ -40,7 +40,7 @@ def model(assigned: Any, initial: Any = 0, type_: Any = "int", functions: tuple[
     found, findings = read_model(parse(json.dumps(value))[0])
     assert found is not None
     assert findings == ()
-    return Checker(found)
+    return ModelChecker(found)
 
 
 def function(name: str, body: Any) -> Any:

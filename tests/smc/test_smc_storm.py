@@ -21,7 +21,7 @@ from roaml import api
 from roaml.jani.model import Model
 from roaml.smc.explore import Explorer, TooManyStatesError
 from roaml.smc.lss import GREATEST, LEAST, Search
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import FIXED, Options
@@ -34,7 +34,7 @@ TRACES = 3000
 
 def estimates(found: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
     """Property -> successes and traces."""
-    checker = Checker(found)
+    checker = ModelChecker(found)
     with Pool() as pool:
         options = Options(method=FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
         answers = {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
@@ -117,7 +117,7 @@ def test_translated_systems_agree_with_storm(name: str) -> None:
 
 def induced(found: Model, limit: int, folder: Path) -> float | None:
     """The probability that Storm computes for the Markov chain that uniform choices make of a model."""
-    checker = Checker(found)
+    checker = ModelChecker(found)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     try:
         verdicts = explorer.reachable(limit)
@@ -153,7 +153,7 @@ def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -
         expected = induced(found, 300, tmp_path)
         if expected is None:
             continue
-        checker = Checker(found)
+        checker = ModelChecker(found)
         with Pool() as pool:
             answer = checker.answer(checker.asked[0], Options(method=FIXED, max_traces=TRACES, max_steps=3000), pool)
         low = answer.tally.successes
@@ -198,7 +198,7 @@ def test_exact_answers() -> None:
             properties={"p": probability(op("F", op("=", "x", at("v", 0))))},
         )
     )
-    checker = Checker(found)
+    checker = ModelChecker(found)
     result = exact_values(checker, checker.asked[0], 100)
     assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
     with pytest.raises(ExactError, match="more than 2 states"):
@@ -218,7 +218,7 @@ def test_extremes_from_all_states_are_those_of_storm() -> None:
         for path in (goal, opposite, until):
             written["properties"] = [{"name": "p", "expression": probability(path)}]
             found = model(written)
-            checker = Checker(found)
+            checker = ModelChecker(found)
             solution = solve(checker.compiled(checker.asked[0]), limit=300)
             if solution is None or solution.minimum is None or solution.maximum is None:
                 continue
@@ -245,7 +245,7 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
         )
     )
     expected = storm_exact(found, "p")
-    checker = Checker(found)
+    checker = ModelChecker(found)
     with Pool() as pool:
         state = Search()
         checker.search(checker.asked[0], Options(epsilon=0.02), pool, state)

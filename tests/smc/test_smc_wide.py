@@ -14,7 +14,7 @@ from examples import examples
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
 from roaml.smc.explore import Explorer, TooManyChoicesError
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.solve import solve
 from roaml.smc.statistics import clopper_pearson
 from twin import difference
@@ -86,7 +86,7 @@ def test_an_action_that_is_negligible_is_never_taken() -> None:
         )
     }
     written = document(alone, *parts, variables=[variable("x")], syncs=[[None, *["a"] * 1200]], properties=goals)
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.asked[0])
     found = kernel.Kernel(compiled.program, compiled.goal)
     for trace in range(50):
@@ -98,14 +98,14 @@ def test_an_action_that_is_negligible_is_never_taken() -> None:
 @pytest.mark.parametrize(("count", "edges"), [(12, 2), (64, 2), (40, 5)])
 @pytest.mark.parametrize("scheduler", [0, 77])
 def test_both_kernels_draw_the_same(count: int, edges: int, scheduler: int) -> None:
-    checker = Checker(model(wide(count, edges)))
+    checker = ModelChecker(model(wide(count, edges)))
     for asked in checker.asked:
         assert difference(checker, asked, 7, 10, 3, scheduler) == ""
 
 
 def test_schedulers_choose_every_edge() -> None:
     """No scheduler looks at all combinations; together they choose all edges alike."""
-    checker = Checker(model(wide(64, 2)))
+    checker = ModelChecker(model(wide(64, 2)))
     compiled = checker.compiled(checker.asked[0])
     found = kernel.Kernel(compiled.program, compiled.goal)
     chosen = [0] * 64
@@ -121,7 +121,7 @@ def test_schedulers_choose_every_edge() -> None:
 
 def test_a_scheduler_is_a_function_of_the_state() -> None:
     """The same scheduler does the same in the same state, whatever the trace and its random numbers."""
-    checker = Checker(model(wide(64, 3)))
+    checker = ModelChecker(model(wide(64, 3)))
     compiled = checker.compiled(checker.asked[0])
     found = kernel.Kernel(compiled.program, compiled.goal)
     seen = set()
@@ -135,7 +135,7 @@ def test_a_scheduler_is_a_function_of_the_state() -> None:
 @settings(max_examples=examples(15), suppress_health_check=list(HealthCheck))
 @given(st.integers(2, 100), st.randoms(use_true_random=False), st.sampled_from([0, 3]))
 def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Random, scheduler: int) -> None:
-    checker = Checker(model(wide_network(random, count)))
+    checker = ModelChecker(model(wide_network(random, count)))
     assert difference(checker, checker.asked[0], 7, 3, 20, scheduler) == ""
 
 
@@ -144,7 +144,7 @@ def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Rando
 
 @pytest.mark.parametrize(("count", "edges"), [(21, 2), (64, 2), (1100, 3)])
 def test_combinations_are_counted_before_they_are_enumerated(count: int, edges: int) -> None:
-    checker = Checker(model(wide(count, edges)))
+    checker = ModelChecker(model(wide(count, edges)))
     explorer = Explorer(checker.compiled(checker.asked[0]))
     with pytest.raises(TooManyChoicesError):
         next(explorer.choices(explorer.initial))
@@ -157,7 +157,7 @@ def test_combinations_of_destinations_are_counted_as_well() -> None:
     parts = [automaton(f"m{n}", "s t", [edge("s", way("s", 0.5), way("t", 0.5), action="a")]) for n in range(64)]
     goals = {"p": probability(op("F", op("=", "x", 1)))}
     written = document(*parts, variables=[variable("x")], syncs=[["a"] * 64], properties=goals)
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     explorer = Explorer(checker.compiled(checker.asked[0]))
     with pytest.raises(TooManyChoicesError):
         explorer.reachable(10)
@@ -169,7 +169,7 @@ def test_choices_that_differ_in_nothing_are_one_that_counts_often() -> None:
     parts += [automaton(f"m{n}", "s", [edge("s", "s", action="a"), edge("s", "s", action="a")]) for n in range(62)]
     goals = {"p": probability(op("F", op("=", "x", 1)))}
     written = document(*parts, variables=[variable("x")], syncs=[["a"] * 63], properties=goals)
-    checker = Checker(model(written))
+    checker = ModelChecker(model(written))
     explorer = Explorer(checker.compiled(checker.asked[0]))
     ((times, branches),) = explorer.choices(explorer.initial)
     assert (times, len(branches)) == (2**62, 1)
@@ -178,5 +178,5 @@ def test_choices_that_differ_in_nothing_are_one_that_counts_often() -> None:
 
 def test_agreement_is_not_looked_for_among_too_many_combinations() -> None:
     for written in (wide(64, 2), wide(1100, 2)):
-        checker = Checker(model(written))
+        checker = ModelChecker(model(written))
         assert solve(checker.compiled(checker.asked[0])) is None

@@ -51,8 +51,8 @@ class Moment:
 class Interpreter:
     def __init__(self, network: Network) -> None:
         self.automata = network.automata
-        self.handled = [{t.event for s in a.states for t in s.transitions} - {""} for a in self.automata]
-        self.senders = {s.event for a in self.automata for s in _sends(a)}
+        self.handled = [{awaited(t) for s in a.states for t in s.transitions} - {""} for a in self.automata]
+        self.senders = {s.event.name for a in self.automata for s in _sends(a)}
         self.states = [{s.id: s for s in a.states} for a in self.automata]
         self.spontaneous = [{s.id for s in a.states if any(not t.event for t in s.transitions)} for a in self.automata]
 
@@ -103,7 +103,7 @@ class Interpreter:
 
     def send(self, now: Moment, i: int, statement: Send, after: Machine) -> Iterator[Moment]:
         data, sent = dict(after.data), dict(now.sent)
-        event = statement.event
+        event = statement.event.name
         if event == CLOCK_STEP:
             yield from self.settle(now, i, after)
             return
@@ -142,14 +142,14 @@ class Interpreter:
         automaton, machine = self.automata[i], now.machines[i]
         state = self.states[i][machine.state]
         data, params = dict(machine.data), dict(dict(now.sent).get(event, ()))
-        own = [t for t in state.transitions if t.event == event]
+        own = [t for t in state.transitions if awaited(t) == event]
         for transition in own:
             if transition.cond is None or value(transition.cond, data, params):
                 yield from self.targets(i, machine, transition, event)
                 return
         if not event or automaton.role in (Role.TREE_ROOT, Role.HANDLER):
             return
-        stuck = any(t.event == "" and t.cond is None for t in state.transitions)
+        stuck = any(t.event is None and t.cond is None for t in state.transitions)
         if not stuck and (own or not SYNCHRONISING.match(event)):
             yield machine
 
@@ -170,6 +170,11 @@ class Interpreter:
         machines = list(now.machines)
         machines[i] = Machine(machine.state, _frozen(data), rest, event)
         yield replace(now, machines=tuple(machines))
+
+
+def awaited(transition: Transition) -> str:
+    """The name of the event; "" for none."""
+    return transition.event.name if transition.event else ""
 
 
 def _sends(automaton: Automaton) -> Iterator[Send]:

@@ -10,7 +10,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml import api
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder
 from roaml.smc.story import Story, tell
 from roaml.text import Location
@@ -74,7 +74,7 @@ def test_what_only_passes_on_is_left_out() -> None:
 
 
 def walked(written: Json) -> Story:
-    ready = Checker(model(written))
+    ready = ModelChecker(model(written))
     return tell(Recorder(ready, ready.asked[0], 0, 1000), 0)
 
 

@@ -10,7 +10,7 @@ import pytest
 from fixture import split_files
 from roaml import api
 from roaml.project.settings import Settings
-from roaml.views import NOTATIONS, Graph, Kind, Link, Node, machine_graph, network_graph, tree_graph
+from roaml.views import NOTATIONS, Graph, GraphLink, GraphNode, Kind, machine_graph, network_graph, tree_graph
 
 FILES = split_files(
     """\
@@ -84,9 +84,9 @@ HOSTILE = 'a"b\\c;d<e>{f}|g&h\u00e9'
 @pytest.mark.parametrize("notation", NOTATIONS)
 def test_what_means_something_to_a_notation(notation: str, kind: Kind) -> None:
     """No name breaks out of its place: each line of the diagram keeps its form."""
-    plain = Graph(kind, "t", (Node("x", ("x",)), Node("y", ("y",))), (Link("x", "y", ("z",)),), "x")
-    nodes = tuple(Node(f"{HOSTILE}{n.id}", (f"{HOSTILE}{n.id}",)) for n in plain.nodes)
-    hostile = Graph(kind, "t", nodes, (Link(nodes[0].id, nodes[1].id, ("z",)),), nodes[0].id)
+    plain = Graph(kind, "t", (GraphNode("x", ("x",)), GraphNode("y", ("y",))), (GraphLink("x", "y", ("z",)),), "x")
+    nodes = tuple(GraphNode(f"{HOSTILE}{n.id}", (f"{HOSTILE}{n.id}",)) for n in plain.nodes)
+    hostile = Graph(kind, "t", nodes, (GraphLink(nodes[0].id, nodes[1].id, ("z",)),), nodes[0].id)
     render = NOTATIONS[notation].render
     assert render(hostile).count("\n") == render(plain).count("\n")
     assert all(line.count('"') % 2 == 0 for line in render(hostile).replace('\\"', "").splitlines())

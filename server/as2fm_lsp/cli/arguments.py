@@ -28,8 +28,10 @@ class ArgumentParser(argparse.ArgumentParser):
         return options
 
     def _hint(self, unknown: Sequence[str]) -> str:
-        for each in unknown:
-            if each.startswith("--") and (close := close_names(each.partition("=")[0], self._option_string_actions)):
+        for argument in unknown:
+            if argument.startswith("--") and (
+                close := close_names(argument.partition("=")[0], self._option_string_actions)
+            ):
                 return did_you_mean(close)
         return ""
 

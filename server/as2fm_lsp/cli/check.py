@@ -63,7 +63,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     stdin = options.stdin_filename
     if not options.paths and stdin is None:
-        return _usage(f"{name} needs at least one PATH")
+        return _usage(f"{name} needs a PATH")
     if stdin is not None and os.path.isdir(stdin):
         return _usage(f"{stdin}: --stdin-filename needs the name of a file")
     if options.fix and stdin is not None:
@@ -122,7 +122,9 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
     """A line about the findings with fixes that need a review; "" if there are none."""
-    counts = Counter(each.code for each in diagnostics if each.fixes and not any(f.safe for f in each.fixes))
+    counts = Counter(
+        diagnostic.code for diagnostic in diagnostics if diagnostic.fixes and not any(f.safe for f in diagnostic.fixes)
+    )
     if not counts:
         return ""
     total = sum(counts.values())

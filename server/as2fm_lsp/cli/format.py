@@ -92,9 +92,9 @@ def parser() -> ArgumentParser:
 
 def _problem(analysis: Analysis, path: str) -> str:
     """Why a given file cannot be formatted."""
-    found = analysis.files.read(path)
-    if isinstance(found, Problem):
-        return found.value
+    source = analysis.files.read(path)
+    if isinstance(source, Problem):
+        return source.value
     return "" if is_ours(analysis, path) else "it is neither a model nor a property file"
 
 
@@ -104,9 +104,9 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
         if not os.path.isdir(path):
             yield path
             continue
-        for each in candidates((path,), settings.exclude):
-            if is_ours(analysis, each) and _is_hand_written(analysis, each):
-                yield each
+        for candidate in candidates((path,), settings.exclude):
+            if is_ours(analysis, candidate) and _is_hand_written(analysis, candidate):
+                yield candidate
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:

@@ -134,7 +134,7 @@ def _misused(first: str) -> str:
     meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
     if meant:
         return f"there is no command `{first}`{did_you_mean(meant)}"
-    return f"there is no command `{first}`, and no such file; the commands are {listing(tuple(COMMANDS))}; see --help"
+    return f"there is no command or file `{first}`; the commands are {listing(tuple(COMMANDS))}; see --help"
 
 
 def _listed() -> str:

@@ -99,14 +99,14 @@ def search_line(question: Question, search: Search, options: Options) -> str:
 
 def progress(question: Question, options: Options, tally: Tally) -> float:
     """The finished part of the work, between 0 and 1."""
-    wanted = wanted_traces(options)
-    if wanted is None:
+    total = wanted_traces(options)
+    if total is None:
         half = bounds_of(tally, question, options, tally.is_revised).half_width
         target = options.epsilon * (max(abs(tally.mean.mean), 1e-9) if question.is_reward else 1)
         # The width of the interval decreases with the square root of the number of traces.
         share = 0.0 if math.isinf(half) or math.isnan(half) else 1.0 if half <= target else (target / half) ** 2
     else:
-        share = tally.traces / wanted
+        share = tally.traces / total
     if options.max_traces is not None:
         share = max(share, tally.traces / options.max_traces)
     return min(1.0, share)

@@ -35,7 +35,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
@@ -174,7 +174,7 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: Asked, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
         name = asked.question.name
         if self.options.exact:
@@ -204,7 +204,7 @@ class _Verification:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: Asked, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
         search, interrupted = Search(), False
         try:
@@ -219,7 +219,7 @@ class _Verification:
         own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exact(self, asked: Asked) -> Result:
+    def _exact(self, asked: CompiledProperty) -> Result:
         try:
             return self.verifier.exact(asked, self.options.max_states)
         except ExactError as error:
@@ -232,14 +232,14 @@ class _Verification:
 
     def _text(self) -> str:
         if self.options.format == "json":
-            entries = [_row(each) for each in self._fault_entries()]
+            entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
             return as_json(self.results, entries, stuck=row)
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
         # A story of a stuck trace ends with the waiting automata.
-        is_told = STANDARD_OUTPUT in self.options.explain and any(each.answer for each in self.results)
-        is_told = is_told and not any(each.is_interrupted for each in self.results)
+        is_told = STANDARD_OUTPUT in self.options.explain and any(result.answer for result in self.results)
+        is_told = is_told and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
         if self.look is not None:
             text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
@@ -249,10 +249,10 @@ class _Verification:
         """Where the waiting automata were shown, for the known example of a stuck trace; "" if nowhere."""
         if self.look is None or self.look.stuck is None:
             return ""
-        same = [each for each in self.results if each.stuck and each.stuck.chain == self.look.stuck.chain]
+        same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
         if same and is_told:
             return "in the trace below"
-        named = next((each.name for each in same if not each.asks_stuck), None)
+        named = next((result.name for result in same if not result.asks_stuck), None)
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:
@@ -275,13 +275,17 @@ class _Verification:
     def _fault_entries(self) -> list[Entry]:
         """The properties that could not be decided, with their positions in the model."""
         diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
-        return [entry(each, _source_of(self.target), shown_path) for each in diagnostics if each is not None]
+        return [
+            entry(diagnostic, _source_of(self.target), shown_path)
+            for diagnostic in diagnostics
+            if diagnostic is not None
+        ]
 
     def _tell_faults(self) -> None:
         """Report the same to users, on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
-            report = Report(entries, len({each.file for each in entries}), color=takes_color(sys.stderr))
+            report = Report(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
                 print_text(FORMATS["text"](report), stream=sys.stderr)
 
@@ -515,7 +519,7 @@ def _errors(
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
     report = Report(entries, len(files), color=takes_color(sys.stderr))
     if options.format == "json":
-        print_text(as_json((), [_row(each) for each in entries]), "utf-8")
+        print_text(as_json((), [_row(finding) for finding in entries]), "utf-8")
     elif options.format == "junit":
         print_text(FORMATS["junit"](report), "utf-8")
     else:
@@ -523,9 +527,15 @@ def _errors(
     return FOUND
 
 
-def _row(each: Entry) -> dict[str, Any]:
-    place = each.place
-    return {"file": each.file, "line": place.line, "column": place.column, "code": each.code, "message": each.message}
+def _row(finding: Entry) -> dict[str, Any]:
+    place = finding.place
+    return {
+        "file": finding.file,
+        "line": place.line,
+        "column": place.column,
+        "code": finding.code,
+        "message": finding.message,
+    }
 
 
 def _fail(message: str) -> int:

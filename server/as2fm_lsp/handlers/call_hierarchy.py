@@ -52,17 +52,17 @@ def register(context: Context) -> None:
 
     @context.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
-        analysis, found = ask(params.item, calls.incoming)
+        analysis, incoming_calls = ask(params.item, calls.incoming)
         return [
             types.CallHierarchyIncomingCall(convert(analysis, call.item), ranges(analysis, call.item.path, call.places))
-            for call in found
+            for call in incoming_calls
         ]
 
     @context.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
-        analysis, found = ask(params.item, calls.outgoing)
+        analysis, outgoing_calls = ask(params.item, calls.outgoing)
         path = session.convert.path(params.item.uri)
         return [
             types.CallHierarchyOutgoingCall(convert(analysis, call.item), ranges(analysis, path, call.places))
-            for call in found
+            for call in outgoing_calls
         ]

@@ -36,15 +36,15 @@ def register(context: Context) -> None:
         if source is None:
             return []
         place, only = session.convert.span(source, params.range), params.context.only
-        shown = _Shown(context, snapshot, source, params.context.diagnostics)
-        found = [
+        shown = _ClientDiagnostics(context, snapshot, source, params.context.diagnostics)
+        offered = [
             _converted(context, snapshot, path, place, shown, action)
             for action in actions(snapshot, path, place, lambda kind: _is_wanted(kind, only))
             if _can(context, action)
         ]
         if _is_wanted(types.CodeActionKind.Source, only):
-            found += translate.actions(snapshot, path, session.convert)
-        return found
+            offered += translate.actions(snapshot, path, session.convert)
+        return offered
 
     @context.feature(types.CODE_ACTION_RESOLVE)
     def resolve(action: types.CodeAction) -> types.CodeAction:
@@ -57,17 +57,21 @@ def register(context: Context) -> None:
             return action
         path = session.convert.path(uri)
         snapshot = session.moment().snapshot(path)
-        for found in actions(snapshot, path, place, lambda kind: kind == action.kind):
-            if (found.title, found.kind, _identity(found)) == (action.title, action.kind, data.get("mends")):
-                action.edit = _edit(context, snapshot, found.make())
+        for candidate in actions(snapshot, path, place, lambda kind: kind == action.kind):
+            if (candidate.title, candidate.kind, _identity(candidate)) == (
+                action.title,
+                action.kind,
+                data.get("mends"),
+            ):
+                action.edit = _edit(context, snapshot, candidate.make())
                 break
         return action
 
 
 def _converted(
-    context: Context, snapshot: Snapshot, path: str, place: Span, shown: _Shown, action: Action
+    context: Context, snapshot: Snapshot, path: str, place: Span, shown: _ClientDiagnostics, action: Action
 ) -> types.CodeAction:
-    found = types.CodeAction(
+    converted = types.CodeAction(
         action.title,
         kind=action.kind,
         diagnostics=shown.of(action.mends),
@@ -75,10 +79,10 @@ def _converted(
     )
     if _resolves(context):
         uri = context.session.convert.uri(path)
-        found.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
+        converted.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
     else:
-        found.edit = _edit(context, snapshot, action.make())
-    return found
+        converted.edit = _edit(context, snapshot, action.make())
+    return converted
 
 
 def _identity(action: Action) -> dict[str, Any] | None:
@@ -90,7 +94,7 @@ def _identity(action: Action) -> dict[str, Any] | None:
     return {"code": mended.code, "start": mended.span.start, "facts": facts}
 
 
-class _Shown:
+class _ClientDiagnostics:
     """The diagnostics that actions fix, in the client's form: those that it sends, others converted anew.
 
     The client's data may be outdated or wrong. It is used only if a current diagnostic has the same code, place and
@@ -127,14 +131,14 @@ def _edit(context: Context, snapshot: Snapshot, change: Change) -> types.Workspa
         if (source := analysis.source(path)) is not None
     }
     if not change.created and not change.renamed:
-        return types.WorkspaceEdit(changes={convert.uri(path): found for path, found in edits.items()})
+        return types.WorkspaceEdit(changes={convert.uri(path): text_edits for path, text_edits in edits.items()})
     start = types.Range(types.Position(0, 0), types.Position(0, 0))
     steps: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
     for path, text in change.created.items():
         steps.append(types.CreateFile(convert.uri(path), options=types.CreateFileOptions(ignore_if_exists=True)))
         steps.append(_document_edit(convert.uri(path), None, [types.TextEdit(start, text)]))
     versions = context.session.moment().versions
-    steps += [_document_edit(convert.uri(path), versions.get(path), found) for path, found in edits.items()]
+    steps += [_document_edit(convert.uri(path), versions.get(path), text_edits) for path, text_edits in edits.items()]
     steps += [types.RenameFile(convert.uri(path), convert.uri(new)) for path, new in change.renamed.items()]
     return types.WorkspaceEdit(document_changes=steps)
 

@@ -30,15 +30,15 @@ def register(context: Context) -> None:
         if on is None:
             return []
         broken = errors_of(on)
-        found = list(first_error.lenses(on, broken))
+        shown = list(first_error.lenses(on, broken))
         if on.path not in broken:
-            found += translate.lenses(on.snapshot, on.path, on.source, on.convert)
-        found += verify.lenses(context, on, broken)
+            shown += translate.lenses(on.snapshot, on.path, on.source, on.convert)
+        shown += verify.lenses(context, on, broken)
         if display_settings(session.client_settings).references:
-            for each in lenses(on.analysis, on.path):
-                data = [params.text_document.uri, pack(each.symbol)]
-                found.append(types.CodeLens(on.range(each.span), data=data))
-        return found
+            for lens in lenses(on.analysis, on.path):
+                data = [params.text_document.uri, pack(lens.symbol)]
+                shown.append(types.CodeLens(on.range(lens.span), data=data))
+        return shown
 
     @context.feature(types.CODE_LENS_RESOLVE)
     def resolve(lens: types.CodeLens) -> types.CodeLens:
@@ -48,13 +48,13 @@ def register(context: Context) -> None:
             return lens
         path = session.convert.path(uri)
         analysis = session.moment().snapshot(path).analysis
-        found = counted(analysis, symbol, path)
+        uses = counted(analysis, symbol, path)
         places = [
-            session.convert.location(source, each)
-            for each in found.places
-            if (source := analysis.source(each.path)) is not None
+            session.convert.location(source, place)
+            for place in uses.places
+            if (source := analysis.source(place.path)) is not None
         ]
         command = context.client.show_references if places else ""
         arguments = [uri, lens.range.start, places] if command else None
-        lens.command = types.Command(found.title, command, arguments=arguments)
+        lens.command = types.Command(uses.title, command, arguments=arguments)
         return lens

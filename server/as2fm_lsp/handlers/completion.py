@@ -46,13 +46,13 @@ def register(context: Context) -> None:
         if on is None:
             return None
         trigger = params.context.trigger_character or "" if params.context else ""
-        found = complete(on.snapshot, on.path, on.offset(params.position), trigger)
-        if found is None:
+        completions = complete(on.snapshot, on.path, on.offset(params.position), trigger)
+        if completions is None:
             return None
-        client = _Client(context)
-        range_ = on.range(found.span)
-        items = [client.item(item, range_, rank, on.path) for rank, item in enumerate(found.items)]
-        return types.CompletionList(is_incomplete=found.incomplete, items=items)
+        writer = _ItemWriter(context)
+        range_ = on.range(completions.span)
+        items = [writer.item(item, range_, rank, on.path) for rank, item in enumerate(completions.items)]
+        return types.CompletionList(is_incomplete=completions.incomplete, items=items)
 
     @context.feature(types.COMPLETION_ITEM_RESOLVE)
     def resolve(item: types.CompletionItem) -> types.CompletionItem:
@@ -60,7 +60,7 @@ def register(context: Context) -> None:
             path, about = item.data[0], unpack(item.data[1:])
             text = document(context.session.moment().snapshot(path).analysis, about) if about else ""
             if text:
-                item.documentation = documentation(text, _Client(context).formats)
+                item.documentation = documentation(text, _ItemWriter(context).formats)
         return item
 
 
@@ -69,7 +69,7 @@ _EMPTY_VALUE = re.compile(r"""=["']\$1\b""")
 editor lists them itself."""
 
 
-class _Client:
+class _ItemWriter:
     """Converts items to the form that the client supports."""
 
     def __init__(self, context: Context) -> None:
@@ -96,7 +96,7 @@ class _Client:
                 made.command = types.Command("Suggest", self.trigger_suggest)
         elif self.snippets:
             made.text_edit = types.TextEdit(range_, plain(new))
-        if item.detail and self.label_details and len(item.detail) <= _SHORT:
+        if item.detail and self.label_details and len(item.detail) <= _MAX_LABEL_DETAIL_CHARACTERS:
             made.label_details = types.CompletionItemLabelDetails(description=item.detail)
         elif item.detail:
             made.detail = item.detail
@@ -109,5 +109,5 @@ class _Client:
         return made
 
 
-_SHORT = 40
+_MAX_LABEL_DETAIL_CHARACTERS = 40
 """The maximum length of details beside the label; longer ones are shown with the documentation."""

@@ -69,8 +69,8 @@ def counted(errors: tuple[Diagnostic, ...]) -> str:
 def errors_of(on: RequestedDocument) -> dict[str, tuple[Diagnostic, ...]]:
     """The systems of a file that have errors, with the errors."""
     systems = on.analysis.memberships.get(on.path, ())
-    found = {system: on.snapshot.checker.errors(system) for system in systems if is_on_disk(system)}
-    return {system: errors for system, errors in found.items() if errors}
+    errors_in = {system: on.snapshot.checker.errors(system) for system in systems if is_on_disk(system)}
+    return {system: errors for system, errors in errors_in.items() if errors}
 
 
 def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
@@ -83,7 +83,7 @@ def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) 
             title = f"{counted(errors)}: cannot be translated or verified"
             yield types.CodeLens(on.range(file.element.name_span), types.Command(title, COMMAND, arguments=arguments))
             continue
-        for each in verifiable(on.analysis, system):
-            if each.path == on.path:
+        for property_ in verifiable(on.analysis, system):
+            if property_.path == on.path:
                 title = f"{counted(errors)} in {names[system]}: cannot be verified"
-                yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=arguments))
+                yield types.CodeLens(on.range(property_.name_span), types.Command(title, COMMAND, arguments=arguments))

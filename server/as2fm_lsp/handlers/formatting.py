@@ -10,7 +10,7 @@ from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide.formatting import format_edits
 from roaml.ide.formatting.layout import Layout
 
-_WIDEST = 16
+_MAX_INDENT_WIDTH = 16
 
 
 def register(context: Context) -> None:
@@ -25,7 +25,7 @@ def register(context: Context) -> None:
 
 def layout_of(options: types.FormattingOptions) -> Layout:
     """The layout that a client requests; invalid values are replaced by the nearest valid ones."""
-    return Layout(width=min(max(options.tab_size, 1), _WIDEST), tabs=not options.insert_spaces)
+    return Layout(width=min(max(options.tab_size, 1), _MAX_INDENT_WIDTH), tabs=not options.insert_spaces)
 
 
 def _edits(
@@ -38,5 +38,5 @@ def _edits(
     if file is None:
         return []
     within = None if range_ is None else file.span(range_)
-    found = format_edits(file.analysis, file.path, layout_of(options), within)
-    return [file.convert.edit(file.source, edit) for edit in found]
+    edits = format_edits(file.analysis, file.path, layout_of(options), within)
+    return [file.convert.edit(file.source, edit) for edit in edits]

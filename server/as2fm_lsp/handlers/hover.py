@@ -15,9 +15,9 @@ def register(context: Context) -> None:
     @context.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(params: types.HoverParams) -> types.Hover | None:
         on = requested_document(context, params.text_document)
-        found = hover_at(on.analysis, on.path, on.offset(params.position)) if on else None
-        if on is None or found is None:
+        description = hover_at(on.analysis, on.path, on.offset(params.position)) if on else None
+        if on is None or description is None:
             return None
         text_document = context.client.capabilities.text_document
         formats = text_document.hover.content_format if text_document and text_document.hover else None
-        return types.Hover(content(found.text, formats), on.range(found.span))
+        return types.Hover(content(description.text, formats), on.range(description.span))

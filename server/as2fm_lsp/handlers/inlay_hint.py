@@ -24,11 +24,11 @@ def register(context: Context) -> None:
         on = requested_document(context, params.text_document)
         if on is None:
             return []
-        wanted = display_settings(session.client_settings)
-        found = inlay_hints(on.analysis, on.path, on.span(params.range), wanted.hints)
+        display = display_settings(session.client_settings)
+        hints_here = inlay_hints(on.analysis, on.path, on.span(params.range), display.hints)
         explains = _explains(context)
-        written = [_hint(each, on.convert.position(on.source, each.offset), on.path, explains) for each in found]
-        return [*written, *(verify.hints(context, on, params.range) if wanted.results else ())]
+        hints = [_hint(hint, on.convert.position(on.source, hint.offset), on.path, explains) for hint in hints_here]
+        return [*hints, *(verify.hints(context, on, params.range) if display.results else ())]
 
     @context.feature(types.INLAY_HINT_RESOLVE)
     def resolve(hint: types.InlayHint) -> types.InlayHint:
@@ -40,11 +40,11 @@ def register(context: Context) -> None:
             symbol = unpack(packed)
             if symbol is None:
                 continue
-            found = explain(analysis, symbol)
-            source = analysis.source(found.location.path) if found.location else None
-            part.tooltip = content(found.text, [types.MarkupKind.Markdown]) if found.text else None
-            if source is not None and found.location is not None:
-                part.location = session.convert.location(source, found.location)
+            explanation = explain(analysis, symbol)
+            source = analysis.source(explanation.location.path) if explanation.location else None
+            part.tooltip = content(explanation.text, [types.MarkupKind.Markdown]) if explanation.text else None
+            if source is not None and explanation.location is not None:
+                part.location = session.convert.location(source, explanation.location)
         return hint
 
 

@@ -20,7 +20,7 @@ MAX_CHARACTERS = 4_000_000
 """The maximum size of a file that is formatted: editors do not fold or color larger texts either."""
 
 
-class View(TypedDict):
+class JaniText(TypedDict):
     """`problem` is the reason if there is no text; otherwise it is empty."""
 
     text: str
@@ -32,7 +32,7 @@ def register(context: Context) -> None:
     session = context.session
 
     @context.feature(METHOD)
-    async def view(params: Any) -> View:
+    async def view(params: Any) -> JaniText:
         path = session.convert.path(document_uri(params))
         source = session.moment().snapshot(path).analysis.files.read(path)
         if isinstance(source, Problem):
@@ -41,11 +41,11 @@ def register(context: Context) -> None:
             return _problem(f"This file is too large to be formatted ({len(source.text) / 1e6:.0f} MB).")
         return await background.in_thread(lambda _: _converted(path, jani_view(source.text)), lambda: None)
 
-    def _converted(path: str, found: JaniView) -> View:
-        source = SourceFile(path, found.text)
-        symbols = [nested(each, lambda span: session.convert.range(source, span)) for each in found.symbols]
-        return {"text": found.text, "symbols": symbols, "problem": ""}
+    def _converted(path: str, laid_out: JaniView) -> JaniText:
+        source = SourceFile(path, laid_out.text)
+        symbols = [nested(symbol, lambda span: session.convert.range(source, span)) for symbol in laid_out.symbols]
+        return {"text": laid_out.text, "symbols": symbols, "problem": ""}
 
 
-def _problem(text: str) -> View:
+def _problem(text: str) -> JaniText:
     return {"text": "", "symbols": [], "problem": text}

@@ -47,14 +47,14 @@ def register(context: Context) -> None:
             migrations = api.migrate([path], settings=session.settings_of(path), with_related=True)
         except api.PathError as error:
             return {"edit": None, "files": [], "problem": str(error)}
-        taken = [each.new_path for each in migrations if each.new_path != each.path and os.path.exists(each.new_path)]
+        taken = [m.new_path for m in migrations if m.new_path != m.path and os.path.exists(m.new_path)]
         if taken:
             return {"edit": None, "files": [], "problem": f"{taken[0]} already exists"}
         changes = [change for migration in migrations for change in edits(migration)]
         edit = types.WorkspaceEdit(document_changes=changes)
         return {
             "edit": edit if migrations else None,
-            "files": [shown(each, path) for each in migrations],
+            "files": [shown(migration, path) for migration in migrations],
             "problem": "",
         }
 
@@ -62,11 +62,11 @@ def register(context: Context) -> None:
         uri = session.convert.uri(migration.path)
         source = SourceFile(migration.path, migration.before)
         whole = session.convert.range(source, Span(0, len(source.text)))
-        found: list[types.TextDocumentEdit | types.RenameFile] = []
+        steps: list[types.TextDocumentEdit | types.RenameFile] = []
         if migration.after != migration.before:
             edit = types.TextEdit(whole, migration.after)
-            found.append(types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri), [edit]))
+            steps.append(types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri), [edit]))
         if migration.new_path != migration.path:
             new = session.convert.uri(migration.new_path)
-            found.append(types.RenameFile(uri, new))
-        return found
+            steps.append(types.RenameFile(uri, new))
+        return steps

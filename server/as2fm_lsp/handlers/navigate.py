@@ -29,9 +29,9 @@ def register(context: Context) -> None:
         on = requested_document(context, document)
         if on is None:
             return []
-        found = find(on.analysis, on.path, on.offset(position))
-        targets = ((on.analysis.source(each.path), each) for each in found)
-        return [on.convert.location(target, each) for target, each in targets if target is not None]
+        places = find(on.analysis, on.path, on.offset(position))
+        targets = ((on.analysis.source(place.path), place) for place in places)
+        return [on.convert.location(target, place) for target, place in targets if target is not None]
 
     @context.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(params: types.DefinitionParams) -> list[types.Location]:
@@ -62,5 +62,8 @@ def register(context: Context) -> None:
         on = requested_document(context, params.text_document)
         if on is None:
             return []
-        found = navigation.highlights(on.analysis, on.path, on.offset(params.position))
-        return [types.DocumentHighlight(on.range(each.span), _HIGHLIGHTS[each.access]) for each in found]
+        occurrences = navigation.highlights(on.analysis, on.path, on.offset(params.position))
+        return [
+            types.DocumentHighlight(on.range(occurrence.span), _HIGHLIGHTS[occurrence.access])
+            for occurrence in occurrences
+        ]

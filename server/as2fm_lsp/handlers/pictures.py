@@ -68,5 +68,5 @@ def register(context: Context) -> None:
         make = _PICTURES.get(kind)
         path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis
-        found = make(analysis, path) if make else None
-        return None if found is None else convert(analysis, kind, found)
+        drawn = make(analysis, path) if make else None
+        return None if drawn is None else convert(analysis, kind, drawn)

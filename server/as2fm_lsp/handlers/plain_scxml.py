@@ -13,7 +13,7 @@ from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
 from roaml.scxml.model import Role
-from roaml.scxml.writer import Line, write_lines
+from roaml.scxml.writer import WrittenLine, write_lines
 
 METHOD = "as2fm/plainScxml"
 
@@ -37,7 +37,7 @@ class PlainScxml(TypedDict):
 def register(context: Context) -> None:
     session = context.session
 
-    def convert(analysis: Analysis, lines: list[Line]) -> PlainScxml:
+    def convert(analysis: Analysis, lines: list[WrittenLine]) -> PlainScxml:
         places: list[PlainLine] = []
         for number, line in enumerate(lines):
             source = analysis.source(line.origin.path)
@@ -64,10 +64,10 @@ def register(context: Context) -> None:
         automata = linked.automata_of(path) if linked else ()
         if not automata:
             return _problem("The behavior tree does not use this plugin.")
-        found = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
+        documents = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
         # The automata of action threads are included with that of the machine.
         first = automata[0].name
-        shown = [lines for name, lines in found if automata[0].instance is None or name.startswith(first)]
+        shown = [lines for name, lines in documents if automata[0].instance is None or name.startswith(first)]
         return convert(analysis, [line for lines in shown for line in lines])
 
 

@@ -19,24 +19,24 @@ def register(context: Context) -> None:
         on = requested_document(context, params.text_document)
         if on is None:
             return None
-        found = prepare(on.analysis, on.path, on.offset(params.position))
-        if isinstance(found, Refusal):
-            raise _refused(found)
-        return types.PrepareRenamePlaceholder(on.range(found.span), found.name)
+        prepared = prepare(on.analysis, on.path, on.offset(params.position))
+        if isinstance(prepared, Refusal):
+            raise _refused(prepared)
+        return types.PrepareRenamePlaceholder(on.range(prepared.span), prepared.name)
 
     @context.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_(params: types.RenameParams) -> types.WorkspaceEdit | None:
         on = requested_document(context, params.text_document)
         if on is None:
             return None
-        found = rename(on.analysis, on.path, on.offset(params.position), params.new_name)
-        if isinstance(found, Refusal):
-            raise _refused(found)
+        renaming = rename(on.analysis, on.path, on.offset(params.position), params.new_name)
+        if isinstance(renaming, Refusal):
+            raise _refused(renaming)
         changes = {}
-        for each, edits in found.edits.items():
-            target = on.analysis.source(each)
+        for path, edits in renaming.edits.items():
+            target = on.analysis.source(path)
             if target is not None:
-                changes[on.convert.uri(each)] = [on.convert.edit(target, edit) for edit in edits]
+                changes[on.convert.uri(path)] = [on.convert.edit(target, edit) for edit in edits]
         return types.WorkspaceEdit(changes=changes)
 
 

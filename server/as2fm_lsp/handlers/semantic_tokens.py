@@ -53,7 +53,7 @@ LEGEND = types.SemanticTokensLegend(
 _TYPE_NUMBERS = {kind: LEGEND.token_types.index(type_.value) for kind, type_ in _TYPES.items()}
 _BITS = {modifier: 1 << number for number, modifier in enumerate(_MODIFIERS)}
 
-_REMEMBERED = 64
+_MAX_REMEMBERED_FILES = 64
 """The maximum number of files whose last answer is stored, to compute the changes since then."""
 
 
@@ -64,12 +64,12 @@ def register(context: Context) -> None:
     def answer(file: RequestedDocument) -> types.SemanticTokens:
         nonlocal answers
         answers += 1
-        found = types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path)), str(answers))
-        last[file.path] = found
+        tokens = types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path)), str(answers))
+        last[file.path] = tokens
         last.move_to_end(file.path)
-        if len(last) > _REMEMBERED:
+        if len(last) > _MAX_REMEMBERED_FILES:
             last.popitem(last=False)
-        return found
+        return tokens
 
     @context.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
     def full(params: types.SemanticTokensParams) -> types.SemanticTokens:

@@ -15,17 +15,19 @@ def register(context: Context) -> None:
     @context.feature(types.TEXT_DOCUMENT_SIGNATURE_HELP, types.SignatureHelpOptions(list(TRIGGERS)))
     def help_(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
         on = requested_document(context, params.text_document)
-        found = signature_help(on.analysis, on.path, on.offset(params.position)) if on else None
-        return None if found is None else types.SignatureHelp([_information(context, found)], 0, found.active)
+        signature = signature_help(on.analysis, on.path, on.offset(params.position)) if on else None
+        return (
+            None if signature is None else types.SignatureHelp([_information(context, signature)], 0, signature.active)
+        )
 
 
-def _information(context: Context, found: Signature) -> types.SignatureInformation:
+def _information(context: Context, signature: Signature) -> types.SignatureInformation:
     document = context.client.capabilities.text_document
     asks = document.signature_help.signature_information if document and document.signature_help else None
     takes_places = bool(asks and asks.parameter_information and asks.parameter_information.label_offset_support)
-    labels = [(start, end) if takes_places else found.label[start:end] for start, end in found.parameters]
+    labels = [(start, end) if takes_places else signature.label[start:end] for start, end in signature.parameters]
     return types.SignatureInformation(
-        found.label,
-        documentation(found.documentation, asks.documentation_format if asks else None),
+        signature.label,
+        documentation(signature.documentation, asks.documentation_format if asks else None),
         [types.ParameterInformation(label) for label in labels],
     )

@@ -43,8 +43,8 @@ def register(context: Context) -> None:
     @context.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     def folding_range(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
         file = requested_document(context, params.text_document)
-        found = folds(file.analysis, file.path) if file else ()
-        return [types.FoldingRange(fold.first, fold.last, kind=_FOLDS[fold.kind]) for fold in found]
+        foldable = folds(file.analysis, file.path) if file else ()
+        return [types.FoldingRange(fold.first, fold.last, kind=_FOLDS[fold.kind]) for fold in foldable]
 
     @context.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
     def selection_range(params: types.SelectionRangeParams) -> list[types.SelectionRange]:
@@ -61,18 +61,18 @@ def register(context: Context) -> None:
         file = requested_document(context, params.text_document)
         if file is None:
             return []
-        found = document_symbols(file.analysis, file.path)
+        symbols = document_symbols(file.analysis, file.path)
         if _takes_nested_symbols(context):
-            return [nested(symbol, file.range) for symbol in found]
-        return list(_flat(file, found))
+            return [nested(symbol, file.range) for symbol in symbols]
+        return list(_flat(file, symbols))
 
     @context.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
     def document_link(params: types.DocumentLinkParams) -> list[types.DocumentLink]:
         file = requested_document(context, params.text_document)
         if file is None:
             return []
-        found = links(file.analysis, file.path)
-        return [types.DocumentLink(file.range(link.span), file.convert.uri(link.target)) for link in found]
+        document_links = links(file.analysis, file.path)
+        return [types.DocumentLink(file.range(link.span), file.convert.uri(link.target)) for link in document_links]
 
 
 def _selection(file: RequestedDocument, spans: Sequence[Span]) -> types.SelectionRange:
@@ -99,12 +99,12 @@ def _flat(
     file: RequestedDocument, symbols: Sequence[DocumentSymbol], container: str | None = None
 ) -> Sequence[types.SymbolInformation]:
     """For clients without outlines."""
-    found: list[types.SymbolInformation] = []
+    flat: list[types.SymbolInformation] = []
     for symbol in symbols:
         place = types.Location(file.convert.uri(file.path), file.range(symbol.span))
-        found.append(types.SymbolInformation(place, symbol.name, _KINDS[symbol.kind], container_name=container))
-        found += _flat(file, symbol.children, symbol.name)
-    return found
+        flat.append(types.SymbolInformation(place, symbol.name, _KINDS[symbol.kind], container_name=container))
+        flat += _flat(file, symbol.children, symbol.name)
+    return flat
 
 
 def _takes_nested_symbols(context: Context) -> bool:

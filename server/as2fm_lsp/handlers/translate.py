@@ -78,11 +78,11 @@ def register(context: Context) -> None:
                     types.MessageType.Error, f"{target} cannot be written: {error.strerror or error}"
                 )
                 return None
-        for each in left_out:
-            context.client.show_message(types.MessageType.Warning, f"{each.message} [{each.code}]")
-        found = summary(model)
-        context.client.show_message(types.MessageType.Info, f"Wrote {os.path.basename(target)}: {found}.")
-        return {"uri": session.convert.uri(target), "summary": found}
+        for warning in left_out:
+            context.client.show_message(types.MessageType.Warning, f"{warning.message} [{warning.code}]")
+        size = summary(model)
+        context.client.show_message(types.MessageType.Info, f"Wrote {os.path.basename(target)}: {size}.")
+        return {"uri": session.convert.uri(target), "summary": size}
 
 
 def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:

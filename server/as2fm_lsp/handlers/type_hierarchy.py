@@ -19,16 +19,16 @@ from roaml.roles import SymbolKind
 def register(context: Context) -> None:
     session = context.session
 
-    def convert(analysis: Analysis, found: Iterable[TypeItem], asked_in: str) -> list[types.TypeHierarchyItem]:
+    def convert(analysis: Analysis, type_items: Iterable[TypeItem], asked_in: str) -> list[types.TypeHierarchyItem]:
         items = []
-        for each in found:
-            source = analysis.source(each.location.path)
+        for item in type_items:
+            source = analysis.source(item.location.path)
             if source is not None:
-                place = session.convert.location(source, each.location)
-                kind = types.SymbolKind.Struct if each.symbol.kind is SymbolKind.STRUCT else types.SymbolKind.Interface
-                data = [asked_in, pack(each.symbol)]
-                name, uri, range_ = each.symbol.name, place.uri, place.range
-                items.append(types.TypeHierarchyItem(name, kind, uri, range_, range_, detail=each.detail, data=data))
+                place = session.convert.location(source, item.location)
+                kind = types.SymbolKind.Struct if item.symbol.kind is SymbolKind.STRUCT else types.SymbolKind.Interface
+                data = [asked_in, pack(item.symbol)]
+                name, uri, range_ = item.symbol.name, place.uri, place.range
+                items.append(types.TypeHierarchyItem(name, kind, uri, range_, range_, detail=item.detail, data=data))
         return items
 
     def ask(

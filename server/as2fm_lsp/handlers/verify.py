@@ -38,7 +38,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
 from roaml.project.paths import is_on_disk
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import STUCK_PROPERTY, Asked
+from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty
 from roaml.smc.pool import WorkersLostError
 from roaml.smc.run import Tally, summary
 from roaml.text import Location
@@ -48,7 +48,7 @@ from roaml.verification.expectations import RangeError, check_range
 from roaml.verification.results import Result, Traces
 from roaml.verification.target import Target
 from roaml.verification.verifier import Verifier, checker_of
-from roaml.views.story import Line
+from roaml.views.story import StoryLine
 
 COMMAND = "as2fm.verify"
 PROPERTIES = "as2fm/properties"
@@ -85,7 +85,7 @@ def register(context: Context) -> None:
         async with context.progress.show(f"Verifying {os.path.basename(path)}", cancellable=True) as bar:
             try:
                 with context.requests.cancelled_by(bar.token):
-                    run = _Run(context, bar, path, settings)
+                    run = _VerifyCommand(context, bar, path, settings)
                     return await run.answer([str(name) for name in names] if isinstance(names, Sequence) else [])
             except Interrupted:
                 if bar.is_cancelled:
@@ -98,13 +98,13 @@ def register(context: Context) -> None:
     def properties(_: Any) -> list[Json]:
         """The systems with their properties, and the known results."""
         moment = session.moment()
-        found = []
+        systems = []
         for path in moment.files():
             analysis = moment.snapshot(path).analysis
             if analysis.kind(path) is FileKind.SYSTEM:
-                rows = [_property(context, analysis, path, each) for each in verifiable(analysis, path)]
-                found.append({"uri": session.convert.uri(path), "properties": rows})
-        return [system for system in found if system["properties"]]
+                rows = [_property(context, analysis, path, property_) for property_ in verifiable(analysis, path)]
+                systems.append({"uri": session.convert.uri(path), "properties": rows})
+        return [system for system in systems if system["properties"]]
 
     @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
@@ -140,9 +140,9 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
         if system in broken or not is_on_disk(system):
             continue
         uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
-        found = verifiable(on.analysis, system)
+        properties = verifiable(on.analysis, system)
         file = on.analysis.system_file(system)
-        if system == on.path and file is not None and found:
+        if system == on.path and file is not None and properties:
             command = types.Command("Verify all", COMMAND, arguments=[uri])
             yield types.CodeLens(on.range(file.element.name_span), command)
             stuck_known = context.results.get(system, STUCK_PROPERTY)
@@ -151,19 +151,21 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
                 title = f"Gets stuck{stale}: show the waiting automata"
                 show = types.Command(title, context.client.show_counterexample, arguments=[uri, STUCK_PROPERTY])
                 yield types.CodeLens(on.range(file.element.name_span), show)
-        for each in found:
-            if each.path != on.path:
+        for property_ in properties:
+            if property_.path != on.path:
                 continue
-            known = context.results.get(system, each.name)
+            known = context.results.get(system, property_.name)
             words = _words(context, on.analysis, system, known) if tells else []
             title = " · ".join([f"{TITLE}{where}", *words])
-            yield types.CodeLens(on.range(each.name_span), types.Command(title, COMMAND, arguments=[uri, [each.name]]))
+            yield types.CodeLens(
+                on.range(property_.name_span), types.Command(title, COMMAND, arguments=[uri, [property_.name]])
+            )
             speaks = known and (missed(known.result) or known.result.stuck)
             if known and context.client.show_counterexample and speaks and unwanted_trace(known.result):
                 show = types.Command(
-                    "Show counterexample", context.client.show_counterexample, arguments=[uri, each.name]
+                    "Show counterexample", context.client.show_counterexample, arguments=[uri, property_.name]
                 )
-                yield types.CodeLens(on.range(each.name_span), show)
+                yield types.CodeLens(on.range(property_.name_span), show)
 
 
 def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
@@ -172,15 +174,15 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
         where = f" in {name}" if len(systems) > 1 else ""
-        for each in verifiable(on.analysis, system) if context.results.has(system) else ():
-            known = context.results.get(system, each.name)
-            if known is None or each.path != on.path or not span.start <= each.name_span.end <= span.end:
+        for property_ in verifiable(on.analysis, system) if context.results.has(system) else ():
+            known = context.results.get(system, property_.name)
+            if known is None or property_.path != on.path or not span.start <= property_.name_span.end <= span.end:
                 continue
             is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
             mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
             mark = "⚠" if known.result.stuck else mark
             text = f"{mark} {', '.join(_words(context, on.analysis, system, known))}{where}"
-            position = on.convert.position(on.source, min(each.name_span.end + 1, len(on.source.text)))
+            position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(_place_in_words, known.result.traces.target if known.result.traces else None)
             whole = one_as_text(known.result, place_of)
             yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
@@ -204,7 +206,7 @@ def _words(context: Context, analysis: Analysis, system: str, known: KnownResult
     return [", ".join(parts)]
 
 
-class _Run:
+class _VerifyCommand:
     """One call of the command."""
 
     def __init__(self, context: Context, bar: Progress, path: str, settings: VerificationSettings) -> None:
@@ -264,7 +266,7 @@ class _Run:
         shown = "in a separate message"
         return one_as_text(result, partial(_place_in_words, target), self.settings.stuck, shown)
 
-    def asked(self, target: Target, name: str) -> tuple[Verifier, Asked]:
+    def asked(self, target: Target, name: str) -> tuple[Verifier, CompiledProperty]:
         """A property, ready to be verified.
 
         Raises:
@@ -312,7 +314,7 @@ class _Run:
         row = stuck_report.as_row(known, lambda origin: _place(self.context, analysis, origin))
         return {**row, "text": text.strip()}
 
-    async def traces(self, verifier: Verifier, asked: Asked) -> Result:
+    async def traces(self, verifier: Verifier, asked: CompiledProperty) -> Result:
         def show_estimate(tally: Tally) -> None:
             so_far = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
             self.bar.say(f"{asked.question.name}: {short(so_far)}, {tally.traces:,} traces")
@@ -332,16 +334,16 @@ class _Run:
             self.context.client.show_message(types.MessageType.Error, text)
 
 
-def _property(context: Context, analysis: Analysis, system: str, each: Verifiable) -> Json:
-    place = _place(context, analysis, Location(each.path, each.name_span))
-    found: Json = {"name": each.name, "comment": each.comment, **place}
-    known = context.results.get(system, each.name)
+def _property(context: Context, analysis: Analysis, system: str, property_: Verifiable) -> Json:
+    place = _place(context, analysis, Location(property_.path, property_.name_span))
+    values: Json = {"name": property_.name, "comment": property_.comment, **place}
+    known = context.results.get(system, property_.name)
     if known is not None:
-        found["stale"] = context.results.is_stale(known, analysis, system)
-    return found
+        values["stale"] = context.results.is_stale(known, analysis, system)
+    return values
 
 
-def _step(context: Context, known: KnownResult, system: str, line: Line) -> Json:
+def _step(context: Context, known: KnownResult, system: str, line: StoryLine) -> Json:
     origin = line.origin
     nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
     convert = context.session.convert
@@ -353,7 +355,10 @@ def _step(context: Context, known: KnownResult, system: str, line: Line) -> Json
         "place": line.place,
         "details": list(line.details),
         **(_place(context, known.analysis, origin) if origin is not None else {}),
-        "highlights": [{"kind": each.picture, "uri": convert.uri(each.path), "node": each.node} for each in nodes],
+        "highlights": [
+            {"kind": highlight.picture, "uri": convert.uri(highlight.path), "node": highlight.node}
+            for highlight in nodes
+        ],
     }
 
 

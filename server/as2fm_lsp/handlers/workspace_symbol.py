@@ -10,7 +10,7 @@ from as2fm_lsp.handlers.symbols import symbol_kind
 from roaml.ide.navigation.workspace_symbols import search
 from roaml.text import Location
 
-MOST = 1000
+MAX_SYMBOLS = 1000
 """The maximum number of results; the user can refine the query."""
 
 
@@ -20,17 +20,17 @@ def register(context: Context) -> None:
     @context.feature(types.WORKSPACE_SYMBOL)
     def workspace_symbol(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         moment = session.moment()
-        found: list[types.WorkspaceSymbol] = []
+        symbols: list[types.WorkspaceSymbol] = []
         for path in moment.files():
             analysis = moment.snapshot(path).analysis
             source = analysis.source(path)
-            for each in search(analysis, (path,), params.query) if source else ():
+            for match in search(analysis, (path,), params.query) if source else ():
                 assert source is not None
-                place = session.convert.location(source, Location(path, each.span))
-                kind = symbol_kind(each.symbol.kind)
-                found.append(
-                    types.WorkspaceSymbol(place, each.symbol.name, kind, container_name=each.container or None)
+                place = session.convert.location(source, Location(path, match.span))
+                kind = symbol_kind(match.symbol.kind)
+                symbols.append(
+                    types.WorkspaceSymbol(place, match.symbol.name, kind, container_name=match.container or None)
                 )
-            if len(found) >= MOST:
+            if len(symbols) >= MAX_SYMBOLS:
                 break
-        return found[:MOST]
+        return symbols[:MAX_SYMBOLS]

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from roaml.project.memo import Interrupted
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.pool import Pool
 from roaml.smc.run import Tally
 from roaml.verification.results import Result
@@ -24,7 +24,7 @@ ESTIMATE_INTERVAL_S = 0.2
 
 
 async def answer(
-    verifier: Verifier, asked: Asked, checkpoint: Callable[[], None], show: Callable[[Tally], None]
+    verifier: Verifier, asked: CompiledProperty, checkpoint: Callable[[], None], show: Callable[[Tally], None]
 ) -> Result:
     """The result of a property.
 

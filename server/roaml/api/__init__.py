@@ -51,9 +51,9 @@ if TYPE_CHECKING:
     from roaml.smc.choices import Choices, Extreme
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
-    from roaml.smc.goal import Asked, Question, Threshold
+    from roaml.smc.goal import CompiledProperty, Question, Threshold
     from roaml.smc.lss import Search
-    from roaml.smc.model import Checker
+    from roaml.smc.model import ModelChecker
     from roaml.smc.pool import Pool, Pulse, WorkersLostError
     from roaml.smc.record import Recorder, Recording, TraceStep
     from roaml.smc.run import Answer, Options, Tally, Watch
@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     from roaml.verification.stuck import Look, Stuck
     from roaml.verification.target import LineColumn, Target
     from roaml.verification.verifier import NoThresholdError, Verifier
-    from roaml.views.story import Line
+    from roaml.views.story import StoryLine
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
@@ -78,9 +78,9 @@ else:
         "roaml.smc.choices": ("Choices", "Extreme"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
-        "roaml.smc.goal": ("Asked", "Question", "Threshold"),
+        "roaml.smc.goal": ("CompiledProperty", "Question", "Threshold"),
         "roaml.smc.lss": ("Search",),
-        "roaml.smc.model": ("Checker",),
+        "roaml.smc.model": ("ModelChecker",),
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
         "roaml.smc.record": ("Recorder", "Recording", "TraceStep"),
         "roaml.smc.run": ("Answer", "Options", "Tally", "Watch"),
@@ -94,7 +94,7 @@ else:
         "roaml.verification.stuck": ("Look", "Stuck"),
         "roaml.verification.target": ("LineColumn", "Target"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
-        "roaml.views.story": ("Line",),
+        "roaml.views.story": ("StoryLine",),
         "roaml.views.waiting": ("Wait",),
     }
     _ORIGINS = {name: (module, name) for module, names in _IMPORTED_ON_USE.items() for name in names}
@@ -112,12 +112,11 @@ __all__ = [
     "NO_OVERRIDES",
     "Analysis",
     "Answer",
-    "Asked",
     "Bounds",
     "CheckResult",
-    "Checker",
     "Choice",
     "Choices",
+    "CompiledProperty",
     "ConstantError",
     "Counterexample",
     "Decision",
@@ -130,7 +129,6 @@ __all__ = [
     "Extreme",
     "FaultError",
     "JaniError",
-    "Line",
     "LineColumn",
     "LoadedSystem",
     "Location",
@@ -138,6 +136,7 @@ __all__ = [
     "MachineState",
     "Migration",
     "Model",
+    "ModelChecker",
     "ModelError",
     "Network",
     "NoThresholdError",
@@ -171,6 +170,7 @@ __all__ = [
     "SourceMap",
     "Span",
     "Story",
+    "StoryLine",
     "Stuck",
     "SystemState",
     "Tally",

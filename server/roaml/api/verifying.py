@@ -14,7 +14,7 @@ from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 
 if TYPE_CHECKING:
-    from roaml.smc.model import Checker
+    from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
     from roaml.verification.results import Result
@@ -74,7 +74,7 @@ def as_target(subject: Target | LoadedSystem | Model) -> Target:
     return target_of(subject) if isinstance(subject, Model) else subject
 
 
-def checker(model: Model, properties: Iterable[str] | None = None) -> Checker:
+def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties, to make traces of it step by step.
 
     Args:

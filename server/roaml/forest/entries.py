@@ -186,25 +186,32 @@ def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
             if name is not None:
                 names.setdefault(outer, set()).add(name)
                 join((inner, setting.attribute.name), key_of(outer, name))
-    changed = True
-    while changed:
-        changed = False
-        for outer, inner, node in calls:
-            if not is_autoremapped(node):
-                continue
-            given = {setting.attribute.name for setting in ports_of(node)}
-            for name in sorted(names.get(inner, ())):
-                if name not in given and not name.startswith("_"):
-                    join((inner, name), (outer, name))
-                    if name not in names.setdefault(outer, set()):
-                        names[outer].add(name)
-                        changed = True
+    for inner, outer, name in _taken_over(calls, names):
+        join((inner, name), (outer, name))
     used = {inner for _, inner, _ in calls}
     for tree in forest.trees:
         if tree not in used:
             for name in sorted(names.get(tree, ())):
                 join((tree, name), (ROOT, name))
     return roots
+
+
+def _taken_over(calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str]]) -> Iterator[tuple[str, str, str]]:
+    """The names that automatic remapping makes one: the inner tree, the outer one, the name. Adds them to `names`."""
+    users: dict[str, list[tuple[str, frozenset[str]]]] = {}
+    for outer, inner, node in calls:
+        if is_autoremapped(node):
+            given = frozenset(setting.attribute.name for setting in ports_of(node))
+            users.setdefault(inner, []).append((outer, given))
+    pending = [(tree, name) for tree in users for name in sorted(names.get(tree, ()))]
+    while pending:
+        inner, name = pending.pop()
+        for outer, given in users.get(inner, ()):
+            if name not in given and not name.startswith("_"):
+                yield inner, outer, name
+                if name not in names.setdefault(outer, set()):
+                    names[outer].add(name)
+                    pending.append((outer, name))
 
 
 def _calls(forest: Forest) -> Iterator[tuple[str, str, TreeNode]]:

@@ -14,6 +14,7 @@ from functools import cached_property
 
 from roaml.forest.cpp_types import normal
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Direction, Library, Node, NodeKind, Port, library
+from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, PortSetting, Tree, TreeFile, TreeNode, nodes
 
 CPP = library(BEHAVIORTREE_CPP)
@@ -155,6 +156,12 @@ class Forest:
     def has_own_models(self) -> bool:
         """Whether models describe nodes that are not those of BehaviorTree.CPP."""
         return any(name not in CPP.nodes for name in self.models)
+
+    @property
+    def has_all_models(self) -> bool:
+        """Whether the user has said where all models are: in a project of Groot2 or in settings."""
+        is_project = any(path.endswith(PROJECT_EXTENSION) for path, _ in self.files)
+        return self.has_own_models and (is_project or bool(self.settings.models))
 
     @cached_property
     def host_entries(self) -> frozenset[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.forest.cpp_types import SCRIPT
-from roaml.forest.forest import Forest
+from roaml.forest.forest import CPP, Forest
 from roaml.model.tree import TreeNode
 from roaml.script.parse import Problem, parse
 from roaml.script.tree import Assignment, Name, Script, walk
@@ -21,6 +21,11 @@ AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """Executed after a node has ended."""
 
 _CONDITION_PORTS = ("Precondition", "ScriptCondition")
+_SCRIPT_PORTS = {
+    name: ports
+    for name, node in CPP.nodes.items()
+    if (ports := tuple(port.name for port in node.ports if port.type == SCRIPT))
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,15 +38,24 @@ class ScriptUse:
 
 
 def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
-    for name in (*CONDITIONS, *AFTERWARDS):
-        attribute = node.element.get(name)
+    for attribute in node.scripts:
+        if attribute.has_value:
+            yield ScriptUse(node, attribute, attribute.name in CONDITIONS)
+    name = node.plugin.value if node.plugin else ""
+    if name in _SCRIPT_PORTS and forest.known_node(node) is CPP.nodes[name]:
+        for port in _SCRIPT_PORTS[name]:
+            attribute_of_port = node.element.get(port)
+            if attribute_of_port is not None and attribute_of_port.has_value:
+                yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
+
+
+def script_attributes(node: TreeNode) -> Iterator[Attribute]:
+    """The attributes of a node that are scripts, whatever models say of the node."""
+    yield from (attribute for attribute in node.scripts if attribute.has_value)
+    for port in _SCRIPT_PORTS.get(node.plugin.value if node.plugin else "", ()):
+        attribute = node.element.get(port)
         if attribute is not None and attribute.has_value:
-            yield ScriptUse(node, attribute, name in CONDITIONS)
-    known = forest.known_node(node)
-    for port in known.ports if known else ():
-        attribute = node.element.get(port.name) if port.type == SCRIPT else None
-        if known is not None and attribute is not None and attribute.has_value:
-            yield ScriptUse(node, attribute, known.name in _CONDITION_PORTS)
+            yield attribute
 
 
 @functools.lru_cache(maxsize=2048)

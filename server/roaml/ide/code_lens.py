@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
-from roaml.ide.names.lookup import Use, systems_of, thing
+from roaml.ide.names.lookup import Use, thing
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
 from roaml.ide.system_names import MOST, grouped
@@ -94,7 +94,7 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
     """The number of uses of a symbol of a file, and their places. Systems that share the file are counted separately,
     and named where they differ."""
-    systems = systems_of(analysis, path)
+    systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
     said = grouped({system: found.title for system, found in by_system.items()})
     title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MOST])

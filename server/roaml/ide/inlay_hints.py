@@ -15,9 +15,8 @@ from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe import describe
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.machine import inferred_type
-from roaml.ide.hover.property_file import node_of
+from roaml.ide.describe.system import node_of
 from roaml.ide.names.in_machine import interface_symbol, is_implicit
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.navigation import definition_of
 from roaml.ide.system_names import grouped
 from roaml.jani.properties import identifiers
@@ -39,11 +38,9 @@ from roaml.model.system import Automaton, System
 from roaml.model.tree import TreeNode, nodes
 from roaml.model.value_types import TypedValue, Use, find_handle, port_type
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
-
-"""The kind of a symbol for a node of an executed tree: `path` is the system, `name` the number."""
 
 _MOST = 3
 
@@ -96,7 +93,7 @@ def inlay_hints(
     """The hints in a part of a file, in the order of the text."""
     by_system = {
         system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
-        for system in systems_of(analysis, path)
+        for system in analysis.systems_of(path)
     }
     found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
     chosen = (each for each in found if within.start <= each.offset <= within.end)
@@ -273,7 +270,7 @@ class _Machine:
 
     def handler(self, handler: Handler) -> Iterator[InlayHint]:
         yield from self.handle(handler)
-        if handler.trigger != "event" or handler.event is None or self.linked is None:
+        if handler.trigger is not ProtocolPart.EVENT or handler.event is None or self.linked is None:
             return
         event = self.linked.events.get(handler.event.value)
         members = event.data.members if event else ()

@@ -6,19 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
-from roaml.model.kinds import FileKind
+from roaml.language import ElementType, Grammar
+from roaml.model.kinds import GRAMMARS
 from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
 from roaml.text import Decoded
 from roaml.xml_syntax import Document, Element
-
-GRAMMARS = {
-    FileKind.MACHINE: HL_SCXML,
-    FileKind.SYSTEM: SYSTEM,
-    FileKind.TREE: BEHAVIOR_TREE,
-    FileKind.STRUCTS: STRUCTS,
-}
 
 _EXPRESSIONS = ("expression", "location", "constant")
 
@@ -80,9 +73,12 @@ def expressions(document: Document, each: Typed) -> Iterator[Expression]:
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
     """The expression around an offset; a caret at its end is inside it."""
     around = path_at(file, offset)
-    if not around:
-        return None
-    sources = expression_sources(file.document, around[-1])
+    return expression_in(file.document, around[-1], offset) if around else None
+
+
+def expression_in(document: Document, each: Typed, offset: int) -> Expression | None:
+    """The expression around an offset, which is in the element `each` and none of its children."""
+    sources = expression_sources(document, each)
     source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
     return None if source is None else expression_from(source)
 

@@ -81,7 +81,7 @@ from roaml.text import Span
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class TypeScope:
     """The names that are declared somewhere. `variables` also contains constants and parameters; `constants` cannot be
     assigned to."""
 
@@ -107,7 +107,7 @@ Bound: TypeAlias = Mapping[str, Type]
 class Inference:
     """Infers types in `scope`, and collects the errors."""
 
-    def __init__(self, scope: Scope) -> None:
+    def __init__(self, scope: TypeScope) -> None:
         self.scope = scope
         self.notes = Notes()
 

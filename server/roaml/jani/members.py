@@ -20,7 +20,7 @@ HARMLESS = frozenset(("comment", "metadata"))
 """Members that never have a meaning, wherever they are."""
 
 
-class Shape(NamedTuple):
+class ObjectShape(NamedTuple):
     """The kind of an object, with its article, and its required and optional members. `is_open` means that other
     members are comments."""
 
@@ -30,13 +30,13 @@ class Shape(NamedTuple):
     is_open: bool = False
 
 
-def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> Shape:
+def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> ObjectShape:
     """`required` and `optional` are names, separated by spaces."""
     needed = frozenset(required.split())
-    return Shape(what, needed, needed | frozenset(optional.split()), is_open)
+    return ObjectShape(what, needed, needed | frozenset(optional.split()), is_open)
 
 
-class Source:
+class ValueSource:
     """The source of values: the path of the file and the notes on it."""
 
     def __init__(self, path: str, notes: Notes) -> None:
@@ -46,7 +46,7 @@ class Source:
     def origin(self, span: Span) -> Origin:
         return Origin(self.path, span)
 
-    def members(self, value: JsonValue | None, form: Shape) -> Members | None:
+    def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
         """The members of `value`; `None` (and a finding) if it is not an object."""
         if isinstance(value, JsonObject):
             return Members(value, form, self)
@@ -61,7 +61,7 @@ class Source:
 class Members:
     """The members of one object; if two have the same name, the last one."""
 
-    def __init__(self, value: JsonObject, form: Shape, source: Source) -> None:
+    def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.object = value
         self.form = form
         self.notes = source.notes

@@ -12,10 +12,10 @@ from roaml.json_syntax.strings import quote
 from roaml.text import Span, TextEdit
 
 
-class Names:
+class DeclaredNames:
     """Names of one kind; reports names that are declared twice or do not exist."""
 
-    def __init__(self, what: str, notes: Notes, outer: Names | None = None) -> None:
+    def __init__(self, what: str, notes: Notes, outer: DeclaredNames | None = None) -> None:
         self.what = what
         self._notes = notes
         self._outer = outer

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.jani.expressions import Expression, LValue, Missing
-from roaml.jani.members import Members, Shape, shape
+from roaml.jani.members import Members, ObjectShape, shape
 from roaml.jani.model import (
     Action,
     Clause,
@@ -17,7 +17,7 @@ from roaml.jani.model import (
     Parameter,
     Variable,
 )
-from roaml.jani.names import Names
+from roaml.jani.names import DeclaredNames
 from roaml.jani.notes import SYNTAX, Notes
 from roaml.jani.read_formulas import FormulaReader
 from roaml.jani.types import INT, REAL, UNKNOWN, ArrayType, BasicType, BoundedType, DatatypeType, OptionType, Type
@@ -43,9 +43,9 @@ class DeclarationReader(FormulaReader):
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)
-        self.actions = Names("action", notes)
-        self.variables = Names("variable", notes)
-        self.functions = Names("function", notes)
+        self.actions = DeclaredNames("action", notes)
+        self.variables = DeclaredNames("variable", notes)
+        self.functions = DeclaredNames("function", notes)
 
     def actions_of(self, model: Members) -> tuple[Action, ...]:
         actions: list[Action] = []
@@ -63,7 +63,7 @@ class DeclarationReader(FormulaReader):
                 constants.append(Constant(name, type_, value, comment=members.comment(), origin=members.origin))
         return tuple(constants)
 
-    def variables_of(self, owner: Members, names: Names) -> tuple[Variable, ...]:
+    def variables_of(self, owner: Members, names: DeclaredNames) -> tuple[Variable, ...]:
         """The variables of a model or an automaton."""
         variables: list[Variable] = []
         for members in self.each(owner, "variables", _VARIABLE):
@@ -81,10 +81,10 @@ class DeclarationReader(FormulaReader):
 
     def datatypes(self, model: Members) -> tuple[Datatype, ...]:
         datatypes: list[Datatype] = []
-        names = Names("datatype", self.notes)
+        names = DeclaredNames("datatype", self.notes)
         for members in self.each(model, "datatypes", _DATATYPE):
             parts: list[DatatypeMember] = []
-            part_names = Names("member", self.notes)
+            part_names = DeclaredNames("member", self.notes)
             for part in self.each(members, "members", _DATATYPE_MEMBER):
                 if name := self.declare(part, part_names):
                     type_ = self.type(part, "type")
@@ -93,12 +93,12 @@ class DeclarationReader(FormulaReader):
                 datatypes.append(Datatype(name, tuple(parts), comment=members.comment(), origin=members.origin))
         return tuple(datatypes)
 
-    def functions_of(self, owner: Members, names: Names) -> tuple[Function, ...]:
+    def functions_of(self, owner: Members, names: DeclaredNames) -> tuple[Function, ...]:
         """The functions of a model or an automaton."""
         functions: list[Function] = []
         for members in self.each(owner, "functions", _FUNCTION):
             parameters: list[Parameter] = []
-            parameter_names = Names("parameter", self.notes)
+            parameter_names = DeclaredNames("parameter", self.notes)
             for part in self.each(members, "parameters", _PARAMETER):
                 if name := self.declare(part, parameter_names):
                     type_ = self.type(part, "type")
@@ -153,20 +153,20 @@ class DeclarationReader(FormulaReader):
 
     # ---------------------------------------------------------------- members
 
-    def each(self, owner: Members, key: str, form: Shape) -> Iterator[Members]:
+    def each(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
         """The objects of the list `key`."""
         for item in owner.items(key):
             if members := self.members(item, form):
                 yield members
 
-    def declare(self, members: Members, names: Names) -> str | None:
+    def declare(self, members: Members, names: DeclaredNames) -> str | None:
         name = members.string("name")
         if name is None:
             return None
         names.declare(name)
         return name.value
 
-    def use(self, members: Members, key: str, names: Names) -> str | None:
+    def use(self, members: Members, key: str, names: DeclaredNames) -> str | None:
         """The name at `key`, which must be declared."""
         name = members.string(key)
         if name is None:
@@ -174,7 +174,7 @@ class DeclarationReader(FormulaReader):
         names.use(name)
         return name.value
 
-    def uses(self, members: Members, key: str, names: Names) -> tuple[str, ...]:
+    def uses(self, members: Members, key: str, names: DeclaredNames) -> tuple[str, ...]:
         """The names in the list `key`, which must be declared."""
         used: list[str] = []
         for item in members.items(key):

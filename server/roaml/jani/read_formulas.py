@@ -41,7 +41,7 @@ from roaml.jani.expressions import (
     Selection,
     Unary,
 )
-from roaml.jani.members import Members, Shape, Source, shape
+from roaml.jani.members import Members, ObjectShape, ValueSource, shape
 from roaml.jani.notes import SYNTAX
 from roaml.jani.operators import BINARY_OPERATORS, DISTRIBUTIONS, NUMBER_CONSTANTS, UNARY_OPERATORS
 from roaml.jani.properties import (
@@ -78,7 +78,7 @@ from roaml.text import Span, TextEdit
 E = TypeVar("E", bound=enum.Enum)
 
 
-class FormulaReader(Source):
+class FormulaReader(ValueSource):
     """Reads the expressions and formulas of one file."""
 
     def expression(self, value: JsonValue) -> Expression:
@@ -440,7 +440,7 @@ def _root(target: LValue) -> Expression:
 class _Form(NamedTuple):
     """The shape of the objects with a certain `op`, and the node that is made of them."""
 
-    shape: Shape
+    shape: ObjectShape
     build: Callable[[FormulaReader, Members, str], Steps[Formula]]
 
 

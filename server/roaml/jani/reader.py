@@ -30,7 +30,7 @@ from roaml.jani.model import (
     System,
     TransientValue,
 )
-from roaml.jani.names import Names
+from roaml.jani.names import DeclaredNames
 from roaml.jani.notes import SYNTAX, Notes
 from roaml.jani.properties import Property
 from roaml.jani.read_declarations import DeclarationReader
@@ -89,7 +89,7 @@ class _ModelReader(DeclarationReader):
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)
-        self.automata = Names("automaton", notes)
+        self.automata = DeclaredNames("automaton", notes)
 
     def model(self, value: JsonValue) -> Model | None:
         members = self.members(value, _MODEL)
@@ -158,11 +158,11 @@ class _ModelReader(DeclarationReader):
         return tuple(self.automaton(members) for members in self.each(model, "automata", _AUTOMATON))
 
     def automaton(self, members: Members) -> Automaton:
-        locations = Names("location", self.notes)
+        locations = DeclaredNames("location", self.notes)
         return Automaton(
             self.declare(members, self.automata) or "",
-            variables=self.variables_of(members, Names("variable", self.notes, self.variables)),
-            functions=self.functions_of(members, Names("function", self.notes, self.functions)),
+            variables=self.variables_of(members, DeclaredNames("variable", self.notes, self.variables)),
+            functions=self.functions_of(members, DeclaredNames("function", self.notes, self.functions)),
             locations=self.locations(members, locations),
             initial_locations=self.uses(members, "initial-locations", locations),
             restrict_initial=self.clause(members, "restrict-initial"),
@@ -171,7 +171,7 @@ class _ModelReader(DeclarationReader):
             origin=members.origin,
         )
 
-    def locations(self, automaton: Members, names: Names) -> tuple[Location, ...]:
+    def locations(self, automaton: Members, names: DeclaredNames) -> tuple[Location, ...]:
         locations: list[Location] = []
         for members in self.each(automaton, "locations", _LOCATION):
             if name := self.declare(members, names):
@@ -193,7 +193,7 @@ class _ModelReader(DeclarationReader):
             values.append(TransientValue(target, value, comment=members.comment(), origin=members.origin))
         return tuple(values)
 
-    def edges(self, automaton: Members, locations: Names) -> Iterator[Edge]:
+    def edges(self, automaton: Members, locations: DeclaredNames) -> Iterator[Edge]:
         for members in self.each(automaton, "edges", _EDGE):
             yield Edge(
                 self.use(members, "location", locations) or "",
@@ -205,7 +205,7 @@ class _ModelReader(DeclarationReader):
                 origin=members.origin,
             )
 
-    def destinations(self, edge: Members, locations: Names) -> Iterator[Destination]:
+    def destinations(self, edge: Members, locations: DeclaredNames) -> Iterator[Destination]:
         for members in self.each(edge, "destinations", _DESTINATION):
             yield Destination(
                 self.use(members, "location", locations) or "",
@@ -264,7 +264,7 @@ class _ModelReader(DeclarationReader):
     def properties(self, owner: Members) -> tuple[Property, ...]:
         """The properties of a model or a property file."""
         properties: list[Property] = []
-        names = Names("property", self.notes)
+        names = DeclaredNames("property", self.notes)
         for members in self.each(owner, "properties", _PROPERTY):
             value = members.values.get("expression")
             formula = Missing(origin=members.origin) if value is None else self.formula(value)

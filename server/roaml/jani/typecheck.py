@@ -13,7 +13,7 @@ from dataclasses import replace
 from roaml.diagnostics import Finding
 from roaml.jani.deep import run
 from roaml.jani.expressions import Expression, Name
-from roaml.jani.infer import Inference, PathKind, Scope, span_of
+from roaml.jani.infer import Inference, PathKind, TypeScope, span_of
 from roaml.jani.model import Assignment, Automaton, Clause, Edge, Function, Model, TransientValue, Variable
 from roaml.jani.node import Node
 from roaml.jani.properties import Property
@@ -33,10 +33,10 @@ from roaml.jani.types import (
 )
 
 
-def model_scope(model: Model) -> Scope:
+def model_scope(model: Model) -> TypeScope:
     """The names that are declared everywhere in `model`, including its properties."""
     constants = {constant.name: constant.type for constant in model.constants}
-    return Scope(
+    return TypeScope(
         {**constants, **{variable.name: variable.type for variable in model.variables}},
         {function.name: function for function in model.functions},
         {datatype.name: datatype for datatype in model.datatypes},
@@ -44,7 +44,7 @@ def model_scope(model: Model) -> Scope:
     )
 
 
-def automaton_scope(scope: Scope, automaton: Automaton) -> Scope:
+def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
     """The names that are declared in `automaton` of a model with `scope`."""
     local = {variable.name: variable.type for variable in automaton.variables}
     functions = {function.name: function for function in automaton.functions}
@@ -56,14 +56,14 @@ def automaton_scope(scope: Scope, automaton: Automaton) -> Scope:
     )
 
 
-def expression_type(expression: Expression, scope: Scope) -> tuple[Type, tuple[Finding, ...]]:
+def expression_type(expression: Expression, scope: TypeScope) -> tuple[Type, tuple[Finding, ...]]:
     """The type of `expression`, and the errors in it."""
     checker = _Checker(scope)
     type_ = run(checker.type(expression, {}))
     return type_, checker.notes.findings
 
 
-def check_property(property_: Property, scope: Scope) -> tuple[Finding, ...]:
+def check_property(property_: Property, scope: TypeScope) -> tuple[Finding, ...]:
     """The errors in names and types of `property_` in `scope`."""
     checker = _Checker(scope)
     checker.property(property_)
@@ -93,7 +93,7 @@ def check_model(model: Model) -> tuple[Finding, ...]:
 class _Checker(Inference):
     """Checks a model."""
 
-    def automaton(self, automaton: Automaton, scope: Scope) -> None:
+    def automaton(self, automaton: Automaton, scope: TypeScope) -> None:
         self.scope = automaton_scope(scope, automaton)
         self.variables(automaton.variables)
         self.functions(automaton.functions)

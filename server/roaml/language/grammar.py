@@ -18,7 +18,7 @@ from lxml import etree
 
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
@@ -116,15 +116,14 @@ class ElementType:
     """An element.
 
     Attributes:
-        children: name -> occurrence; `Grammar.child` returns the type of the child there.
-        any_child: the number of children with any name that are allowed, or `None`; children in foreign namespaces are
-            not counted.
-        any_is_opaque: whether the grammar ignores these children and their content.
-        any_attribute: whether unlisted attributes are allowed; those in foreign namespaces always are.
-        text: whether character data is allowed.
-        sends, receives: part of an interface or of the tree protocol, or "".
-        code: the result code of the element, or 0.
-        ignored: whether it has no effect on the model.
+        children: name -> how often; what kind of element it is there tells `Grammar.child`.
+        any_child: how many children of any name there may be, or None; children in foreign namespaces do not count.
+        any_is_opaque: what such children are and hold is no business of the grammar.
+        any_attribute: attributes not listed are allowed; those in foreign namespaces always are.
+        text: character data is allowed.
+        sends, receives: part of an interface or of the tree protocol, if any.
+        code: the result code that goes with it, or 0.
+        ignored: has no effect on the model.
         use: the successor, if the element is deprecated.
         node: control, decorator, action, condition or subtree, or "".
         translated: false for tree nodes that are known but cannot be translated.
@@ -142,8 +141,8 @@ class ElementType:
     refers: tuple[SymbolKind, ...] = ()
     value: str = ""
     value_type: str = ""
-    sends: str = ""
-    receives: str = ""
+    sends: ProtocolPart | None = None
+    receives: ProtocolPart | None = None
     code: int = 0
     binds: tuple[Binding, ...] = ()
     ignored: bool = False
@@ -290,8 +289,8 @@ class _Reader:
             refers=_symbols(roles.get("refers")),
             value=value.get("is", ""),
             value_type=value.get("type", ""),
-            sends=roles.get("sends", {}).get("part", ""),
-            receives=roles.get("receives", {}).get("part", ""),
+            sends=_part(roles.get("sends")),
+            receives=_part(roles.get("receives")),
             code=int({**roles.get("sends", {}), **roles.get("receives", {})}.get("code", "0")),
             binds=tuple(Binding(r["name"], r.get("only", "")) for kind, r in _roles(node) if kind == "binds"),
             ignored=ignored is not None,
@@ -399,6 +398,10 @@ def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:
     for role in node.findall(f"{_XS}annotation/{_XS}appinfo/*"):
         if role.tag.startswith(_R):
             yield _local(role), dict(role.attrib)
+
+
+def _part(role: Mapping[str, str] | None) -> ProtocolPart | None:
+    return ProtocolPart(role["part"]) if role else None
 
 
 def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:

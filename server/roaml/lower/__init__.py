@@ -7,7 +7,7 @@
 - Pure, except for the package's own resources: the nodes of BehaviorTree.CPP in `nodes/`.
 """
 
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.system import lower
 
-__all__ = ["Program", "lower"]
+__all__ = ["TranslatableSystem", "lower"]

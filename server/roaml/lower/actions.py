@@ -14,29 +14,31 @@ from roaml.expr.zero import zero
 from roaml.lower.build import equal, event_data, integer, name
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Automaton as SystemAutomaton
 from roaml.model.system import Channel, sanitise
-from roaml.model.translated import ACTION_HANDLER_PREFIX
-from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, Send, State, Statement
+from roaml.roles import ProtocolPart
+from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, ScxmlEvent, Send, State, Statement
+from roaml.scxml.names import ACTION_HANDLER_PREFIX
 from roaml.text import Location
 
 GOAL_ID = "goal_id"
 CODE = "code"
+_PARTS = (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT)
 
 
-def action_handler(action: Channel, program: Program) -> Automaton:
+def action_handler(action: Channel, program: TranslatableSystem) -> Automaton:
     events = ActionEvents(action.name)
-    goal, feedback, result = (fields(action, part, program.environment) for part in ("goal", "feedback", "result"))
+    goal, feedback, result = (fields(action, part, program.environment) for part in _PARTS)
     origin = handler_place(action, program)
     requests = []
     for number, client in enumerate(action.users):
         place = declared_at(client, program)
-        asked = copied(goal, sent_parameters(client, "goal"), place)
+        asked = copied(goal, sent_parameters(client, ProtocolPart.GOAL), place)
         passed_on = Send(events.goal, (Param(GOAL_ID, integer(number), place), *stored(goal, place)), place)
         requests.append(on(events.goal_of(client.automaton), "goal_requested", (*asked, passed_on), place))
 
-    def sent(part: str) -> set[str]:
+    def sent(part: ProtocolPart) -> set[str]:
         return set[str]().union(*(sent_parameters(server, part) for server in action.sources))
 
     remember = _store(GOAL_ID, origin)
@@ -45,7 +47,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         "waiting",
         (
             remember,
-            *copied(feedback, sent("feedback"), origin),
+            *copied(feedback, sent(ProtocolPart.FEEDBACK), origin),
             *_to_client(action, events.feedback_for, stored(feedback, origin), origin),
         ),
         origin,
@@ -57,7 +59,7 @@ def action_handler(action: Channel, program: Program) -> Automaton:
         (
             _store(CODE, origin),
             remember,
-            *copied(result, sent("result"), origin),
+            *copied(result, sent(ProtocolPart.RESULT), origin),
             *_to_client(action, events.result_for, (code, *stored(result, origin)), origin),
         ),
         origin,
@@ -81,10 +83,10 @@ def _store(parameter: str, origin: Location) -> Statement:
 
 
 def _to_client(
-    action: Channel, event: Callable[[SystemAutomaton], str], params: tuple[Param, ...], origin: Location
+    action: Channel, event: Callable[[SystemAutomaton], ScxmlEvent], params: tuple[Param, ...], origin: Location
 ) -> Body:
-    """Sends the client with the stored goal id the event that `event` names for it. (An action without users has a
-    handler as well.)"""
+    """Sends the client with the remembered goal id the event that `event` gives for it. (An action that nobody uses has
+    a handler, too.)"""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)

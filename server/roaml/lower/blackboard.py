@@ -6,13 +6,32 @@ from __future__ import annotations
 from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
 from roaml.lower.build import event_data, name
-from roaml.lower.program import Program
-from roaml.model.translated import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
-from roaml.scxml.model import Assign, Automaton, Data, Param, Role, Send, State, Target, Transition
+from roaml.lower.program import TranslatableSystem
+from roaml.scxml.model import (
+    Assign,
+    Automaton,
+    Data,
+    EventRole,
+    Param,
+    Role,
+    ScxmlEvent,
+    Send,
+    State,
+    Target,
+    Transition,
+)
+from roaml.scxml.names import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.text import Location
 
+REQUEST = ScxmlEvent(BLACKBOARD_REQUEST, EventRole.BLACKBOARD_READ)
+ANSWER = ScxmlEvent(BLACKBOARD_ANSWER)
 
-def blackboard(program: Program) -> Automaton | None:
+
+def blackboard_write(variable: str) -> ScxmlEvent:
+    return ScxmlEvent(f"{BLACKBOARD_WRITE_PREFIX}{variable}", EventRole.BLACKBOARD_WRITE)
+
+
+def blackboard(program: TranslatableSystem) -> Automaton | None:
     """The automaton; `None` if the tree uses no variables."""
     system = program.system
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
@@ -23,20 +42,20 @@ def blackboard(program: Program) -> Automaton | None:
     origin = next(iter(places.values()))
     writes = tuple(
         Transition(
-            f"{BLACKBOARD_WRITE_PREFIX}{v}",
+            blackboard_write(v),
             None,
             (Target("idle", 1.0, (Assign(name(v), event_data("value"), places[v]),), places[v]),),
             places[v],
         )
         for v in variables
     )
-    answer = Send(BLACKBOARD_ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
-    asked = Transition(BLACKBOARD_REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
+    answer = Send(ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
+    asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
     idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 
-def _place(program: Program, variable: str) -> Location:
+def _place(program: TranslatableSystem, variable: str) -> Location:
     """The first node that uses a variable."""
     instance = program.system.blackboard[variable][0].automaton.instance
     return program.node(instance.number if instance else 0)

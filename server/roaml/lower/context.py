@@ -10,8 +10,8 @@ from roaml.expr.parse import parse
 from roaml.expr.tree import Boolean, Expr, String
 from roaml.expr.types import STRING, UNKNOWN, Type, is_kind, resolve_type
 from roaml.lower.data import as_type
-from roaml.lower.expressions import Scope
-from roaml.lower.program import Program
+from roaml.lower.expressions import LoweringScope
+from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import Constant, PortValue, Reference
 from roaml.model.machine import Chart, Communicate, Data, Declaration, Handler, Machine
 from roaml.model.outline import InterfaceUse
@@ -19,6 +19,7 @@ from roaml.model.syntax import PortRead
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings, find_handle, port_type
 from roaml.roles import SymbolKind
+from roaml.scxml.model import ScxmlEvent
 from roaml.text import Decoded, Location, Span
 
 
@@ -33,13 +34,13 @@ class Context:
         variables: the chart's variables with their types.
     """
 
-    program: Program
+    program: TranslatableSystem
     automaton: Automaton
     machine: Machine
     chart: Chart
     name: str
     thread: int | None
-    timers: Mapping[str, str]
+    timers: Mapping[str, ScxmlEvent]
     ports: Mapping[str, str]
     variables: Mapping[str, Type]
 
@@ -49,11 +50,11 @@ class Context:
             return Location(self.automaton.path, span)
         return self.program.place_of(self.automaton)
 
-    def scope(self, handler: Handler | None = None, part: str = "body") -> Scope:
+    def scope(self, handler: Handler | None = None, part: str = "body") -> LoweringScope:
         """The meaning of names in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
         if handler is None:
-            return Scope(self.variables, {}, {})
-        return Scope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
+            return LoweringScope(self.variables, {}, {})
+        return LoweringScope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
 
     def port(self, read: PortRead) -> PortValue:
         """The value of the port. A port that is not set has been reported; it is treated as empty."""
@@ -84,7 +85,7 @@ class Context:
         return channel
 
 
-def variables_of(chart: Chart, program: Program) -> dict[str, Type]:
+def variables_of(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
     """The variables of a chart with their types; if ids are equal, the first declaration is used."""
     found: dict[str, Type] = {}
     for data in chart.data:
@@ -93,7 +94,7 @@ def variables_of(chart: Chart, program: Program) -> dict[str, Type]:
     return found
 
 
-def type_of(data: Data, program: Program) -> Type:
+def type_of(data: Data, program: TranslatableSystem) -> Type:
     name = data.type.name if data.type else None
     return (resolve_type(name, program.environment.struct) if name else None) or UNKNOWN
 

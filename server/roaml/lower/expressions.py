@@ -37,7 +37,7 @@ Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class LoweringScope:
     """The meaning of names at one place.
 
     Attributes:
@@ -52,7 +52,7 @@ class Scope:
 
 
 @dataclass(frozen=True, slots=True)
-class Access:
+class AccessedVariable:
     """A variable or parameter, or a part of one.
 
     Attributes:
@@ -78,7 +78,7 @@ class Access:
         return length(expr, self.span) if self.length else expr
 
 
-def lower_expr(expr: Expr, scope: Scope) -> Expr:
+def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
     """The plain form of a value that is not a struct."""
     match expr:
         case Number():
@@ -106,7 +106,7 @@ def lower_expr(expr: Expr, scope: Scope) -> Expr:
             return expr
 
 
-def _lower_part(expr: Name | Member | Index, scope: Scope) -> Expr:
+def _lower_part(expr: Name | Member | Index, scope: LoweringScope) -> Expr:
     """A part of a value that has no name: `'abc'.length`."""
     chosen = _chosen_part(expr)
     if chosen is not None:
@@ -130,7 +130,7 @@ def _chosen_part(expr: Expr) -> Conditional | None:
     return None
 
 
-def lower_leaves(expr: Expr, scope: Scope, type_: Type) -> list[tuple[Path, Expr]]:
+def lower_leaves(expr: Expr, scope: LoweringScope, type_: Type) -> list[tuple[Path, Expr]]:
     """A value as one plain value for each leaf member of its type; one with an empty path if it is not a struct.
 
     Args:
@@ -154,7 +154,7 @@ def first_leaf(type_: Type) -> Path:
     return next((path for path, _ in leaves(type_)), ())
 
 
-def access_of(expr: Expr, scope: Scope) -> Access | None:
+def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
     """The variable or part that `expr` reads or writes, if it is a chain of members and indices that begins with a
     name."""
     steps: list[Member | Index] = []
@@ -180,7 +180,7 @@ def access_of(expr: Expr, scope: Scope) -> Access | None:
             names.append(step.name)
             type_ = _member(type_, step.name) or UNKNOWN
     path = _event_parameter(root.name, names) if is_event else (root.name, *names)
-    return Access(expr.span, is_event, path, tuple(indexes), ends_with_length, type_)
+    return AccessedVariable(expr.span, is_event, path, tuple(indexes), ends_with_length, type_)
 
 
 def _member(type_: Type, member: str) -> Type | None:

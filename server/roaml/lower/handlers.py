@@ -8,9 +8,9 @@ from collections.abc import Iterable, Set
 from roaml.expr.types import Type
 from roaml.lower.build import event_data, name
 from roaml.lower.data import lower_data
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, Endpoint
-from roaml.scxml.model import Assign, Body, Data, Param, Statement, Target, Transition
+from roaml.scxml.model import Assign, Body, Data, Param, ScxmlEvent, Statement, Target, Transition
 from roaml.text import Location
 
 
@@ -28,11 +28,11 @@ def variables(fields: dict[str, Type], origin: Location) -> tuple[Data, ...]:
     return tuple(data for field, type_ in fields.items() for data in lower_data(field, type_, None, origin))
 
 
-def on(event: str, target: str, body: Iterable[Statement], origin: Location) -> Transition:
+def on(event: ScxmlEvent, target: str, body: Iterable[Statement], origin: Location) -> Transition:
     return Transition(event, None, (Target(target, 1.0, tuple(body), origin),), origin)
 
 
-def declared_at(endpoint: Endpoint, program: Program) -> Location:
+def declared_at(endpoint: Endpoint, program: TranslatableSystem) -> Location:
     """Where a client or server is declared."""
     machine = program.machines.get(endpoint.automaton.path)
     for declaration in machine.declarations if machine else ():
@@ -45,6 +45,6 @@ def declared_at(endpoint: Endpoint, program: Program) -> Location:
     return program.place_of(endpoint.automaton)
 
 
-def handler_place(channel: Channel, program: Program) -> Location:
+def handler_place(channel: Channel, program: TranslatableSystem) -> Location:
     """The place of a handler: that of the server; without one (which is reported) that of the first client."""
     return declared_at(channel.endpoints[0], program)

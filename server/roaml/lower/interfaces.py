@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events for the parts of ROS interfaces (docs/spec/plain-scxml.md#events), and their fields."""
+"""The events that stand for the parts of ROS interfaces and of the tree protocol (docs/spec/plain-scxml.md#events), and
+the fields that they carry."""
 
 from __future__ import annotations
 
@@ -10,16 +11,24 @@ from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.system import Automaton, Channel, Endpoint, safe_name, sanitise
-from roaml.model.value_types import INTERFACE_KINDS, Environment
+from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
+from roaml.roles import ProtocolPart
+from roaml.scxml.model import EventRole, ScxmlEvent
+from roaml.scxml.names import named
 
 
-def topic_event(topic: str) -> str:
-    return f"topic_{sanitise(topic)}_msg"
+def topic_event(topic: str) -> ScxmlEvent:
+    return ScxmlEvent(f"topic_{sanitise(topic)}_msg")
+
+
+def tree_event(node: int, what: str) -> ScxmlEvent:
+    """The tick or halt of a node of the tree, or its answer: `tick`, `halt`, `response` or `halt_response`."""
+    return ScxmlEvent(f"bt_{node}_{what}", EventRole.BLOCKING)
 
 
 @dataclass(frozen=True, slots=True)
 class ServiceEvents:
-    """The names of the events of one service."""
+    """The events of one service."""
 
     service: str
 
@@ -28,23 +37,24 @@ class ServiceEvents:
         return f"srv_{sanitise(self.service)}"
 
     @property
-    def request(self) -> str:
-        return f"{self.stem}_request"
+    def request(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_request", EventRole.BLOCKING)
 
     @property
-    def response(self) -> str:
-        return f"{self.stem}_response"
+    def response(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_response", EventRole.BLOCKING)
 
-    def request_of(self, client: Automaton) -> str:
-        return f"{self.stem}_req_client_{safe_name(client.name)}"
+    def request_of(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_req_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def response_to(self, client: Automaton) -> str:
-        return f"{self.stem}_response_client_{safe_name(client.name)}"
+    def response_to(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_response_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
 @dataclass(frozen=True, slots=True)
 class ActionEvents:
-    """The names of the events of one action."""
+    """The events of one action. Whether its feedback waits for its receivers depends on the action's name
+    (docs/spec/jani.md#synchronising-names)."""
 
     action: str
 
@@ -53,50 +63,50 @@ class ActionEvents:
         return f"action_{sanitise(self.action)}"
 
     @property
-    def goal(self) -> str:
-        return f"{self.stem}_goal_handle"
+    def goal(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_handle", EventRole.BLOCKING)
 
     @property
-    def accepted(self) -> str:
-        return f"{self.stem}_goal_accepted"
+    def accepted(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_accepted", EventRole.BLOCKING)
 
     @property
-    def rejected(self) -> str:
-        return f"{self.stem}_goal_rejected"
+    def rejected(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_rejected", EventRole.BLOCKING)
 
     @property
-    def feedback(self) -> str:
-        return f"{self.stem}_feedback"
+    def feedback(self) -> ScxmlEvent:
+        return named(f"{self.stem}_feedback")
 
     @property
-    def result(self) -> str:
-        return f"{self.stem}_result"
+    def result(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_result", EventRole.BLOCKING)
 
     @property
-    def thread_start(self) -> str:
-        return f"{self.stem}_thread_start"
+    def thread_start(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_thread_start", EventRole.BLOCKING)
 
     @property
-    def thread_free(self) -> str:
-        return f"{self.stem}_thread_free"
+    def thread_free(self) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_thread_free", EventRole.BLOCKING)
 
-    def goal_of(self, client: Automaton) -> str:
-        return f"{self.stem}_goal_req_client_{safe_name(client.name)}"
+    def goal_of(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_req_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def accept_for(self, client: Automaton) -> str:
-        return f"{self.stem}_goal_accept_client_{safe_name(client.name)}"
+    def accept_for(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_accept_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def reject_for(self, client: Automaton) -> str:
-        return f"{self.stem}_goal_reject_client_{safe_name(client.name)}"
+    def reject_for(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_goal_reject_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def feedback_for(self, client: Automaton) -> str:
-        return f"{self.stem}_feedback_handle_client_{safe_name(client.name)}"
+    def feedback_for(self, client: Automaton) -> ScxmlEvent:
+        return named(f"{self.stem}_feedback_handle_client_{safe_name(client.name)}")
 
-    def result_for(self, client: Automaton) -> str:
-        return f"{self.stem}_result_handle_client_{safe_name(client.name)}"
+    def result_for(self, client: Automaton) -> ScxmlEvent:
+        return ScxmlEvent(f"{self.stem}_result_handle_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
-def fields(channel: Channel, part: str, environment: Environment) -> dict[str, Type]:
+def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> dict[str, Type]:
     """The leaf fields of a part of a service or action as event parameters, in the order of the ROS definition.
 
     Fields that need not be set (`InterfaceType.optional`) are included only if an automaton sends them.
@@ -105,13 +115,13 @@ def fields(channel: Channel, part: str, environment: Environment) -> dict[str, T
     for endpoint in channel.endpoints:
         interface = environment.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
         if interface is not None:
-            required = {parameter(path.split(".")) for path in interface.required(part)}
-            found = {parameter(path): type_ for path, type_ in leaves(interface.part(part))}
+            required = {parameter(path.split(".")) for path in interface.required(section_of(part))}
+            found = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
             return {name: type_ for name, type_ in found.items() if name in required or name in sent}
     return {}
 
 
-def sent_parameters(endpoint: Endpoint, part: str) -> set[str]:
+def sent_parameters(endpoint: Endpoint, part: ProtocolPart) -> set[str]:
     """The event parameters that one side sends for the fields of a part."""
     return {
         parameter((*field.name.split("."), *path))

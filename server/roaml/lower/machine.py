@@ -9,26 +9,27 @@ from decimal import Decimal, InvalidOperation
 
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
+from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import Context, type_of, variables_of
 from roaml.lower.data import lower_data
-from roaml.lower.expressions import Scope, lower_expr
-from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
+from roaml.lower.expressions import LoweringScope, lower_expr
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
 from roaml.model.expand import Constant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import Automaton, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST
 from roaml.model.value_types import STATUSES
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
-from roaml.scxml.model import Data, Role, Send, State, Target, Transition
+from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
+from roaml.scxml.names import named
 
-TimerEvents = Mapping[tuple[str, str], str]
+TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""
 
 
@@ -52,7 +53,7 @@ def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart,
 
 
 def lower_machine(
-    automaton: Automaton, machine: Machine, program: Program, timers: TimerEvents
+    automaton: Automaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
     ports = {} if automaton.path else builtin_ports(automaton, program)
     for plain_name, chart, thread in copies(automaton, machine):
@@ -136,21 +137,21 @@ class _ChartLowering:
         (docs/spec/plain-scxml.md#blackboard-read)."""
         origin = self.context.origin(handler.element.span)
         target = handler.targets[0]
-        scope = Scope(self.context.variables, {}, {})
+        scope = LoweringScope(self.context.variables, {}, {})
         identifier = f"{state}_{handler.element.name}_{number}"
         while identifier in self.state_ids:
             identifier += "_"
         self.state_ids.add(identifier)
         assert target.state is not None
         body = self.statements.body(target.body, scope)
-        answered = Transition(BLACKBOARD_ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
+        answered = Transition(ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
         return State(identifier, (), (), (answered,), origin)
 
     def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
         """The first half of a handler that reads the blackboard: its trigger and condition, and the request to the
         blackboard."""
         origin = self.context.origin(handler.element.span)
-        ask = (Send(BLACKBOARD_REQUEST, (), origin),)
+        ask = (Send(REQUEST, (), origin),)
         for event, cond in self.triggers(handler):
             yield Transition(event, cond, (Target(waiting, 1.0, ask, origin),), origin)
 
@@ -158,7 +159,7 @@ class _ChartLowering:
 
     def transitions(self, handler: Handler) -> Iterator[Transition]:
         origin = self.context.origin(handler.element.span)
-        if handler.trigger == "goal-response":
+        if handler.trigger is ProtocolPart.GOAL_RESPONSE:
             yield from self.goal_response(handler)
             return
         for event, cond in self.triggers(handler):
@@ -181,16 +182,16 @@ class _ChartLowering:
             found.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
         return tuple(found)
 
-    def triggers(self, handler: Handler) -> Iterator[tuple[str, Expr | None]]:
+    def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         """The events that the handler waits for, each with its condition; usually one."""
         cond = self.condition(handler)
         match handler.trigger:
-            case "child-status" | "child-halted":
+            case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
                 yield from self.child_triggers(handler, cond)
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 assert self.context.thread is not None
                 yield self.event(handler), equal(event_data("thread_id"), integer(self.context.thread))
-            case "result" if handler.type.code:
+            case ProtocolPart.RESULT if handler.type.code:
                 yield self.event(handler), both(cond, equal(event_data("code"), integer(handler.type.code)))
             case _:
                 yield self.event(handler), cond
@@ -199,52 +200,52 @@ class _ChartLowering:
         if handler.cond is None:
             return None
         scope = self.context.scope(handler, "cond")
-        if handler.trigger in ("child-status", "child-halted"):
+        if handler.trigger in (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED):
             scope = replace(scope, constants=STATUSES)
         return lower_expr(handler.cond.tree, scope)
 
-    def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[str, Expr | None]]:
+    def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         assert handler.child is not None
-        answer = "response" if handler.trigger == "child-status" else "halt_response"
+        answer = "response" if handler.trigger is ProtocolPart.CHILD_STATUS else "halt_response"
         children = self.statements.children
         if (index := literal_index(handler.child)) is not None:
-            yield f"bt_{children[index]}_{answer}", cond
+            yield tree_event(children[index], answer), cond
             return
         variable = name(handler.child.value, handler.child.span)
         for i, child in enumerate(children):
-            yield f"bt_{child}_{answer}", both(cond, equal(variable, integer(i)))
+            yield tree_event(child, answer), both(cond, equal(variable, integer(i)))
 
-    def event(self, handler: Handler) -> str:
+    def event(self, handler: Handler) -> ScxmlEvent | None:
         automaton, trigger = self.context.automaton, handler.trigger
         match trigger:
-            case "":
-                return ""
-            case "event":
+            case None:
+                return None
+            case ProtocolPart.EVENT:
                 assert handler.event is not None
-                return handler.event.value
-            case "tick":
+                return named(handler.event.value)
+            case ProtocolPart.TICK:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
-            case "bt-tick" | "bt-halt":
-                return f"bt_{self.statements.number}_{trigger.removeprefix('bt-')}"
+            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
+                return tree_event(self.statements.number, trigger.value.removeprefix("bt-"))
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:
-            case "message":
+            case ProtocolPart.MESSAGE:
                 return topic_event(channel.name)
-            case "request":
+            case ProtocolPart.REQUEST:
                 return service.request
-            case "response":
+            case ProtocolPart.RESPONSE:
                 return service.response_to(automaton)
-            case "goal":
+            case ProtocolPart.GOAL:
                 return action.goal
-            case "feedback":
+            case ProtocolPart.FEEDBACK:
                 return action.feedback_for(automaton)
-            case "result":
+            case ProtocolPart.RESULT:
                 return action.result_for(automaton)
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 return action.thread_start
-            case "thread-free":
+            case ProtocolPart.THREAD_FREE:
                 return action.thread_free
         raise AssertionError(f"unknown trigger {trigger}")
 

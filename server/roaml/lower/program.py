@@ -14,7 +14,7 @@ from roaml.text import Location, Span
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Program:
+class TranslatableSystem:
     """A system without errors.
 
     Attributes:

@@ -6,22 +6,25 @@ from __future__ import annotations
 
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, safe_name, sanitise
-from roaml.model.translated import SERVICE_HANDLER_PREFIX
+from roaml.roles import ProtocolPart
 from roaml.scxml.model import Automaton, Role, Send, State
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX
+
+_PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
 
 
-def service_handler(service: Channel, program: Program) -> Automaton:
+def service_handler(service: Channel, program: TranslatableSystem) -> Automaton:
     events = ServiceEvents(service.name)
-    request, response = (fields(service, part, program.environment) for part in ("request", "response"))
-    answered = set[str]().union(*(sent_parameters(server, "response") for server in service.sources))
+    request, response = (fields(service, part, program.environment) for part in _PARTS)
+    answered = set[str]().union(*(sent_parameters(server, ProtocolPart.RESPONSE) for server in service.sources))
     origin = handler_place(service, program)
     waiting, processing = [], []
     for client in service.users:
         place = declared_at(client, program)
         busy = f"processing_client_{safe_name(client.automaton.name)}"
-        asked = copied(request, sent_parameters(client, "request"), place)
+        asked = copied(request, sent_parameters(client, ProtocolPart.REQUEST), place)
         passed_on = Send(events.request, stored(request, place), place)
         waiting.append(on(events.request_of(client.automaton), busy, (*asked, passed_on), place))
         given = copied(response, answered, place)

@@ -19,7 +19,7 @@ from roaml.expr.tree import ArrayLiteral, Binary, Expr, Name, ObjectLiteral, Str
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Type, is_kind, resolve_type, unwrap
 from roaml.lower.interfaces import fields
 from roaml.lower.nodes import builtin_machine
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import combinations
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import (
@@ -41,7 +41,7 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Automaton, Channel
 from roaml.model.value_types import bindings
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 
 _EDGE = 4
 """The size of an edge without its expressions: a destination, an action and two locations."""
@@ -53,7 +53,7 @@ _PLACES = 20
 """The number of entries in synchronisations that are one part: each lists all automata, most as `null`."""
 
 
-def size_of(program: Program, globals_: Mapping[str, GlobalVariable]) -> Size:
+def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Size:
     """The size of a system, the largest shares first.
 
     Args:
@@ -75,7 +75,7 @@ def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
 # ----------------------------------------------------------------------- cells
 
 
-def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
     most = program.parameters.max_array_size
     for automaton, machine in _members(program):
         for chart, copies in _charts(machine):
@@ -100,17 +100,22 @@ def _cells(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator
     for variable_name in system.blackboard:
         type_ = BASE_TYPES[system.variable_type(variable_name)]
         yield Share(cells_of(type_, most), f"the blackboard variable `{variable_name}`", "")
-    channels: list[tuple[Channel, tuple[str, ...], str]] = []
-    channels += [(service, ("request", "response"), "service") for service in system.services.values()]
-    channels += [(action, ("goal", "feedback", "result"), "action") for action in system.actions.values()]
-    for channel, sections, kind in channels:
+    channels: list[tuple[Channel, tuple[ProtocolPart, ...], str]] = []
+    channels += [
+        (service, (ProtocolPart.REQUEST, ProtocolPart.RESPONSE), "service") for service in system.services.values()
+    ]
+    channels += [
+        (action, (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT), "action")
+        for action in system.actions.values()
+    ]
+    for channel, parts, kind in channels:
         endpoint = channel.endpoints[0]
-        held = (type_ for part in sections for type_ in fields(channel, part, program.environment).values())
+        held = (type_ for part in parts for type_ in fields(channel, part, program.environment).values())
         count = sum(cells_of(type_, most) for type_ in held)
         yield Share(count, f"the forwarded data of the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
 
 
-def _members(program: Program) -> Iterator[tuple[Automaton, Machine]]:
+def _members(program: TranslatableSystem) -> Iterator[tuple[Automaton, Machine]]:
     for automaton in program.system.automata:
         machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
         if machine is not None:
@@ -123,7 +128,7 @@ def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
     yield from ((thread.chart, thread.count or 0) for thread in machine.threads)
 
 
-def _variables(chart: Chart, program: Program) -> dict[str, Type]:
+def _variables(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
     found: dict[str, Type] = {}
     for data in chart.data:
         name = data.type.name if data.type else None
@@ -136,7 +141,7 @@ def _variables(chart: Chart, program: Program) -> dict[str, Type]:
 # ----------------------------------------------------------------------- parts
 
 
-def _parts(program: Program, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
+def _parts(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
     counted: dict[tuple[int, int], tuple[int, int]] = {}
     events = sum(variable.parameter == "valid" for variable in globals_.values())
     automata, syncs = events, 2 * events
@@ -175,7 +180,7 @@ class _Counted(NamedTuple):
     queries: tuple[_Query, ...]
 
 
-def _count(machine: Machine, chart: Chart, children: int, program: Program) -> _Counted:
+def _count(machine: Machine, chart: Chart, children: int, program: TranslatableSystem) -> _Counted:
     """The counts of one copy of a chart. They are cached with the chart: a keystroke changes one machine of a
     system."""
     parameters = program.parameters
@@ -196,7 +201,7 @@ class _Counter:
     machine: Machine
     of: Chart
     children: int
-    program: Program
+    program: TranslatableSystem
     variables: dict[str, Type]
     queries: list[_Query] = field(default_factory=list)
 
@@ -239,7 +244,7 @@ class _Counter:
         for state in self.of.states:
             for handler in state.handlers:
                 count += self.copies(handler) * sum(self.steps(target.body) for target in handler.targets)
-                count += handler.trigger == ""
+                count += handler.trigger is None
         return count
 
     def steps(self, body: tuple[Statement, ...]) -> int:

@@ -12,18 +12,20 @@ from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
+from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import Context
-from roaml.lower.expressions import SEPARATOR, Scope, access_of, lower_expr, lower_leaves
-from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event
+from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_expr, lower_leaves
+from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import STATUSES, unset_fields
-from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
+from roaml.roles import ProtocolPart
+from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, ScxmlEvent, Send, Statement
+from roaml.scxml.names import named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
@@ -52,10 +54,10 @@ class StatementLowering:
     context: Context
     drawn: list[Data] = field(default_factory=list)
 
-    def body(self, statements: Iterable[hl.Statement], scope: Scope) -> Body:
+    def body(self, statements: Iterable[hl.Statement], scope: LoweringScope) -> Body:
         return tuple(plain for statement in statements for plain in self.statement(statement, scope))
 
-    def statement(self, statement: hl.Statement, scope: Scope) -> Iterator[Statement]:
+    def statement(self, statement: hl.Statement, scope: LoweringScope) -> Iterator[Statement]:
         origin = self.context.origin(statement.element.span)
         match statement:
             case hl.Assign():
@@ -65,13 +67,13 @@ class StatementLowering:
             case hl.Send():
                 assert statement.event is not None
                 sent = [p for param in statement.params for p in self.params(param, "", scope)]
-                yield from self.send(statement.event.value, sent, origin)
+                yield from self.send(named(statement.event.value), sent, origin)
             case Communicate():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
-                yield Send(f"bt_{self.number}_response", (self.status(statement, scope, origin),), origin)
+                yield Send(tree_event(self.number, "response"), (self.status(statement, scope, origin),), origin)
             case ReturnHalted():
-                yield Send(f"bt_{self.number}_halt_response", (), origin)
+                yield Send(tree_event(self.number, "halt_response"), (), origin)
             case CallChild():
                 yield from self.call_child(statement, origin)
             case SetOutput():
@@ -87,7 +89,7 @@ class StatementLowering:
 
     # ------------------------------------------------------------- assignments
 
-    def assign(self, statement: hl.Assign, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def assign(self, statement: hl.Assign, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         assert statement.location is not None
         target = access_of(statement.location.tree, scope)
         assert target is not None
@@ -117,12 +119,12 @@ class StatementLowering:
         yield Assign(location, used, origin)
         yield from (Assign(name(data.id), data.value, origin) for data in drawn)
 
-    def values(self, value: Value | None, scope: Scope, type_: Type) -> list[tuple[tuple[str, ...], Expr]]:
+    def values(self, value: Value | None, scope: LoweringScope, type_: Type) -> list[tuple[tuple[str, ...], Expr]]:
         if isinstance(value, Expression):
             return lower_leaves(value.tree, scope, type_)
         return [((), self.value(value, scope))]
 
-    def value(self, value: Value | None, scope: Scope) -> Expr:
+    def value(self, value: Value | None, scope: LoweringScope) -> Expr:
         """A value that is not a struct. A port that is bound to the blackboard is read from the blackboard's answer."""
         match value:
             case Expression():
@@ -137,19 +139,19 @@ class StatementLowering:
 
     # ----------------------------------------------------------------- choices
 
-    def choice(self, statement: hl.If, scope: Scope, origin: Location) -> If:
+    def choice(self, statement: hl.If, scope: LoweringScope, origin: Location) -> If:
         branches = tuple(self.branch(branch, scope) for branch in statement.branches)
         otherwise = self.body(statement.otherwise.body, scope) if statement.otherwise else ()
         return If(branches, otherwise, origin)
 
-    def branch(self, branch: hl.Branch, scope: Scope) -> Branch:
+    def branch(self, branch: hl.Branch, scope: LoweringScope) -> Branch:
         assert branch.cond is not None
         cond = lower_expr(branch.cond.tree, scope)
         return Branch(cond, self.body(branch.body, scope), self.context.origin(branch.element.span))
 
     # ----------------------------------------------------------------- sending
 
-    def params(self, param: hl.Param, prefix: str, scope: Scope) -> Iterator[TypedParam]:
+    def params(self, param: hl.Param, prefix: str, scope: LoweringScope) -> Iterator[TypedParam]:
         assert param.name is not None
         origin = self.context.origin(param.element.span)
         identifier = prefix + param.name.value.replace(".", SEPARATOR)
@@ -158,13 +160,13 @@ class StatementLowering:
         for path, value in self.values(param.value, scope, type_):
             yield Param(SEPARATOR.join((identifier, *path)), value, origin), types.get(path, UNKNOWN)
 
-    def type(self, value: Value | None, scope: Scope) -> Type:
+    def type(self, value: Value | None, scope: LoweringScope) -> Type:
         if not isinstance(value, Expression):
             return UNKNOWN
         known = {**scope.variables, **scope.event}
         return infer(value.tree, known.get)[0]
 
-    def send(self, event: str, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
+    def send(self, event: ScxmlEvent, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
         """Random numbers are drawn and stored before the event can be received
         (docs/spec/plain-scxml.md#random-draws)."""
         ready = []
@@ -187,53 +189,53 @@ class StatementLowering:
         self.drawn.append(Data(found, named, zero(named), origin))
         return self.drawn[-1]
 
-    def communicate(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def communicate(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
-    def arguments(self, statement: Communicate, scope: Scope, origin: Location) -> Iterator[Param]:
+    def arguments(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Param]:
         """The parameters that are sent in addition to the fields (docs/spec/plain-scxml.md#events)."""
         for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
         if statement.type.code:
             yield Param("code", integer(statement.type.code), origin)
-        if statement.type.sends == "thread-free":
+        if statement.part is ProtocolPart.THREAD_FREE:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
 
-    def event(self, statement: Communicate) -> str:
-        channel, part = self.context.channel(statement), statement.type.sends
+    def event(self, statement: Communicate) -> ScxmlEvent:
+        channel, part = self.context.channel(statement), statement.part
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match part:
-            case "message":
+            case ProtocolPart.MESSAGE:
                 return topic_event(channel.name)
-            case "request":
+            case ProtocolPart.REQUEST:
                 return service.request_of(self.context.automaton)
-            case "response":
+            case ProtocolPart.RESPONSE:
                 return service.response
-            case "goal":
+            case ProtocolPart.GOAL:
                 return action.goal_of(self.context.automaton)
-            case "goal-accepted":
+            case ProtocolPart.GOAL_ACCEPTED:
                 return action.accepted
-            case "goal-rejected":
+            case ProtocolPart.GOAL_REJECTED:
                 return action.rejected
-            case "feedback":
+            case ProtocolPart.FEEDBACK:
                 return action.feedback
-            case "result":
+            case ProtocolPart.RESULT:
                 return action.result
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 return action.thread_start
-            case "thread-free":
+            case ProtocolPart.THREAD_FREE:
                 return action.thread_free
         raise AssertionError(f"unknown part {part}")
 
     # ------------------------------------------------------------------- trees
 
-    def status(self, statement: ReturnStatus, scope: Scope, origin: Location) -> Param:
+    def status(self, statement: ReturnStatus, scope: LoweringScope, origin: Location) -> Param:
         assert statement.status is not None
         word = statement.status.value
         value = integer(STATUSES[word]) if word in STATUSES else name(word, statement.status.span)
@@ -247,7 +249,7 @@ class StatementLowering:
         assert statement.child is not None
         children = self.children
         verb = "halt" if statement.halts else "tick"
-        calls = [Send(f"bt_{child}_{verb}", (), self.context.program.node(child)) for child in children]
+        calls = [Send(tree_event(child, verb), (), self.context.program.node(child)) for child in children]
         if (index := literal_index(statement.child)) is not None:
             yield calls[index]
         elif children:
@@ -265,14 +267,14 @@ class StatementLowering:
         assert instance is not None
         return instance.children
 
-    def set_output(self, statement: SetOutput, scope: Scope, origin: Location) -> Iterator[Statement]:
+    def set_output(self, statement: SetOutput, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         assert statement.key is not None
         assert statement.value is not None
         held = self.context.port(PortRead(statement.key, statement.element.span))
         assert isinstance(held, Reference)
         value = Param("value", lower_expr(statement.value.tree, scope), origin)
         type_ = self.type(statement.value, scope)
-        yield from self.send(f"{BLACKBOARD_WRITE_PREFIX}{held.variable}", ((value, type_),), origin)
+        yield from self.send(blackboard_write(held.variable), ((value, type_),), origin)
 
 
 def literal_index(child: Name) -> int | None:

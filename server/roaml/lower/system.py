@@ -9,7 +9,7 @@ from roaml.lower.actions import action_handler
 from roaml.lower.blackboard import blackboard
 from roaml.lower.machine import TimerEvents, lower_machine
 from roaml.lower.nodes import builtin_machine
-from roaml.lower.program import Program
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.services import service_handler
 from roaml.lower.timers import clock, timers_of
 from roaml.lower.tree import tick_timer, tree_root
@@ -19,7 +19,7 @@ from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Network
 
 
-def lower(program: Program) -> Network:
+def lower(program: TranslatableSystem) -> Network:
     """The plain automata of a system without errors."""
     members = [(automaton, _machine(automaton, program)) for automaton in program.system.automata]
     timers = timers_of(program, members)
@@ -30,14 +30,14 @@ def lower(program: Program) -> Network:
     return Network(tuple(automata), program.parameters.max_array_size, program.parameters.random_values)
 
 
-def _machine(automaton: Automaton, program: Program) -> Machine:
+def _machine(automaton: Automaton, program: TranslatableSystem) -> Machine:
     if automaton.path:
         return program.machines[automaton.path]
     return builtin_machine(automaton, program)
 
 
 def _automata(
-    program: Program, members: Iterable[tuple[Automaton, Machine]], timers: TimerEvents
+    program: TranslatableSystem, members: Iterable[tuple[Automaton, Machine]], timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
     system = program.system
     for automaton, machine in members:

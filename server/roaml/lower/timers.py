@@ -18,7 +18,7 @@ from roaml.expr.types import BASE_TYPES
 from roaml.lower.build import binary, equal, integer, name
 from roaml.lower.interfaces import topic_event
 from roaml.lower.machine import copies
-from roaml.lower.program import NOWHERE, Program
+from roaml.lower.program import NOWHERE, TranslatableSystem
 from roaml.lower.tree import tick_timer
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.globals import FIELD_PREFIX
@@ -26,15 +26,16 @@ from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
-from roaml.model.translated import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import (
     Assign,
     Branch,
     Data,
+    EventRole,
     If,
     Param,
     Role,
+    ScxmlEvent,
     Send,
     State,
     Statement,
@@ -42,6 +43,7 @@ from roaml.scxml.model import (
     Transition,
 )
 from roaml.scxml.model import Automaton as PlainAutomaton
+from roaml.scxml.names import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
 from roaml.text import Location
 
 
@@ -56,12 +58,12 @@ class Timer:
 
     user: str
     handle: str
-    event: str | None
+    event: ScxmlEvent | None
     period: Period
     origin: Location
 
 
-def timers_of(program: Program, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
+def timers_of(program: TranslatableSystem, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
     """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
     found: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
@@ -78,12 +80,13 @@ def timers_of(program: Program, members: Iterable[tuple[Automaton, Machine]]) ->
     ]
 
 
-def _event(user: str, handle: str, alone: bool) -> str:
-    return f"{TIMER_PREFIX}{handle}" if alone else f"{TIMER_PREFIX}{handle}__{safe_name(user)}"
+def _event(user: str, handle: str, alone: bool) -> ScxmlEvent:
+    name = f"{TIMER_PREFIX}{handle}" if alone else f"{TIMER_PREFIX}{handle}__{safe_name(user)}"
+    return ScxmlEvent(name, EventRole.TIMER_TICK)
 
 
 def _declared(
-    automaton: Automaton, machine: Machine, program: Program
+    automaton: Automaton, machine: Machine, program: TranslatableSystem
 ) -> Iterator[tuple[str, str, Fraction, bool, Location]]:
     """(user, handle, rate in Hz, whether anything waits for it, place) for each timer of a machine."""
     for declaration in machine.declarations:
@@ -102,7 +105,7 @@ def _awaited(chart: Chart) -> set[str]:
         handler.handle.value
         for state in chart.states
         for handler in state.handlers
-        if handler.trigger == "tick" and handler.handle and handler.effective
+        if handler.trigger is ProtocolPart.TICK and handler.handle and handler.effective
     }
 
 
@@ -117,7 +120,10 @@ def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
 # ------------------------------------------------------------------- the clock
 
 
-def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
+STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
+
+
+def clock(timers: list[Timer], program: TranslatableSystem) -> PlainAutomaton:
     """The automaton that counts the time and makes timers fire."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
@@ -137,16 +143,16 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     )
     idle = State(
         "idle",
-        (Send(CLOCK_STEP, (), origin),),
+        (Send(STEP, (), origin),),
         (),
         (
             Transition(
-                CLOCK_STEP,
+                STEP,
                 binary(now, Operator.LESS, integer(end)),
                 (Target("idle", 1.0, advance, origin),),
                 origin,
             ),
-            Transition(CLOCK_STEP, None, (Target(TIME_IS_OVER, 1.0, (), origin),), origin),
+            Transition(STEP, None, (Target(TIME_IS_OVER, 1.0, (), origin),), origin),
         ),
         origin,
     )
@@ -155,7 +161,7 @@ def clock(timers: list[Timer], program: Program) -> PlainAutomaton:
     return PlainAutomaton(CLOCK, Role.CLOCK, "idle", (data,), (idle, timeout), origin)
 
 
-def _tick(event: str, due: Expr, origin: Location) -> Statement:
+def _tick(event: ScxmlEvent, due: Expr, origin: Location) -> Statement:
     return If((Branch(due, (Send(event, (), origin),), origin),), (), origin)
 
 

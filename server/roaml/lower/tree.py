@@ -6,34 +6,35 @@ from __future__ import annotations
 
 from roaml.expr.tree import Expr
 from roaml.lower.build import equal, event_data, integer
-from roaml.lower.program import Program
+from roaml.lower.interfaces import tree_event
+from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import ROOT_NUMBER
-from roaml.model.translated import TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 from roaml.model.value_types import STATUSES
-from roaml.scxml.model import Automaton, Role, Send, State, Target, Transition
+from roaml.scxml.model import Automaton, Role, ScxmlEvent, Send, State, Target, Transition
+from roaml.scxml.names import TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 
-ANSWER = f"bt_{ROOT_NUMBER}_response"
+ANSWER = tree_event(ROOT_NUMBER, "response")
 
 
-def _stem(program: Program) -> str:
+def _stem(program: TranslatableSystem) -> str:
     """The name of the tree file without its extension."""
     return program.system.tree_paths[0].replace("\\", "/").rpartition("/")[2].removesuffix(".xml")
 
 
-def tick_timer(program: Program) -> tuple[str, str]:
+def tick_timer(program: TranslatableSystem) -> tuple[str, str]:
     """The automaton that ticks the tree, and the timer that triggers it."""
     return f"{TREE_ROOT_PREFIX}{_stem(program)}", f"{_stem(program)}_tick"
 
 
-def tree_root(program: Program, tick: str) -> Automaton:
+def tree_root(program: TranslatableSystem, tick: ScxmlEvent) -> Automaton:
     """`tick` is the event of the tree's timer."""
     origin = program.node(ROOT_NUMBER)
 
-    def on(event: str, target: str, cond: Expr | None = None, *body: Send) -> Transition:
+    def on(event: ScxmlEvent, target: str, cond: Expr | None = None, *body: Send) -> Transition:
         return Transition(event, cond, (Target(target, 1.0, body, origin),), origin)
 
     idle = (
-        on(tick, "wait_tick_res", None, Send(f"bt_{ROOT_NUMBER}_tick", (), origin)),
+        on(tick, "wait_tick_res", None, Send(tree_event(ROOT_NUMBER, "tick"), (), origin)),
         on(ANSWER, "error"),
     )
     if program.parameters.tick_if_not_running:

@@ -41,7 +41,7 @@ from roaml.model.syntax import (
     type_of,
     value_of,
 )
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element
 
@@ -183,9 +183,9 @@ class _Builder:
     def handler(self, element: Element) -> Handler:
         type_ = HL_SCXML.elements[element.name]
         event = name_of(element.get("event")) if "event" in type_.attributes else None
-        trigger = type_.receives
-        if trigger == "event" and element.get("event") is None:
-            trigger = ""
+        trigger: ProtocolPart | None = type_.receives
+        if trigger is ProtocolPart.EVENT and element.get("event") is None:
+            trigger = None
         cond = expression_of(self.document, element.get("cond"))
         handle = self.handle(element, type_)
         child = name_of(element.get("id")) if "id" in type_.attributes else None
@@ -194,7 +194,7 @@ class _Builder:
         )
 
     def targets(self, element: Element, type_: ElementType) -> tuple[Target, ...]:
-        if type_.receives == "goal-response":
+        if type_.receives is ProtocolPart.GOAL_RESPONSE:
             return tuple(Target(None, name_of(element.get(name)), None, ()) for name in ("accept", "reject"))
         choices = [child for child in self.children(element) if child.name == "target"]
         if choices and element.get("target") is None:

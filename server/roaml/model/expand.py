@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
-from roaml.model.tree import TreeFile, TreeNode, blackboard_variable, nodes, port_key
+from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes, port_key
 from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
@@ -160,8 +160,13 @@ def _outlines(root: TreeNode) -> NodeOutline:
 
 def nodes_of(file: TreeFile, tree_id: str) -> tuple[TreeNode, ...]:
     """The nodes of the first tree of that name, by position."""
-    tree = next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
+    tree = tree_called(file, tree_id)
     return tuple(nodes(tree)) if tree else ()
+
+
+def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
+    """The first tree of that name."""
+    return next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
 
 
 def node_at(file: TreeFile, source: Source) -> TreeNode | None:
@@ -307,26 +312,29 @@ def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
     return {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
 
 
-def expand(files: tuple[TreeFileOutline, ...]) -> tuple[Instance, ...]:
-    """All instances of the executed tree in pre-order; none if the tree is ambiguous or too large."""
-    main = main_tree(files)
-    if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
-        return ()
-    return _Expansion(files).run(main)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class _Frame:
-    """One subtree instance: how its names translate to names of the whole blackboard.
+class Frame:
+    """One instance of a tree: how its names translate to names of the whole blackboard.
 
-    `inside` are the trees around the instance and its own.
+    Attributes:
+        use: the `<SubTree>` node that the instance is for; None for the executed tree.
+        word, suffix: its part of `prefix`, `<word><suffix>__`: the name of that node, and what makes it unique.
+        prefix: what the full names of its variables begin with.
+        remapped: the values that its names have from outside.
+        autoremap: whether other names may have values from outside.
+        outer: the instance around it.
+        names: the variables that the nodes of the tree refer to.
+        inside: the trees around the instance and its own.
     """
 
     tree: TreeOutline
+    use: Source | None
+    word: str
+    suffix: str
     prefix: str
     remapped: Mapping[str, PortValue]
     autoremap: bool
-    outer: _Frame | None
+    outer: Frame | None
     names: frozenset[str]
     inside: frozenset[str]
 
@@ -348,6 +356,29 @@ class _Frame:
         return Constant(text) if variable is None else self.resolve(variable)
 
 
+@dataclass(frozen=True, slots=True)
+class Expansion:
+    """The executed tree.
+
+    Attributes:
+        instances: its nodes in pre-order.
+        frames: the instances of trees that it consists of, the executed tree first; each after the one around it.
+        frame_of: the number of a node -> the instance of a tree that the node is in.
+    """
+
+    instances: tuple[Instance, ...] = ()
+    frames: tuple[Frame, ...] = ()
+    frame_of: Mapping[int, Frame] = field(default_factory=dict)
+
+
+def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
+    """The executed tree; it is empty if it cannot be told which tree that is, or if there are too many nodes."""
+    main = main_tree(files)
+    if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
+        return Expansion()
+    return _Expander(files).run(main)
+
+
 @dataclass(slots=True)
 class _Placed:
     """An instance whose children are not created yet."""
@@ -361,7 +392,7 @@ class _Placed:
     children: list[int]
 
 
-class _Expansion:
+class _Expander:
     """Works with an explicit stack: subtrees may be nested more deeply than Python's call stack allows."""
 
     def __init__(self, files: tuple[TreeFileOutline, ...]) -> None:
@@ -372,62 +403,74 @@ class _Expansion:
                 self.defaults.setdefault(plugin, {}).setdefault(port, value)
         self.conditions = frozenset(name for file in files for name in file.conditions)
         self.placed: list[_Placed] = []
+        self.frames: list[Frame] = []
+        self.frame_of: dict[int, Frame] = {}
         self.prefixes: set[str] = set()
         self.counts: dict[str, int] = {}
         self.names: dict[str, frozenset[str]] = {}
 
-    def run(self, main: TreeOutline) -> tuple[Instance, ...]:
+    def run(self, main: TreeOutline) -> Expansion:
         assert main.root is not None
-        frame = _Frame(main, "", {}, False, None, self.names_in(main), frozenset((main.id,)))
-        pending: list[tuple[NodeOutline, _Frame, int | None]] = [(main.root, frame, None)]
+        frame = Frame(main, None, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
+        self.frames.append(frame)
+        pending: list[tuple[NodeOutline, Frame, int | None]] = [(main.root, frame, None)]
         while pending:
             node, frame, parent = pending.pop()
             if node.is_subtree:
-                inner = self.trees.get(node.plugin)
+                inner = self.trees.get(node.plugin) if node.plugin else None
                 if inner is not None and inner.root is not None and inner.id not in frame.inside:
                     pending.append((inner.root, self.enter(node, inner, frame), parent))
                 continue
-            number = ROOT_NUMBER + len(self.placed)
-            settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
-            ports = tuple((key, frame.value(text)) for key, text in settings.items())
-            source = Source(frame.tree.path, frame.tree.id, node.position)
-            condition = node.condition or node.plugin in self.conditions
-            name = node.name or node.plugin
-            self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, []))
-            if parent is not None:
-                self.placed[parent - ROOT_NUMBER].children.append(number)
+            number = self.place(node, frame, parent)
             pending += ((child, frame, number) for child in reversed(node.children))
-        return tuple(
+        instances = (
             Instance(
                 number,
-                each.plugin,
-                each.name,
-                each.ports,
-                each.parent,
-                tuple(each.children),
-                each.source,
-                each.condition,
+                placed.plugin,
+                placed.name,
+                placed.ports,
+                placed.parent,
+                tuple(placed.children),
+                placed.source,
+                placed.condition,
             )
-            for number, each in enumerate(self.placed, ROOT_NUMBER)
+            for number, placed in enumerate(self.placed, ROOT_NUMBER)
         )
+        return Expansion(tuple(instances), tuple(self.frames), self.frame_of)
 
-    def enter(self, node: NodeOutline, inner: TreeOutline, frame: _Frame) -> _Frame:
+    def place(self, node: NodeOutline, frame: Frame, parent: int | None) -> int:
+        """The number of a new instance of a node."""
+        number = ROOT_NUMBER + len(self.placed)
+        settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
+        ports = tuple((key, frame.value(text)) for key, text in settings.items())
+        source = Source(frame.tree.path, frame.tree.id, node.position)
+        condition = node.condition or node.plugin in self.conditions
+        self.placed.append(_Placed(node.plugin, node.name or node.plugin, ports, parent, source, condition, []))
+        self.frame_of[number] = frame
+        if parent is not None:
+            self.placed[parent - ROOT_NUMBER].children.append(number)
+        return number
+
+    def enter(self, node: NodeOutline, inner: TreeOutline, frame: Frame) -> Frame:
         """The frame of a subtree instance: its prefix is unique, its attributes rename variables."""
         attributes = dict(node.attributes)
-        word = re.sub(r"\W", "_", node.name or node.plugin, flags=re.ASCII)
+        word, suffix = re.sub(r"\W", "_", node.name or node.plugin, flags=re.ASCII), ""
         word = word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"
-        wanted = prefix = f"{frame.prefix}{word}__"
+        first = prefix = f"{frame.prefix}{word}__"
         while prefix in self.prefixes:
-            count = self.counts[wanted] = self.counts.get(wanted, 1) + 1
-            prefix = f"{frame.prefix}{word}_{count}__"
+            count = self.counts[first] = self.counts.get(first, 1) + 1
+            suffix = f"_{count}"
+            prefix = f"{frame.prefix}{word}{suffix}__"
         self.prefixes.add(prefix)
         remapped: dict[str, PortValue] = {}
         for name, text in {**self.defaults.get(node.plugin, {}), **attributes}.items():
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
         autoremap = any(attributes.get(name) in ("true", "1") for name in _AUTOREMAP)
-        inside = frame.inside | {inner.id}
-        return _Frame(inner, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
+        use, inside = Source(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
+        entered = Frame(inner, use, word, suffix, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
+        self.frames.append(entered)
+        return entered
 
     def names_in(self, tree: TreeOutline) -> frozenset[str]:
         if tree.id not in self.names:

@@ -21,7 +21,7 @@ from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, Use, find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
@@ -167,20 +167,23 @@ class _Search:
         """The facts of an element if it were of this type."""
         if kind := _kind(type_):
             yield _declared(element, type_, kind)
-        elif type_.sends == "event" or type_.receives == "event":
+        elif type_.sends is ProtocolPart.EVENT or type_.receives is ProtocolPart.EVENT:
             event = meant(element, "event", type_.attributes)
             if type_.sends or event is not None:
                 yield Gap(SENDS if type_.sends else RECEIVES, event.value if event else None)
-        elif (name := type_.attributes.get("name")) is not None and name.refers and (type_.sends or type_.receives):
-            part = type_.sends or type_.receives
+        elif (
+            (name := type_.attributes.get("name")) is not None
+            and name.refers
+            and (part := type_.sends or type_.receives)
+        ):
             handle = meant(element, "name", type_.attributes)
             for kind in name.refers:
                 if kind in INTERFACE_KINDS:
-                    yield from self._over(f"{kind.value} {part}", kind, handle)
+                    yield from self._over(f"{kind.value} {part.value}", kind, handle)
         elif "key" in type_.attributes:
             key = meant(element, "key", type_.attributes)
             yield Gap(PORT, key.value if key else None)
-        elif type_.sends.startswith("bt-") or type_.receives.startswith("bt-") or "child" in type_.sends:
+        elif type_.sends in _IN_TREE or type_.receives in _IN_TREE:
             yield Gap(TREE)
 
     def _over(self, act: str, kind: SymbolKind, handle: Name | None) -> Iterator[Gap]:
@@ -237,7 +240,7 @@ class _Search:
         if unknown:
             span = declaration.type.span if declaration.type else element.name_span
             for part in _PARTS[declaration.kind]:
-                yield PlacedGap(_about(f"{declaration.kind.value} {part} field", declaration), span)
+                yield PlacedGap(_about(f"{declaration.kind.value} {part.value} field", declaration), span)
 
     def _statements(self) -> Iterator[PlacedGap]:
         owners: dict[Element, Communicate] = {}
@@ -247,7 +250,7 @@ class _Search:
                     yield from self._send(statement)
                 elif isinstance(statement, Communicate):
                     owners |= {field.element: statement for field in statement.fields}
-                    yield from self._user(statement, statement.type.sends)
+                    yield from self._user(statement, statement.part)
                     if any(field.name is None for field in statement.fields):
                         yield from (PlacedGap(g, statement.element.name_span) for g in self._fields(statement))
         # A field of unknown type does not exist in the ROS type, or the ROS type is unknown.
@@ -267,10 +270,10 @@ class _Search:
     def _fields(self, statement: Communicate) -> Iterator[Gap]:
         declaration = find_handle(self.machine, statement)
         for kind in statement.type.attributes["name"].refers:
-            act = f"{kind.value} {statement.type.sends} field"
+            act = f"{kind.value} {statement.part.value} field"
             yield _about(act, declaration) if declaration is not None else Gap(act)
 
-    def _user(self, user: Communicate | Handler, part: str) -> Iterator[PlacedGap]:
+    def _user(self, user: Communicate | Handler, part: ProtocolPart) -> Iterator[PlacedGap]:
         """An element that refers to no declaration, or to one of another kind."""
         name = user.type.attributes.get("name")
         kinds = [kind for kind in name.refers if kind in INTERFACE_KINDS] if name else []
@@ -280,7 +283,7 @@ class _Search:
         handle = user.handle or meant(user.element, "name", user.type.attributes)
         span = user.handle.span if user.handle else user.element.name_span
         for kind in kinds:
-            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind.value} {part}", kind, handle))
+            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind.value} {part.value}", kind, handle))
             if declaration is not None and declaration.kind in INTERFACE_KINDS:
                 # The declaration may be wrong.
                 yield PlacedGap(_about(kind.value, declaration), span)
@@ -289,7 +292,7 @@ class _Search:
         for chart in self.machine.charts:
             for state in chart.states:
                 for handler in state.handlers:
-                    if handler.effective and handler.type.receives != "event":
+                    if handler.effective and handler.trigger not in (None, ProtocolPart.EVENT):
                         yield from self._user(handler, handler.trigger)
                     elif handler.effective and handler.event is None:
                         event = meant(handler.element, "event", handler.type.attributes)
@@ -311,6 +314,15 @@ class _Search:
                     yield PlacedGap(Gap(PORT), statement.element.name_span)
 
 
+_IN_TREE = (
+    ProtocolPart.BT_TICK,
+    ProtocolPart.BT_HALT,
+    ProtocolPart.BT_STATUS,
+    ProtocolPart.BT_HALTED,
+    ProtocolPart.CHILD_TICK,
+    ProtocolPart.CHILD_HALT,
+)
+
 OTHER_SIDE: Mapping[SymbolKind, SymbolKind] = {
     SymbolKind.PUBLISHER: SymbolKind.SUBSCRIBER,
     SymbolKind.SUBSCRIBER: SymbolKind.PUBLISHER,
@@ -321,13 +333,13 @@ OTHER_SIDE: Mapping[SymbolKind, SymbolKind] = {
 }
 """The opposite kind of each kind of declaration."""
 
-_PARTS: Mapping[SymbolKind, tuple[str, ...]] = {
-    SymbolKind.PUBLISHER: ("message",),
+_PARTS: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
+    SymbolKind.PUBLISHER: (ProtocolPart.MESSAGE,),
     SymbolKind.SUBSCRIBER: (),
-    SymbolKind.SERVICE_CLIENT: ("request", "response"),
-    SymbolKind.SERVICE_SERVER: ("request", "response"),
-    SymbolKind.ACTION_CLIENT: ("goal", "feedback", "result"),
-    SymbolKind.ACTION_SERVER: ("goal", "feedback", "result"),
+    SymbolKind.SERVICE_CLIENT: (ProtocolPart.REQUEST, ProtocolPart.RESPONSE),
+    SymbolKind.SERVICE_SERVER: (ProtocolPart.REQUEST, ProtocolPart.RESPONSE),
+    SymbolKind.ACTION_CLIENT: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
+    SymbolKind.ACTION_SERVER: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
 }
 """The parts of an interface with fields in the translation, which the other side may use."""
 

@@ -15,9 +15,9 @@ from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import INTERFACE_KINDS
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 
 FIELD_PREFIX = "ros_fields__"
 
@@ -77,8 +77,8 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
             yield event.name, symbol, [(p.name.replace(".", "__"), p.type) for p in sent.params]
     for topic in system.topics.values():
         for endpoint in topic.sources:
-            if "message" in endpoint.use.sends:
-                yield f"topic_{topic.name}_msg", endpoint.symbol, _sent(endpoint.use, "message")
+            if ProtocolPart.MESSAGE in endpoint.use.sends:
+                yield f"topic_{topic.name}_msg", endpoint.symbol, _sent(endpoint.use, ProtocolPart.MESSAGE)
     if system.has_timer:
         clock = ((f"{FIELD_PREFIX}sec", INT), (f"{FIELD_PREFIX}nanosec", INT))
         yield "topic_clock_msg", None, clock
@@ -90,7 +90,7 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
     yield from _blackboard(system)
 
 
-def _sent(use: InterfaceUse, part: str) -> list[tuple[str, Type]]:
+def _sent(use: InterfaceUse, part: ProtocolPart) -> list[tuple[str, Type]]:
     """The fields of a part as parameters, with the types of the values that are sent."""
     return [_field(field) for field in dict(use.fields).get(part, ())]
 
@@ -114,13 +114,13 @@ def _service(service: Channel, interface: FindInterface) -> Iterator[_Event]:
     for client in service.users:
         who = safe_name(client.automaton.name)
         request, response = (_declared(client.use, part, interface) for part in ("request", "response"))
-        if "request" in client.use.sends:
-            yield f"{name}_req_client_{who}", client.symbol, _sent(client.use, "request")
+        if ProtocolPart.REQUEST in client.use.sends:
+            yield f"{name}_req_client_{who}", client.symbol, _sent(client.use, ProtocolPart.REQUEST)
         yield f"{name}_request", client.symbol, request
         yield f"{name}_response_client_{who}", client.symbol, response
     for server in service.sources:
-        if "response" in server.use.sends:
-            yield f"{name}_response", server.symbol, _sent(server.use, "response")
+        if ProtocolPart.RESPONSE in server.use.sends:
+            yield f"{name}_response", server.symbol, _sent(server.use, ProtocolPart.RESPONSE)
 
 
 _GOAL_ID = ("goal_id", BASE_TYPES["int32"])
@@ -133,24 +133,24 @@ def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
     for client in action.users:
         yield from _action_client(name, client, interface)
     for server in action.sources:
-        sent: dict[str, list[tuple[str, Type]]] = {
-            "goal-accepted": [_GOAL_ID],
-            "goal-rejected": [_GOAL_ID],
-            "feedback": [*_sent(server.use, "feedback"), _GOAL_ID],
-            "result": [*_sent(server.use, "result"), _GOAL_ID, _CODE],
-            "thread-start": [*_sent(server.use, "thread-start"), _GOAL_ID, _THREAD_ID],
-            "thread-free": [_THREAD_ID],
+        sent: dict[ProtocolPart, list[tuple[str, Type]]] = {
+            ProtocolPart.GOAL_ACCEPTED: [_GOAL_ID],
+            ProtocolPart.GOAL_REJECTED: [_GOAL_ID],
+            ProtocolPart.FEEDBACK: [*_sent(server.use, ProtocolPart.FEEDBACK), _GOAL_ID],
+            ProtocolPart.RESULT: [*_sent(server.use, ProtocolPart.RESULT), _GOAL_ID, _CODE],
+            ProtocolPart.THREAD_START: [*_sent(server.use, ProtocolPart.THREAD_START), _GOAL_ID, _THREAD_ID],
+            ProtocolPart.THREAD_FREE: [_THREAD_ID],
         }
         for part in server.use.sends:
             if part in sent:
-                yield f"{name}_{part.replace('-', '_')}", server.symbol, sent[part]
+                yield f"{name}_{part.value.replace('-', '_')}", server.symbol, sent[part]
 
 
 def _action_client(name: str, client: Endpoint, interface: FindInterface) -> Iterator[_Event]:
     who, symbol = safe_name(client.automaton.name), client.symbol
     goal, feedback, result = (_declared(client.use, part, interface) for part in ("goal", "feedback", "result"))
-    if "goal" in client.use.sends:
-        yield f"{name}_goal_req_client_{who}", symbol, _sent(client.use, "goal")
+    if ProtocolPart.GOAL in client.use.sends:
+        yield f"{name}_goal_req_client_{who}", symbol, _sent(client.use, ProtocolPart.GOAL)
     yield f"{name}_goal_handle", symbol, [_GOAL_ID, *goal]
     yield f"{name}_goal_accept_client_{who}", symbol, []
     yield f"{name}_goal_reject_client_{who}", symbol, []

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import enum
 import re
+from collections.abc import Mapping
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, Grammar
 
 
 class FileKind(enum.Enum):
@@ -22,6 +23,13 @@ class FileKind(enum.Enum):
     SPECIFICATION = "specification of another tool"
     UNKNOWN = "file of another kind"
 
+
+GRAMMARS: Mapping[FileKind, Grammar] = {
+    FileKind.MACHINE: HL_SCXML,
+    FileKind.SYSTEM: SYSTEM,
+    FileKind.TREE: BEHAVIOR_TREE,
+    FileKind.STRUCTS: STRUCTS,
+}
 
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
 INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")

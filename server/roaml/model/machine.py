@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from roaml.language import ElementType
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -129,6 +129,12 @@ class Communicate:
     goal_id: Expression | None = None
     thread_id: Expression | None = None
 
+    @property
+    def part(self) -> ProtocolPart:
+        """What is sent."""
+        assert self.type.sends is not None
+        return self.type.sends
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReturnStatus:
@@ -183,7 +189,7 @@ class Handler:
     """A transition or a callback that works like one.
 
     Attributes:
-        trigger: what it waits for: "" for nothing (eventless), else the part that its element receives.
+        trigger: the part that it waits for; None for nothing (eventless).
         event: the event of a plain transition.
         handle: the declaration that a ROS callback refers to.
         child: the child index of `bt_child_status` and `bt_child_halted`.
@@ -194,7 +200,7 @@ class Handler:
 
     element: Element
     type: ElementType
-    trigger: str
+    trigger: ProtocolPart | None
     event: Name | None
     handle: Name | None
     child: Name | None
@@ -204,7 +210,7 @@ class Handler:
 
     @property
     def is_probabilistic(self) -> bool:
-        return len(self.targets) > 1 and self.trigger != "goal-response"
+        return len(self.targets) > 1 and self.trigger is not ProtocolPart.GOAL_RESPONSE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -32,7 +32,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, Use, find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -71,9 +71,9 @@ class InterfaceUse:
     name: str
     port: str
     type: str
-    sends: frozenset[str]
-    receives: frozenset[str]
-    fields: tuple[tuple[str, tuple[SentField, ...]], ...]
+    sends: frozenset[ProtocolPart]
+    receives: frozenset[ProtocolPart]
+    fields: tuple[tuple[ProtocolPart, tuple[SentField, ...]], ...]
     awaited: bool = False
 
 
@@ -194,7 +194,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         tuple(
             EventReceived(handler.event.value, frozenset(reads[handler]))
             for handler in _handlers(machine)
-            if handler.trigger == "event" and handler.event
+            if handler.trigger is ProtocolPart.EVENT and handler.event
         ),
         _timers(machine),
         tuple(
@@ -242,12 +242,12 @@ def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
 
 
 def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type]) -> tuple[InterfaceUse, ...]:
-    sends: defaultdict[Element, set[str]] = defaultdict(set)
-    receives: defaultdict[Element, set[str]] = defaultdict(set)
-    fields: defaultdict[Element, dict[str, dict[str, Type]]] = defaultdict(dict)
+    sends: defaultdict[Element, set[ProtocolPart]] = defaultdict(set)
+    receives: defaultdict[Element, set[ProtocolPart]] = defaultdict(set)
+    fields: defaultdict[Element, dict[ProtocolPart, dict[str, Type]]] = defaultdict(dict)
     for statement in _executed(machine):
         if isinstance(statement, Communicate) and (declaration := find_handle(machine, statement)):
-            part = statement.type.sends
+            part = statement.part
             sends[declaration.element].add(part)
             known = fields[declaration.element].setdefault(part, {})
             for field in statement.fields:
@@ -256,7 +256,7 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
             for path, type_ in typed.unset.get(statement.element, ()):
                 known.setdefault(path, EMPTY_ARRAY if isinstance(type_, Array) else type_)
     for handler in _handlers(machine):
-        if declaration := find_handle(machine, handler):
+        if handler.trigger and (declaration := find_handle(machine, handler)):
             receives[declaration.element].add(handler.trigger)
     return tuple(
         InterfaceUse(
@@ -301,7 +301,7 @@ def _timers(machine: Machine) -> tuple[TimerOutline, ...]:
     users = {
         name: sum(
             any(
-                handler.trigger == "tick" and handler.handle and handler.handle.value == name
+                handler.trigger is ProtocolPart.TICK and handler.handle and handler.handle.value == name
                 for state in chart.states
                 for handler in state.handlers
             )
@@ -333,14 +333,14 @@ def _plugin(machine: Machine) -> PluginOutline:
     literal = [index for index in indexes if index is not None]
     ticked = [_index(call.child) for call in calls if not call.halts]
     return PluginOutline(
-        "bt-tick" in triggers,
-        "bt-halt" in triggers,
+        ProtocolPart.BT_TICK in triggers,
+        ProtocolPart.BT_HALT in triggers,
         any(isinstance(statement, ReturnStatus) for statement in statements),
         any(isinstance(statement, ReturnHalted) for statement in statements),
         max(literal, default=-1) + 1,
         len(literal) < len(indexes),
         None if None in ticked else frozenset(index for index in ticked if index is not None),
-        any(call.halts for call in calls if call.child) and "child-halted" in triggers,
+        any(call.halts for call in calls if call.child) and ProtocolPart.CHILD_HALTED in triggers,
     )
 
 
@@ -354,7 +354,7 @@ def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
     found: defaultdict[Handler, set[str]] = defaultdict(set)
     for value in typed.values:
         handler = value.place.handler
-        if handler is not None and handler.trigger == "event" and isinstance(value.value, Expression):
+        if handler is not None and handler.trigger is ProtocolPart.EVENT and isinstance(value.value, Expression):
             found[handler].update(event_parameters(value.value.tree))
     return found
 

@@ -35,7 +35,7 @@ from roaml.model.machine import (
 )
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -151,7 +151,7 @@ def type_machine(
     typer = _Typer(machine, environment)
     for value in without_events.values if without_events else ():
         handler = value.place.handler
-        if handler is not None and handler.trigger != "event":
+        if handler is not None and handler.trigger is not ProtocolPart.EVENT:
             typer.taken_over.setdefault(handler, []).append(value)
     for chart in machine.charts:
         typer.chart(chart)
@@ -174,12 +174,14 @@ def bindings(handler: Handler, part: str, machine: Machine, environment: Environ
 def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
     """The event variables available in a part of a handler (docs/spec/machines.md#event-variables): a transition
     without event has none."""
-    if handler.trigger == "":
+    if handler.trigger is None:
         return ()
     return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
 
 
 def event_variable(binding: Binding, handler: Handler, machine: Machine, environment: Environment) -> Type:
+    if handler.trigger is None:
+        return UNKNOWN
     match binding.name:
         case "_action":
             return Struct("", (("goal_id", GOAL_ID),), "goal handle")
@@ -195,18 +197,20 @@ def event_variable(binding: Binding, handler: Handler, machine: Machine, environ
 
 def _event_data(handler: Handler, environment: Environment) -> Type:
     match handler.trigger:
-        case "child-status":
+        case ProtocolPart.CHILD_STATUS:
             return Struct("", (("status", STATUS),), "event data")
-        case "thread-free":
+        case ProtocolPart.THREAD_FREE:
             return Struct("", (("thread_id", GOAL_ID),), "event data")
-        case "event":
+        case ProtocolPart.EVENT:
             data = environment.event_data(handler.event.value) if handler.event else None
             return UNKNOWN if data is None else data
     return Struct("", (), "event data")
 
 
-SECTIONS = {"thread-start": "goal"}
-"""Parts of the protocol that contain another part's fields."""
+def section_of(part: ProtocolPart) -> str:
+    """The section of the ROS definition whose fields a part carries."""
+    return "goal" if part is ProtocolPart.THREAD_START else part.value
+
 
 INTERFACE_KINDS: Mapping[SymbolKind, Kind] = {
     SymbolKind.PUBLISHER: "msg",
@@ -239,12 +243,12 @@ def find_handle(machine: Machine, user: Handler | Communicate) -> Declaration | 
     return right[0] if right else (named[0] if named else None)
 
 
-def interface_part(part: str, declaration: Declaration | None, environment: Environment) -> Type:
+def interface_part(part: ProtocolPart, declaration: Declaration | None, environment: Environment) -> Type:
     """The struct of fields of `part` of the declared interface; unknown if it cannot be determined."""
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
         return UNKNOWN
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-    section = SECTIONS.get(part, part)
+    section = section_of(part)
     own = dict(interface.parts).get(section, UNKNOWN) if interface else UNKNOWN
     if (
         declaration.kind is SymbolKind.SUBSCRIBER
@@ -278,7 +282,7 @@ def unset_fields(statement: Communicate, machine: Machine, environment: Environm
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     if interface is None:
         return ()
-    part = SECTIONS.get(statement.type.sends, statement.type.sends)
+    part = section_of(statement.part)
     given = {field.name.value for field in statement.fields if field.name}
     types = {".".join(path): type_ for path, type_ in leaves(interface.part(part))}
     return tuple((path, types[path]) for path in interface.required(part) if path not in given)
@@ -436,7 +440,7 @@ class _Body:
 
     def communicate(self, statement: Communicate) -> None:
         declaration = find_handle(self.typer.machine, statement)
-        part = interface_part(statement.type.sends, declaration, self.typer.environment)
+        part = interface_part(statement.part, declaration, self.typer.environment)
         for param in statement.fields:
             wanted = _leaf(part, param.name.value) if param.name else None
             self.param(Use.FIELD, param, wanted)

@@ -119,6 +119,7 @@ class Analysis:
         systems: the paths of the system files that count.
         overrides: parameters in place of those that stand in system files.
         trees: what is configured for trees that belong to no system.
+        listed: the files of the workspace.
     """
 
     def __init__(
@@ -129,7 +130,9 @@ class Analysis:
         systems: Iterable[str],
         overrides: Overrides = NO_OVERRIDES,
         trees: TreeSettings = NEWEST,
+        listed: Iterable[str] = (),
     ) -> None:
+        self._listed_files = tuple(listed)
         self.overrides = overrides
         self.tree_settings = trees
         self.files = files
@@ -155,6 +158,14 @@ class Analysis:
         if source is None:
             return FileKind.UNKNOWN
         return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
+
+    def kind_in(self, path: str, system: str | None) -> FileKind:
+        """The kind of a file: by its content, otherwise as a system lists it."""
+        kind = self.kind(path)
+        if kind is not FileKind.UNKNOWN or system is None:
+            return kind
+        listed = (file.found for file in self.listed(system) if file.path == path)
+        return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
 
     def document(self, path: str) -> Document | None:
         return self._of("document", path, lambda source: parse_xml(source.text))
@@ -400,6 +411,41 @@ class Analysis:
                     return place
         return None
 
+    def family(self, path: str) -> tuple[str, ...]:
+        """The tree files that belong to no system and are connected with one by includes, in whichever direction;
+        those that no other includes come first."""
+        return tuple(file.path for file in self.family_outlines(path))
+
+    def family_outlines(self, path: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the family of a tree file."""
+        outlines: dict[str, TreeFileOutline] = {}
+        for top in self._tops.get(path, (path,)):
+            for file in self.outlines_from(top):
+                outlines.setdefault(file.path, file)
+        return tuple(outlines.values())
+
+    @cached_property
+    def _tops(self) -> Mapping[str, tuple[str, ...]]:
+        """Tree file -> those of its family that no other includes."""
+        files = [p for p in self._listed_files if self.kind(p) is FileKind.TREE and p not in self.memberships]
+        linked: dict[str, set[str]] = {}
+        included: set[str] = set()
+        for file in files:
+            for target in self.includes(file):
+                linked.setdefault(file, set()).add(target)
+                linked.setdefault(target, set()).add(file)
+                included.add(target)
+        found: dict[str, tuple[str, ...]] = {}
+        for file in linked:
+            if file not in found:
+                members, pending = {file}, [file]
+                while pending:
+                    new = linked.get(pending.pop(), set()) - members
+                    members |= new
+                    pending += new
+                found.update(dict.fromkeys(members, tuple(sorted(members - included) or sorted(members))))
+        return found
+
     def forest(self, path: str) -> Forest | None:
         """A tree file that belongs to no system, with what it is seen with."""
         if self.tree(path) is None:
@@ -422,6 +468,10 @@ class Analysis:
         """
         listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
         return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
+
+    def systems_of(self, path: str) -> tuple[str | None, ...]:
+        """The systems in which a file is analysed; (None) if it is in none."""
+        return self.memberships.get(path, ()) or (None,)
 
     @cached_property
     def memberships(self) -> Mapping[str, tuple[str, ...]]:
@@ -494,7 +544,7 @@ class Analysis:
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
-        instances = expand(trees)
+        instances = expand(trees).instances
         return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:

@@ -19,12 +19,12 @@ from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severi
 from roaml.disk import Problem
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, Grammar
+from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import PROJECT_EXTENSION, FileKind
+from roaml.model.kinds import GRAMMARS, PROJECT_EXTENSION, FileKind
 from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
@@ -60,15 +60,10 @@ _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
 _OF_CONFIGURATION = (TOML_SYNTAX.code, INVALID_SETTING.code)
 
-_GRAMMARS: dict[FileKind, Grammar] = {
-    FileKind.SYSTEM: SYSTEM,
-    FileKind.TREE: BEHAVIOR_TREE,
-    FileKind.STRUCTS: STRUCTS,
-}
-_XML_KINDS = (*_GRAMMARS, FileKind.MACHINE, FileKind.SPECIFICATION, FileKind.UNKNOWN)
+_XML_KINDS = (*GRAMMARS, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
 
-class Checker:
+class RuleRunner:
     """Says what is wrong with the files of one moment."""
 
     def __init__(self, analysis: Analysis, settings: Settings) -> None:
@@ -135,19 +130,11 @@ class Checker:
         if len(source.text) > MAX_CHARACTERS:
             return (_too_large(source),)
         try:
-            run = _Run(self.analysis, path, source, self._kind(path, system), system, self.settings.limits)
+            run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # a crash in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
             return (internal_error("model", error),)
-
-    def _kind(self, path: str, system: str | None) -> FileKind:
-        """The kind of a file: by its content, otherwise as a system lists it."""
-        kind = self.analysis.kind(path)
-        if kind is not FileKind.UNKNOWN or system is None:
-            return kind
-        listed = (f.found for f in self.analysis.listed(system) if f.path == path)
-        return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
 
     def _wanted(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
@@ -344,7 +331,7 @@ class _Run:
             if self.analysis.machine(self.path) is None:
                 return None
             return PLAIN_SCXML if self._dialect() in (Dialect.PLAIN, Dialect.FOREIGN) else HL_SCXML
-        return _GRAMMARS.get(self.kind)
+        return GRAMMARS.get(self.kind)
 
     def _older(self) -> bool:
         if self.kind is FileKind.MACHINE and self.analysis.machine(self.path) is not None:

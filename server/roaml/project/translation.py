@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.jani.properties import Property
-from roaml.lower import Program
+from roaml.lower import TranslatableSystem
 from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
@@ -22,7 +22,7 @@ def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     return tuple(each for file in files for each in analysis.properties(file)[0])
 
 
-def program_of(analysis: Analysis, path: str) -> Program:
+def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
     """The system file at `path`, which must have no errors, with all its files."""
     system, file = analysis.system(path), analysis.system_file(path)
     assert system is not None
@@ -38,7 +38,9 @@ def program_of(analysis: Analysis, path: str) -> Program:
         if source.position < len(written[key]):
             nodes[instance.number] = Location(source.path, written[key][source.position].element.span)
     place = Location(path, file.element.name_span)
-    return Program(system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters)
+    return TranslatableSystem(
+        system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters
+    )
 
 
 def size_of_translation(analysis: Analysis, path: str) -> Size | None:
@@ -48,7 +50,7 @@ def size_of_translation(analysis: Analysis, path: str) -> Size | None:
         return None
     machines = _machines(analysis, system)
     environment, place = analysis.environment(path), Location(path, file.element.name_span)
-    program = Program(system, machines, environment, place, {}, system.parameters)
+    program = TranslatableSystem(system, machines, environment, place, {}, system.parameters)
     key = (system, tuple(machines.items()))
     return analysis.memo.get("size", path, key, lambda: size_of(program, analysis.globals(path)))
 

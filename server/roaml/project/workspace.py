@@ -15,7 +15,7 @@ from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
-from roaml.project.checking import Checker
+from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
 from roaml.project.memo import Memo, go_on
@@ -33,7 +33,7 @@ class Snapshot:
     def __init__(
         self,
         analysis: Analysis,
-        checker: Checker,
+        checker: RuleRunner,
         listed: tuple[str, ...],
         opened: Iterable[str],
         again: Callable[[Mapping[str, SourceFile]], Snapshot],
@@ -140,8 +140,9 @@ class Workspace:
         new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
-        analysis = Analysis(files, registry, memo, systems, self.settings.overrides, self.settings.trees)
-        return Snapshot(analysis, Checker(analysis, self.settings), self._listed, new, again)
+        listed, settings = (*self._listed, *new), self.settings
+        analysis = Analysis(files, registry, memo, systems, settings.overrides, settings.trees, listed)
+        return Snapshot(analysis, RuleRunner(analysis, self.settings), self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
         """A system that is named is part of the workspace, with the folder that really contains it."""

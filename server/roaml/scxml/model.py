@@ -32,6 +32,37 @@ class Role(enum.Enum):
     CLOCK = "clock"
 
 
+class EventRole(enum.Enum):
+    """What an event is for; the translation to JANI treats some differently (docs/spec/jani.md#event-automata)."""
+
+    PLAIN = "plain"
+    """A receiver that does not wait for it discards it."""
+    BLOCKING = "blocking"
+    """It waits for its receivers."""
+    TIMER_TICK = "tick of a timer"
+    CLOCK_STEP = "step of the clock"
+    BLACKBOARD_READ = "question to the blackboard"
+    BLACKBOARD_WRITE = "write to the blackboard"
+
+    @property
+    def is_synchronising(self) -> bool:
+        """Whether the event waits for its receivers (docs/spec/jani.md#synchronising-names)."""
+        return self in (EventRole.BLOCKING, EventRole.CLOCK_STEP)
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether the event has neither buffer nor variables."""
+        return self in (EventRole.TIMER_TICK, EventRole.CLOCK_STEP)
+
+
+@dataclass(frozen=True, slots=True)
+class ScxmlEvent:
+    """An event by name. Events of the same name have the same role."""
+
+    name: str
+    role: EventRole = EventRole.PLAIN
+
+
 @dataclass(frozen=True, slots=True)
 class Data:
     """A variable; `value` is a constant expression."""
@@ -60,7 +91,7 @@ class Param:
 
 @dataclass(frozen=True, slots=True)
 class Send:
-    event: str
+    event: ScxmlEvent
     params: tuple[Param, ...]
     origin: Location
 
@@ -97,9 +128,9 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """Taken on `event` ("" for none), if `cond` holds and that of no earlier transition on the same event does."""
+    """On `event` (None for none), if `cond` holds and that of no earlier transition on the same event does."""
 
-    event: str
+    event: ScxmlEvent | None
     cond: Expr | None
     targets: tuple[Target, ...]
     origin: Location

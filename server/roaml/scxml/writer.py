@@ -26,14 +26,14 @@ DELAY = "1"
 _INDENT = "    "
 
 
-class Line(NamedTuple):
+class WrittenLine(NamedTuple):
     """A line without its terminator, and the place in the models from which it comes."""
 
     text: str
     origin: Location
 
 
-Lines = Iterator[Line]
+Lines = Iterator[WrittenLine]
 
 
 def write(network: Network) -> Iterator[tuple[str, str]]:
@@ -56,7 +56,7 @@ def _receivers(network: Network) -> dict[str, list[str]]:
         for state in automaton.states:
             for transition in state.transitions:
                 if transition.event:
-                    found.setdefault(transition.event, {})[automaton.name] = None
+                    found.setdefault(transition.event.name, {})[automaton.name] = None
     return {event: list(names) for event, names in found.items()}
 
 
@@ -77,18 +77,18 @@ class _Writer:
             datamodel="ecmascript",
             initial=automaton.initial,
         )
-        yield Line(f"<scxml{root}>", automaton.origin)
+        yield WrittenLine(f"<scxml{root}>", automaton.origin)
         yield from _indented(_element("datamodel", {}, self.datamodel(), automaton.origin))
         for state in automaton.states:
             yield from _indented(self.state(state))
-        yield Line("</scxml>", automaton.origin)
+        yield WrittenLine("</scxml>", automaton.origin)
 
     def datamodel(self) -> Lines:
         for data in self.automaton.data:
             yield from _data(data)
         if self.draws:
-            yield Line(f"<!-- TYPE {self.drawn}:float64 -->", self.automaton.origin)
-            yield Line(f"<data{_attributes(id=self.drawn, expr='0.0')}/>", self.automaton.origin)
+            yield WrittenLine(f"<!-- TYPE {self.drawn}:float64 -->", self.automaton.origin)
+            yield WrittenLine(f"<data{_attributes(id=self.drawn, expr='0.0')}/>", self.automaton.origin)
 
     # ------------------------------------------------------------------- states
 
@@ -100,11 +100,11 @@ class _Writer:
         ]
         for transition in state.transitions:
             if len(transition.targets) == 1:
-                lines += self.transition(transition.event, _cond(transition), transition.targets[0])
+                lines += self.transition(_event(transition), _cond(transition), transition.targets[0])
             else:
                 drawing.append((_fresh(f"{state.id}_draw_{len(drawing) + 1}", self.ids), transition))
                 self.ids.add(drawing[-1][0])
-                attributes = {"event": transition.event, "cond": _cond(transition), "target": drawing[-1][0]}
+                attributes = {"event": _event(transition), "cond": _cond(transition), "target": drawing[-1][0]}
                 lines += _element("transition", attributes, (), transition.origin)
         yield from _element("state", {"id": state.id}, lines, state.origin, always=True)
         for identifier, transition in drawing:
@@ -113,7 +113,7 @@ class _Writer:
     def draw(self, identifier: str, transition: Transition) -> Lines:
         """The state that chooses one of several targets."""
         origin = transition.origin
-        assign = Line(f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>", origin)
+        assign = WrittenLine(f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>", origin)
         lines = [*_element("onentry", {}, (assign,), origin)]
         bound = 0.0
         for target in transition.targets[:-1]:
@@ -133,7 +133,7 @@ class _Writer:
             match statement:
                 case Assign():
                     location, value = format_expr(statement.location), format_expr(statement.value)
-                    yield Line(f"<assign{_attributes(location=location, expr=value)}/>", statement.origin)
+                    yield WrittenLine(f"<assign{_attributes(location=location, expr=value)}/>", statement.origin)
                 case Send():
                     yield from self.send(statement)
                 case If():
@@ -141,31 +141,35 @@ class _Writer:
 
     def send(self, statement: Send) -> Lines:
         params = [
-            Line(f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>", param.origin)
+            WrittenLine(f"<param{_attributes(name=param.name, expr=format_expr(param.value))}/>", param.origin)
             for param in statement.params
         ]
-        for target in self.receivers.get(statement.event, (NOBODY,)):
-            attributes = {"event": statement.event, "target": target}
+        for target in self.receivers.get(statement.event.name, (NOBODY,)):
+            attributes = {"event": statement.event.name, "target": target}
             if self.automaton.role is Role.CLOCK and target == self.automaton.name:
                 attributes["delay"] = DELAY
             yield from _element("send", attributes, params, statement.origin, always=True)
 
     def choice(self, statement: If) -> Lines:
         first, *others = statement.branches
-        yield Line(f"<if{_attributes(cond=format_expr(first.cond))}>", statement.origin)
+        yield WrittenLine(f"<if{_attributes(cond=format_expr(first.cond))}>", statement.origin)
         yield from _indented(self.body(first.body))
         for branch in others:
-            yield Line(f"<elseif{_attributes(cond=format_expr(branch.cond))}/>", branch.origin)
+            yield WrittenLine(f"<elseif{_attributes(cond=format_expr(branch.cond))}/>", branch.origin)
             yield from _indented(self.body(branch.body))
         if statement.otherwise:
-            yield Line("<else/>", statement.origin)
+            yield WrittenLine("<else/>", statement.origin)
             yield from _indented(self.body(statement.otherwise))
-        yield Line("</if>", statement.origin)
+        yield WrittenLine("</if>", statement.origin)
 
 
 def _data(data: Data) -> Lines:
-    yield Line(f"<!-- TYPE {data.id}:{data.type} -->", data.origin)
-    yield Line(f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>", data.origin)
+    yield WrittenLine(f"<!-- TYPE {data.id}:{data.type} -->", data.origin)
+    yield WrittenLine(f"<data{_attributes(id=data.id, expr=format_expr(data.value))}/>", data.origin)
+
+
+def _event(transition: Transition) -> str:
+    return transition.event.name if transition.event else ""
 
 
 def _cond(transition: Transition) -> str:
@@ -180,16 +184,16 @@ def _fresh(wanted: str, taken: Iterable[str]) -> str:
 
 
 def _element(
-    name: str, attributes: Mapping[str, str], content: Iterable[Line], origin: Location, always: bool = False
+    name: str, attributes: Mapping[str, str], content: Iterable[WrittenLine], origin: Location, always: bool = False
 ) -> Lines:
     """An element; without content or attributes it is omitted unless `always`."""
     start, lines = f"<{name}{_attributes(**attributes)}", list(content)
     if lines:
-        yield Line(f"{start}>", origin)
+        yield WrittenLine(f"{start}>", origin)
         yield from _indented(lines)
-        yield Line(f"</{name}>", origin)
+        yield WrittenLine(f"</{name}>", origin)
     elif always or attributes:
-        yield Line(f"{start}/>", origin)
+        yield WrittenLine(f"{start}/>", origin)
 
 
 def _attributes(**attributes: str) -> str:
@@ -200,5 +204,5 @@ def _attributes(**attributes: str) -> str:
 _QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 
-def _indented(lines: Iterable[Line]) -> Lines:
-    return (Line(f"{_INDENT}{line.text}", line.origin) for line in lines)
+def _indented(lines: Iterable[WrittenLine]) -> Lines:
+    return (WrittenLine(f"{_INDENT}{line.text}", line.origin) for line in lines)

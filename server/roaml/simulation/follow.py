@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.translated import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
 from roaml.model.value_types import STATUSES
+from roaml.scxml.names import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
 from roaml.simulation.state import (
     NODE_AUTOMATON,
     EventState,
@@ -18,7 +18,7 @@ from roaml.simulation.state import (
     SystemState,
 )
 from roaml.simulation.words import TREE_EVENT, who
-from roaml.smc.record import Plain, TraceStep, Variable
+from roaml.smc.record import Plain, RecordedVariable, TraceStep
 from roaml.views.event_words import said
 from roaml.views.events import EventReader
 from roaml.views.turns import is_inner
@@ -102,7 +102,7 @@ class Follower:
         self,
         step: int,
         locations: Sequence[str],
-        values: Sequence[tuple[Variable, Plain]],
+        values: Sequence[tuple[RecordedVariable, Plain]],
         resting: Sequence[frozenset[str]],
     ) -> SystemState:
         """The state after the steps that were read.

@@ -11,13 +11,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from roaml.smc.batch import Problem
+from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
-from roaml.smc.record import Plain, StepReader, TraceStep, Variable
+from roaml.smc.record import Plain, RecordedVariable, StepReader, TraceStep
 from roaml.smc.standstill import Standstill
 
 
@@ -82,8 +82,8 @@ class Run:
 
     def __init__(
         self,
-        checker: Checker,
-        asked: Asked,
+        checker: ModelChecker,
+        asked: CompiledProperty,
         seed: int,
         trace: int = 0,
         decisions: Iterable[Decision | None] = (),
@@ -115,7 +115,7 @@ class Run:
 
     def _check(self) -> None:
         if self.status == FAULTY:
-            raise self.checker.fault(Problem(self.trace, *self._kernel.problem()))
+            raise self.checker.fault(TraceProblem(self.trace, *self._kernel.problem()))
 
     # ------------------------------------------------------------ moving
 
@@ -231,7 +231,7 @@ class Run:
             for number in range(len(self.legend.layout.instances))
         )
 
-    def values(self) -> list[tuple[Variable, Plain]]:
+    def values(self) -> list[tuple[RecordedVariable, Plain]]:
         """All variables with their values: those of the model first, then those of each instance."""
         storages = [storage for _, storage in self._reader.variables]
         return list(zip((v for v, _ in self._reader.variables), self._reader.values(storages), strict=True))

@@ -9,15 +9,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from roaml.model.translated import TREE_ROOT_PREFIX, received_by, sent_by
+from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome, choices
 from roaml.simulation.follow import Follower
 from roaml.simulation.run import Decision, Run
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import resting
 from roaml.smc.end import End
-from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, Recording, TraceStep
 from roaml.smc.story import Story, clock_times
@@ -111,8 +111,8 @@ class Session:
 
     def __init__(
         self,
-        checker: Checker,
-        asked: Asked,
+        checker: ModelChecker,
+        asked: CompiledProperty,
         seed: int = 0,
         trace: int = 0,
         clock: tuple[str, str] | None = None,

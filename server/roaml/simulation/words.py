@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Mapping
 
 from roaml.jani.model import Automaton
-from roaml.model.translated import BLACKBOARD, CLOCK, CLOCK_ACTION, TREE_ROOT_PREFIX, received_by
 from roaml.model.value_types import STATUSES
+from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, TREE_ROOT_PREFIX, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 

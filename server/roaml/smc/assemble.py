@@ -34,7 +34,7 @@ from roaml.jani.types import ArrayType
 from roaml.smc import shapes
 from roaml.smc.cells import CellAssembler
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage, unsupported
+from roaml.smc.names import Meaning, Storage, StorageNames, unsupported
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.operations import ARITHMETIC, COMPARISONS, MOST, OperatorAssembler
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
@@ -53,7 +53,7 @@ class ExpressionAssembler:
 
     # ------------------------------------------------------------ pieces of code
 
-    def condition(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def condition(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that tests whether `expression` holds."""
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
@@ -63,7 +63,7 @@ class ExpressionAssembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
         return start
 
-    def real_register(self, expression: Expression, names: Names, origin: Origin | None = None) -> int:
+    def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that returns the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)
         value = self.cells.as_real(self.value(expression, names))
@@ -72,7 +72,7 @@ class ExpressionAssembler:
 
     # ------------------------------------------------------------ scalars
 
-    def value(self, node: Expression, names: Names, into: int = -1) -> Operand:
+    def value(self, node: Expression, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar; with `into`, in that register."""
         match node:
             case Integer():
@@ -111,7 +111,7 @@ class ExpressionAssembler:
             case _:
                 raise FaultError(unsupported(node), node.origin)
 
-    def stored(self, node: Expression, kind: str, names: Names, into: int = -1) -> Operand:
+    def stored(self, node: Expression, kind: str, names: StorageNames, into: int = -1) -> Operand:
         """Compute a scalar as a value of `kind`."""
         if kind != REAL:
             return self.value(node, names, into)
@@ -119,12 +119,12 @@ class ExpressionAssembler:
             return self.value(node, names, into)
         return self.cells.as_real(self.value(node, names), into)
 
-    def unary(self, node: Unary, names: Names, into: int) -> Operand:
+    def unary(self, node: Unary, names: StorageNames, into: int) -> Operand:
         if node.operator is UnaryOperator.NOT:
             return self.boolean(node, names, into)
         return self.operators.applied(node, self.value(node.operand, names), into)
 
-    def binary(self, node: Binary, names: Names, into: int) -> Operand:
+    def binary(self, node: Binary, names: StorageNames, into: int) -> Operand:
         op = node.operator
         if op in _LOGICAL or op in COMPARISONS:
             return self.boolean(node, names, into)
@@ -134,7 +134,7 @@ class ExpressionAssembler:
         first = self.value(left, names)
         return self.operators.computed(node, first, self.value(right, names), into)
 
-    def chain(self, node: Binary, names: Names, into: int) -> Operand:
+    def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
         """`a + b + c ...`, of any length."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
@@ -145,7 +145,7 @@ class ExpressionAssembler:
         return result
 
     def conditional(
-        self, test: Expression, then: Expression, otherwise: Expression, names: Names, into: int
+        self, test: Expression, then: Expression, otherwise: Expression, names: StorageNames, into: int
     ) -> Operand:
         kind = REAL if REAL in (shapes.kind(then, names), shapes.kind(otherwise, names)) else shapes.kind(then, names)
         # Not directly into the target: the branches may read it while it is written.
@@ -159,7 +159,7 @@ class ExpressionAssembler:
         self.tape.mark(end)
         return self.cells.moved(Operand(kind, register), into)
 
-    def boolean(self, node: Expression, names: Names, into: int) -> Operand:
+    def boolean(self, node: Expression, names: StorageNames, into: int) -> Operand:
         register = self.tape.temporary(BOOL)
         no, end = Label(), Label()
         self.jump(node, names, no, False)
@@ -172,7 +172,7 @@ class ExpressionAssembler:
 
     # ------------------------------------------------------------ conditions
 
-    def jump(self, node: Expression, names: Names, label: Label, when: bool) -> None:
+    def jump(self, node: Expression, names: StorageNames, label: Label, when: bool) -> None:
         """Jump to `label` if the value of `node` is `when`, otherwise continue."""
         while isinstance(node, Unary) and node.operator is UnaryOperator.NOT:
             node, when = node.operand, not when
@@ -197,7 +197,7 @@ class ExpressionAssembler:
                 else:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
-    def logical(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         """Chains of one operator may have any length."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
@@ -220,14 +220,14 @@ class ExpressionAssembler:
         self.jump(parts[-1], names, label, when)
         self.tape.mark(end)
 
-    def comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         op, left, right = node.operator, node.left, node.right
         if op.signature is Signature.EQUALITY and (shapes.shape(left, names) or shapes.shape(right, names)):
             self.array_comparison(node, names, label, when)
             return
         self.operators.compared(op, self.value(left, names), self.value(right, names), label, when)
 
-    def array_comparison(self, node: Binary, names: Names, label: Label, when: bool) -> None:
+    def array_comparison(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         equal = node.operator is BinaryOperator.EQUAL
         shape, other = shapes.shape(node.left, names), shapes.shape(node.right, names)
         if shape != other:
@@ -247,7 +247,7 @@ class ExpressionAssembler:
 
     # ------------------------------------------------------------ arrays
 
-    def element(self, node: ArrayAccess, names: Names) -> Region:
+    def element(self, node: ArrayAccess, names: StorageNames) -> Region:
         """The part of an array that is accessed; its shape is () for a single element."""
         indexes: list[ArrayAccess] = []
         inner: Expression = node
@@ -260,7 +260,7 @@ class ExpressionAssembler:
             raise FaultError("this is not an array", node.origin)
         return self.indexed(whole, indexes, names)
 
-    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: Names) -> Region:
+    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: StorageNames) -> Region:
         offset = whole.offset
         base, shape = whole.base, whole.shape
         fixed = 0
@@ -287,7 +287,7 @@ class ExpressionAssembler:
             offset = step
         return Region(whole.kind, shape, base + fixed, offset)
 
-    def region(self, node: Expression, names: Names) -> Region:
+    def region(self, node: Expression, names: StorageNames) -> Region:
         """The registers of an array; an array that is not in registers is copied there."""
         match node:
             case Name():
@@ -302,13 +302,13 @@ class ExpressionAssembler:
             case _:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
-    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: Names) -> Region:
+    def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
         """A copy of an array in registers of its own."""
         region = Region(kind, shape, self.tape.room(kind, product(shape)))
         self.fill(node, region, names)
         return region
 
-    def fill(self, node: Expression, into: Region, names: Names, watch: int = -1) -> None:
+    def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
         """Store an array into a region without offset; a smaller one is padded with zeros."""
         match node:
             case ArrayValue(elements):
@@ -349,7 +349,7 @@ class ExpressionAssembler:
             case _:
                 self.cells.copy(self.region(node, names), into, watch, node)
 
-    def put(self, node: Expression, cell: Region, names: Names, watch: int) -> None:
+    def put(self, node: Expression, cell: Region, names: StorageNames, watch: int) -> None:
         """Store a scalar into a single cell."""
         if watch < 0 and cell.offset < 0:
             self.stored(node, cell.kind, names, cell.base)
@@ -358,7 +358,7 @@ class ExpressionAssembler:
 
     # ------------------------------------------------------------ functions
 
-    def called(self, node: Call, names: Names) -> tuple[Expression, Names]:
+    def called(self, node: Call, names: StorageNames) -> tuple[Expression, StorageNames]:
         """The body of a function, and the meaning of its names."""
         function = names.called(node)
         bound: dict[str, Meaning] = {}

@@ -13,7 +13,7 @@ from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Co
 from roaml.jani.node import Origin
 from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Names, Storage, unsupported
+from roaml.smc.names import Storage, StorageNames, unsupported
 from roaml.smc.opcodes import Op
 from roaml.smc.operations import MOST
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
@@ -35,7 +35,7 @@ class AssignmentAssembler:
         self.cells = expressions.cells
         self.expressions = expressions
 
-    def assign(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> None:
+    def assign(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> None:
         """`target := value`, at once."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
@@ -50,7 +50,7 @@ class AssignmentAssembler:
         else:
             self.expressions.put(value, place, names, storage.watch)
 
-    def assigned(self, target: Expression, names: Names) -> tuple[Storage, list[ArrayAccess]]:
+    def assigned(self, target: Expression, names: StorageNames) -> tuple[Storage, list[ArrayAccess]]:
         accesses: list[ArrayAccess] = []
         inner = target
         while isinstance(inner, ArrayAccess):
@@ -66,7 +66,7 @@ class AssignmentAssembler:
         accesses.reverse()
         return storage, accesses
 
-    def assign_array(self, value: Expression, place: Region, names: Names, watch: int) -> None:
+    def assign_array(self, value: Expression, place: Region, names: StorageNames, watch: int) -> None:
         if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
             self.expressions.fill(value, place, names, watch)
             return
@@ -86,7 +86,7 @@ class AssignmentAssembler:
             if watch >= 0:
                 self.tape.emit(Op.NOTE, watch)
 
-    def early(self, target: Expression, value: Expression, names: Names, origin: Origin | None = None) -> Later:
+    def early(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> Later:
         """Compute the value and the target of an assignment; `finish` assigns it."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)

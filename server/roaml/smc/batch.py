@@ -30,7 +30,7 @@ class Payload(NamedTuple):
     data: bytes
 
 
-class Problem(NamedTuple):
+class TraceProblem(NamedTuple):
     """An undefined operation in a trace; see `Kernel.problem`."""
 
     trace: int
@@ -53,7 +53,7 @@ class Task(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class BatchOutcome:
     """The result of a batch: for each trace FALSE, TRUE or UNKNOWN, why it has ended (`End`), its steps, and for
     questions about rewards its reward. A problem ends the batch; its trace is not counted."""
 
@@ -61,7 +61,7 @@ class Outcome:
     ends: bytes
     steps: Ints
     rewards: Reals
-    problem: Problem | None = None
+    problem: TraceProblem | None = None
 
 
 def pack(compiled: Compiled) -> Payload:
@@ -96,7 +96,7 @@ def kernel_of(payload: Payload) -> Kernel:
     return kernel
 
 
-def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
+def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
     """Run the traces of a batch.
 
     Args:
@@ -105,7 +105,7 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
     return run_on(kernel_of(task.payload), task, pulse)
 
 
-def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> Outcome:
+def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
     """The same on a kernel that nothing else uses meanwhile."""
     verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
     for trace in range(task.first, task.first + task.size):
@@ -117,13 +117,13 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
             if pulse is not None and (limit > SLICE or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
-            return Outcome(bytes(verdicts), bytes(ends), steps, rewards, Problem(trace, *kernel.problem()))
+            return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards, TraceProblem(trace, *kernel.problem()))
         length, _, reward = kernel.outcome()
         verdicts.append(verdict)
         ends.append(End.CUT if verdict == UNKNOWN else kernel.ending())
         steps.append(length)
         rewards.append(reward)
-    return Outcome(bytes(verdicts), bytes(ends), steps, rewards)
+    return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards)
 
 
 class StoppedError(Exception):
@@ -154,7 +154,7 @@ def _end_with(sentinel: int) -> None:
     signal.raise_signal(signal.SIGTERM)
 
 
-def run_in_worker(task: Task) -> Outcome:
+def run_in_worker(task: Task) -> BatchOutcome:
     """
     Raises:
         StoppedError: the batch is not wanted any more.

@@ -16,9 +16,9 @@ from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.cells import CellAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.layout import Layout, lay_out
-from roaml.smc.names import Names, Storage
-from roaml.smc.network import Network, Slot, Step, root
+from roaml.smc.layout import MemoryLayout, lay_out
+from roaml.smc.names import Storage, StorageNames
+from roaml.smc.network import CompiledNetwork, EdgeStep, Slot, root
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import Tape
 
@@ -35,7 +35,7 @@ class Legend:
         vectors: the slots of each vector, and its action.
     """
 
-    layout: Layout
+    layout: MemoryLayout
     locations: list[tuple[int, str]]
     ways: list[tuple[Edge, Destination]]
     vectors: list[tuple[list[int], str | None]]
@@ -59,7 +59,7 @@ class Compilation:
         self.assignments = AssignmentAssembler(self.expressions)
         self.layout = lay_out(model, self.tape)
         self.int_count, self.real_count = len(self.tape.ints), len(self.tape.reals)
-        self.network = Network(model, self.layout)
+        self.network = CompiledNetwork(model, self.layout)
         self.watched: list[Storage] = []
         self._watch(formulas)
         self._write()
@@ -67,7 +67,7 @@ class Compilation:
     def _watch(self, formulas: Iterable[Formula]) -> None:
         """Number the variables whose changes must be tracked: those that guards and properties read."""
 
-        def watch(name: str, names: Names) -> None:
+        def watch(name: str, names: StorageNames) -> None:
             meaning = names.values.get(name)
             if isinstance(meaning, Storage) and meaning.watch < 0 and not meaning.is_constant:
                 meaning.watch = len(self.watched)
@@ -98,7 +98,7 @@ class Compilation:
         self.ways: list[tuple[Edge, Destination]] = []
         self.way_source: list[int] = []
         self.group_of: dict[tuple[int, int], int] = {}
-        self.group_steps: list[list[Step]] = []
+        self.group_steps: list[list[EdgeStep]] = []
         self.entangled = [self._is_entangled(slots) for slots, _ in self.network.vectors]
         phased = {s for (slots, _), yes in zip(self.network.vectors, self.entangled, strict=True) if yes for s in slots}
         here: dict[int, list[int]] = {}
@@ -134,7 +134,7 @@ class Compilation:
                     return True
         return False
 
-    def _write_step(self, step: Step, location: int, is_phased: bool) -> None:
+    def _write_step(self, step: EdgeStep, location: int, is_phased: bool) -> None:
         number, _ = self.network.locations[location]
         instance = self.layout.instances[number]
         names = instance.names
@@ -168,7 +168,9 @@ class Compilation:
             self.way_sum[-1] = 1.0
         self.way_start.append(len(self.way_target))
 
-    def _write_assignments(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> int:
+    def _write_assignments(
+        self, assignments: tuple[Assignment, ...], names: StorageNames, origin: Origin | None
+    ) -> int:
         if not assignments:
             return -1
         start = self.tape.begin(origin)
@@ -182,7 +184,7 @@ class Compilation:
         self.cells.end()
         return start
 
-    def _has_hazard(self, group: list[Assignment], names: Names) -> bool:
+    def _has_hazard(self, group: list[Assignment], names: StorageNames) -> bool:
         """Whether one of the simultaneous assignments reads what an earlier one writes."""
         written: set[str] = set()
         for assignment in group:
@@ -191,7 +193,7 @@ class Compilation:
             written.add(root(assignment))
         return False
 
-    def _write_phases(self, assignments: tuple[Assignment, ...], names: Names, origin: Origin | None) -> None:
+    def _write_phases(self, assignments: tuple[Assignment, ...], names: StorageNames, origin: Origin | None) -> None:
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
             self.phase_read.append(self.tape.begin(origin))
@@ -322,7 +324,7 @@ class Compilation:
         """Write code that resets transient variables, and for each location the values that they have in it."""
         model = self.model
         code = [-1] * len(self.network.locations)
-        scopes: list[tuple[Names, Iterable[Storage], Mapping[str, bool]]] = [
+        scopes: list[tuple[StorageNames, Iterable[Storage], Mapping[str, bool]]] = [
             (self.layout.names, self.layout.shared, {v.name: v.transient for v in model.variables})
         ]
         for instance in self.layout.instances:

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from roaml.smc.batch import Problem
+from roaml.smc.batch import TraceProblem
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
 
@@ -17,7 +17,7 @@ MOST_CHOICES = 1 << 20
 """The maximum number of combinations of edges and destinations in one state: some seconds."""
 
 
-class State(NamedTuple):
+class ExploredState(NamedTuple):
     """The locations of all instances, and the values of all variables."""
 
     place: tuple[int, ...]
@@ -25,11 +25,11 @@ class State(NamedTuple):
     reals: tuple[float, ...]
 
 
-class Branch(NamedTuple):
+class Successor(NamedTuple):
     """A successor with its probability."""
 
     probability: float
-    state: State
+    state: ExploredState
 
 
 class TooManyStatesError(Exception):
@@ -43,7 +43,7 @@ class TooManyChoicesError(Exception):
 class StateFaultError(Exception):
     """An undefined operation is executed in a state."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
         self.problem = problem
 
@@ -63,12 +63,12 @@ class Explorer:
         self._kernel.begin(0, 0)
         self.initial = self._state()
 
-    def verdict(self, state: State) -> int:
+    def verdict(self, state: ExploredState) -> int:
         """The verdict on the goal in a state that is reached first."""
         self._kernel.restore(*state)
         return self._kernel.look()
 
-    def choices(self, state: State) -> Iterator[tuple[int, list[Branch]]]:
+    def choices(self, state: ExploredState) -> Iterator[tuple[int, list[Successor]]]:
         """The choices of a state with their successors, and the number of otherwise equal choices.
 
         Raises:
@@ -91,11 +91,11 @@ class Explorer:
                     if probability > 0:
                         self._kernel.restore(*state)
                         if self._kernel.go(vector, list(picks), list(taken)) == FAULTY:
-                            raise StateFaultError(Problem(0, *self._kernel.problem()))
-                        branches.append(Branch(probability, self._state()))
+                            raise StateFaultError(TraceProblem(0, *self._kernel.problem()))
+                        branches.append(Successor(probability, self._state()))
                 yield times, branches
 
-    def reachable(self, limit: int) -> dict[State, int]:
+    def reachable(self, limit: int) -> dict[ExploredState, int]:
         """All states with the verdict on the goal; states after a decided one are not explored.
 
         Raises:
@@ -117,7 +117,7 @@ class Explorer:
                         waiting.append(successor)
         return found
 
-    def _state(self) -> State:
+    def _state(self) -> ExploredState:
         ints, reals = self._kernel.snapshot()
         place = tuple(self._kernel.location(i) for i in range(self._instances))
-        return State(place, tuple(ints), tuple(reals))
+        return ExploredState(place, tuple(ints), tuple(reals))

@@ -92,7 +92,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class CompiledProperty:
     """A property with its question and its goal."""
 
     property: Property
@@ -100,7 +100,7 @@ class Asked:
     goal: Goal
 
 
-def ask(compilation: Compilation, property_: Property) -> Asked:
+def ask(compilation: Compilation, property_: Property) -> CompiledProperty:
     """Compile a property.
 
     Raises:
@@ -114,7 +114,7 @@ STUCK_PROPERTY = "stuck"
 """The name of the property that every model has: that a trace gets stuck."""
 
 
-def ask_stuck(compilation: Compilation) -> Asked:
+def ask_stuck(compilation: Compilation) -> CompiledProperty:
     """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
     ever change. Every trace runs to its end."""
     # JANI has no such predicate; this is the closest one.
@@ -133,7 +133,7 @@ def ask_stuck(compilation: Compilation) -> Asked:
         exit_reward=-1,
     )
     question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, (), is_stuck=True)
-    return Asked(Property(STUCK_PROPERTY, formula), question, goal)
+    return CompiledProperty(Property(STUCK_PROPERTY, formula), question, goal)
 
 
 class _Writer:
@@ -149,7 +149,7 @@ class _Writer:
         self.conditions: list[Formula] = []
         self.is_bounded = 0
 
-    def asked(self) -> Asked:
+    def asked(self) -> CompiledProperty:
         formula, threshold = self.opened(self.property.expression)
         step_reward = exit_reward = -1
         match formula:
@@ -175,7 +175,7 @@ class _Writer:
             step_reward=step_reward,
             exit_reward=exit_reward,
         )
-        return Asked(self.property, question, goal)
+        return CompiledProperty(self.property, question, goal)
 
     def variables(self) -> tuple[str, ...]:
         found = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))

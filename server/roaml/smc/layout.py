@@ -13,23 +13,23 @@ from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BoundedType, Type
 from roaml.smc import shapes
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, Storage
+from roaml.smc.names import Meaning, Storage, StorageNames
 from roaml.smc.registers import INT, REAL, Number, Operand, Tape, product
 from roaml.smc.shapes import kind_of, larger, shape_of
 
 
 @dataclass(frozen=True, slots=True)
-class Instance:
+class AutomatonInstance:
     """An automaton as an element of the system; `own` are its variables."""
 
     automaton: Automaton
-    names: Names
+    names: StorageNames
     own: tuple[Storage, ...]
     transient: frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class MemoryLayout:
     """All variables of a model.
 
     Attributes:
@@ -38,9 +38,9 @@ class Layout:
         initial: for each storage, by its identity, the first value.
     """
 
-    names: Names
+    names: StorageNames
     shared: tuple[Storage, ...]
-    instances: tuple[Instance, ...]
+    instances: tuple[AutomatonInstance, ...]
     initial: Mapping[int, Value]
 
     @property
@@ -49,7 +49,7 @@ class Layout:
         return (*self.shared, *(storage for instance in self.instances for storage in instance.own))
 
 
-def lay_out(model: Model, tape: Tape) -> Layout:
+def lay_out(model: Model, tape: Tape) -> MemoryLayout:
     """Assign a register to everything that has a value; registers of variables come before all others.
 
     Raises:
@@ -80,7 +80,7 @@ def lay_out(model: Model, tape: Tape) -> Layout:
         own = _storages(automaton.variables, constants, inner, initial)
         drafts.append((automaton, inner, own))
     scopes = [{**values, **{storage.name: storage for storage in own}} for _, _, own in drafts]
-    named = [(a, Names(scope, inner)) for (a, inner, _), scope in zip(drafts, scopes, strict=True)]
+    named = [(a, StorageNames(scope, inner)) for (a, inner, _), scope in zip(drafts, scopes, strict=True)]
     _grow(named, constants)
     for storage in (*shared, *(storage for _, _, own in drafts for storage in own)):
         _place(storage, initial[id(storage)], tape)
@@ -98,15 +98,17 @@ def lay_out(model: Model, tape: Tape) -> Layout:
                 if constant.name not in {storage.name for storage in own}:
                     scope[constant.name] = operand
     instances = tuple(
-        Instance(automaton, Names(scope, inner), own, frozenset(v.name for v in automaton.variables if v.transient))
+        AutomatonInstance(
+            automaton, StorageNames(scope, inner), own, frozenset(v.name for v in automaton.variables if v.transient)
+        )
         for (automaton, inner, own), scope in zip(drafts, scopes, strict=True)
     )
-    layout = Layout(Names(values, functions), shared, instances, initial)
+    layout = MemoryLayout(StorageNames(values, functions), shared, instances, initial)
     _check_start(model, layout)
     return layout
 
 
-def _check_start(model: Model, layout: Layout) -> None:
+def _check_start(model: Model, layout: MemoryLayout) -> None:
     known: dict[str, Value] = dict(layout.names.constants())
     for storage in layout.shared:
         known[storage.name] = layout.initial[id(storage)]
@@ -181,14 +183,14 @@ def _storage(name: str, type_: Type, value: Value) -> Storage:
     return Storage(name, type_, kind_of(type_), shape_of(value) if isinstance(type_, ArrayType) else ())
 
 
-def _grow(scopes: list[tuple[Automaton, Names]], constants: Mapping[str, Value]) -> None:
+def _grow(scopes: list[tuple[Automaton, StorageNames]], constants: Mapping[str, Value]) -> None:
     """Make arrays as large as the largest value that is ever assigned to them."""
     known: dict[str, Meaning] = {
         name: Operand(INT, -1, value) for name, value in constants.items() if isinstance(value, (int, float))
     }
-    assignments: list[tuple[Assignment, Names, Storage, int]] = []
+    assignments: list[tuple[Assignment, StorageNames, Storage, int]] = []
     for automaton, names in scopes:
-        wider = Names({**known, **names.values}, names.functions)
+        wider = StorageNames({**known, **names.values}, names.functions)
         for assignment in _assignments(automaton):
             depth = 0
             target: Expression = assignment.target

@@ -9,12 +9,12 @@ from types import MappingProxyType
 
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
-from roaml.smc.batch import Payload, Problem, pack
+from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, look_at_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked, ask, ask_stuck
+from roaml.smc.goal import CompiledProperty, ask, ask_stuck
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
@@ -26,7 +26,7 @@ DEPTH = 15_000
 """Python's recursion limit while expressions are compiled, which may be nested as deeply as JSON allows."""
 
 
-class Checker:
+class ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
@@ -58,14 +58,14 @@ class Checker:
         try:
             check_size(model, chosen)
             self._compilation = Compilation(model, [property_.expression for property_ in chosen])
-            self.asked: tuple[Asked, ...] = ()
+            self.asked: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
                     self.asked += (ask(self._compilation, property_),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
-            self.stuck: Asked = ask_stuck(self._compilation)
+            self.stuck: CompiledProperty = ask_stuck(self._compilation)
             if asks_stuck:
                 self.asked += (self.stuck,)
                 self._names += (self.stuck.question.name,)
@@ -79,16 +79,16 @@ class Checker:
     def legend(self) -> Legend:
         return self._compilation.legend
 
-    def compiled(self, asked: Asked) -> Compiled:
+    def compiled(self, asked: CompiledProperty) -> Compiled:
         return Compiled(self.program, asked.goal)
 
-    def payload(self, asked: Asked) -> Payload:
+    def payload(self, asked: CompiledProperty) -> Payload:
         """The data that workers need for a question."""
         return pack(self.compiled(asked))
 
     def answer(
         self,
-        asked: Asked,
+        asked: CompiledProperty,
         options: Options,
         pool: Runner,
         tally: Tally | None = None,
@@ -107,7 +107,7 @@ class Checker:
 
     def search(
         self,
-        asked: Asked,
+        asked: CompiledProperty,
         options: Options,
         pool: Pool,
         state: Search,
@@ -127,7 +127,7 @@ class Checker:
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
-    def choices(self, asked: Asked, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
+    def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
         """What is known of other schedulers than the uniform one, to which an answer refers.
 
         Raises:
@@ -149,7 +149,7 @@ class Checker:
         """The names of the elements of the system."""
         return tuple(element.automaton for element in self.model.system.elements)
 
-    def fault(self, problem: Problem) -> FaultError:
+    def fault(self, problem: TraceProblem) -> FaultError:
         """A description of the undefined operation in a trace."""
         code = FaultCode(problem.code)
         value: float = problem.value

@@ -34,19 +34,19 @@ Meaning: TypeAlias = Storage | Operand | Region
 
 
 @dataclass(frozen=True)
-class Names:
+class StorageNames:
     """The meaning of names at a place; `calls` are the functions whose bodies contain it."""
 
     values: Mapping[str, Meaning]
     functions: Mapping[str, Function]
     calls: tuple[str, ...] = ()
 
-    def bound(self, more: Mapping[str, Meaning]) -> Names:
+    def bound(self, more: Mapping[str, Meaning]) -> StorageNames:
         return replace(self, values={**self.values, **more})
 
-    def inside(self, function: Function, parameters: Mapping[str, Meaning]) -> Names:
+    def inside(self, function: Function, parameters: Mapping[str, Meaning]) -> StorageNames:
         """The meaning of names in the body of a function."""
-        return Names({**self.values, **parameters}, self.functions, (*self.calls, function.name))
+        return StorageNames({**self.values, **parameters}, self.functions, (*self.calls, function.name))
 
     def constants(self) -> dict[str, Number]:
         """The names whose values do not depend on the state."""

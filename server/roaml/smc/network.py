@@ -15,8 +15,8 @@ from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.smc.fault import FaultError
-from roaml.smc.layout import Instance, Layout
-from roaml.smc.names import Names, read_by, variables_in
+from roaml.smc.layout import AutomatonInstance, MemoryLayout
+from roaml.smc.names import StorageNames, read_by, variables_in
 from roaml.smc.registers import Operand
 
 _CLOSE = 1e-6
@@ -31,7 +31,7 @@ class Way:
 
 
 @dataclass(slots=True)
-class Step:
+class EdgeStep:
     """An edge of an instance that can be taken. `guard` is None if it is always enabled."""
 
     edge: Edge
@@ -46,7 +46,7 @@ class Slot:
 
     instance: int
     action: str | None
-    steps: dict[int, list[Step]] = field(default_factory=dict)
+    steps: dict[int, list[EdgeStep]] = field(default_factory=dict)
     vectors: list[int] = field(default_factory=list)
     reads: set[str] = field(default_factory=set)
     writes: set[str] = field(default_factory=set)
@@ -59,18 +59,18 @@ class Reads:
     def __init__(self) -> None:
         self._found: dict[int, tuple[Node, set[str]]] = {}
 
-    def names_in(self, expression: Expression, names: Names) -> set[str]:
+    def names_in(self, expression: Expression, names: StorageNames) -> set[str]:
         if id(expression) not in self._found:
             self._found[id(expression)] = expression, variables_in(expression, names.functions)
         return self._found[id(expression)][1]
 
-    def by(self, assignment: Assignment, names: Names) -> set[str]:
+    def by(self, assignment: Assignment, names: StorageNames) -> set[str]:
         if id(assignment) not in self._found:
             self._found[id(assignment)] = assignment, read_by(assignment, names.functions)
         return self._found[id(assignment)][1]
 
 
-class Network:
+class CompiledNetwork:
     """The locations, slots and vectors of a model.
 
     Attributes:
@@ -78,7 +78,7 @@ class Network:
         vectors: the slots of each vector, and its action.
     """
 
-    def __init__(self, model: Model, layout: Layout) -> None:
+    def __init__(self, model: Model, layout: MemoryLayout) -> None:
         self.model = model
         self.layout = layout
         self.reads = Reads()
@@ -107,7 +107,7 @@ class Network:
                 raise FaultError(f"`{name}` must have one initial location", instance.automaton.origin)
 
     def _collect_steps(self) -> None:
-        prepared: dict[int, list[Step | None]] = {}
+        prepared: dict[int, list[EdgeStep | None]] = {}
         for number, (instance, element) in enumerate(
             zip(self.layout.instances, self.model.system.elements, strict=True)
         ):
@@ -139,7 +139,7 @@ class Network:
             self.slots.append(Slot(instance, action))
         return self.slots[self._slot_of[key]]
 
-    def _step(self, edge: Edge, instance: Instance) -> Step | None:
+    def _step(self, edge: Edge, instance: AutomatonInstance) -> EdgeStep | None:
         """The step of an edge; `None` if it can never be taken."""
         if edge.rate is not None:
             raise FaultError("rates are not supported", edge.origin)
@@ -168,9 +168,9 @@ class Network:
             if abs(total - 1) > _CLOSE:
                 raise FaultError(f"the probabilities of this edge add up to {total:g}, not to 1", edge.origin)
         is_inert = all(way.destination.location == edge.source and not way.destination.assignments for way in ways)
-        return Step(edge, ways, guard, is_inert)
+        return EdgeStep(edge, ways, guard, is_inert)
 
-    def _known(self, expression: Expression, instance: Instance) -> bool | float | None:
+    def _known(self, expression: Expression, instance: AutomatonInstance) -> bool | float | None:
         """The value of an expression that does not depend on the state."""
         names = instance.names
         if isinstance(expression, Boolean):
@@ -206,7 +206,7 @@ def root(assignment: Assignment) -> str:
     return getattr(target, "identifier", "")
 
 
-def _accepting(instance: Instance, actions: tuple[str, ...]) -> list[Edge]:
+def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:
     """Loops that accept an action wherever no edge for it is enabled, as `input-enable` requires."""
     found = []
     for action in actions:

@@ -16,7 +16,7 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from multiprocessing.synchronize import Event
 from typing import Protocol, TypeAlias
 
-from roaml.smc.batch import Outcome, Task, run, run_in_worker, run_on, start_worker
+from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, start_worker
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
@@ -39,7 +39,7 @@ class Alone:
     def __init__(self, compiled: Compiled) -> None:
         self._kernel = Kernel(compiled.program, compiled.goal)
 
-    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in their order."""
         return ((task, run_on(self._kernel, task, pulse)) for task in tasks)
 
@@ -47,7 +47,7 @@ class Alone:
 class Runner(Protocol):
     """What runs batches."""
 
-    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in their order."""
 
 
@@ -72,7 +72,7 @@ class Pool:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._stop()
 
-    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, Outcome]]:
+    def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in their order. The caller may stop to ask at any time.
 
         Raises:
@@ -89,8 +89,8 @@ class Pool:
                 return
         yield from self._distributed(waiting, pulse)
 
-    def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, Outcome]]:
-        running: deque[tuple[Task, Future[Outcome] | None]] = deque()
+    def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, BatchOutcome]]:
+        running: deque[tuple[Task, Future[BatchOutcome] | None]] = deque()
         lost = 0
         try:
             while True:
@@ -124,7 +124,7 @@ class Pool:
                 if each is not None:
                     each.cancel()
 
-    def _submit(self, task: Task) -> Future[Outcome] | None:
+    def _submit(self, task: Task) -> Future[BatchOutcome] | None:
         """Submit a batch; `None` if workers are being lost right now."""
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
@@ -136,7 +136,7 @@ class Pool:
         except BrokenExecutor:
             return None
 
-    def _wait(self, task: Task, future: Future[Outcome] | None, pulse: Pulse | None) -> Outcome:
+    def _wait(self, task: Task, future: Future[BatchOutcome] | None, pulse: Pulse | None) -> BatchOutcome:
         if future is None:
             raise BrokenExecutor("a worker has ended")
         while True:

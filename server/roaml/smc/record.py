@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from roaml.jani.model import Destination, Edge, System
-from roaml.smc.batch import Problem
+from roaml.smc.batch import TraceProblem
 from roaml.smc.compile import Legend
 from roaml.smc.end import End
-from roaml.smc.goal import Asked
+from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage, read_by, variables_in
 from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
 from roaml.smc.registers import BOOL, REAL
@@ -24,14 +24,14 @@ Plain: TypeAlias = "bool | int | float | list[Plain]"
 VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
 
 
-class Variable(NamedTuple):
+class RecordedVariable(NamedTuple):
     """A variable of the model (`instance` is -1) or of an instance."""
 
     instance: int
     name: str
 
 
-class Part(NamedTuple):
+class AutomatonStep(NamedTuple):
     """What one automaton does in a step."""
 
     instance: int
@@ -41,8 +41,8 @@ class Part(NamedTuple):
     destination: Destination
 
 
-class Change(NamedTuple):
-    variable: Variable
+class VariableChange(NamedTuple):
+    variable: RecordedVariable
     before: Plain
     after: Plain
 
@@ -53,8 +53,8 @@ class TraceStep:
 
     number: int
     action: str | None
-    parts: tuple[Part, ...]
-    changes: tuple[Change, ...]
+    parts: tuple[AutomatonStep, ...]
+    changes: tuple[VariableChange, ...]
 
 
 @dataclass(slots=True)
@@ -64,7 +64,7 @@ class Recording:
     trace: int
     verdict: int = UNKNOWN
     end: End = End.CUT
-    problem: Problem | None = None
+    problem: TraceProblem | None = None
 
 
 class StepReader:
@@ -78,9 +78,11 @@ class StepReader:
         self._kernel = kernel
         self.legend = legend
         layout = legend.layout
-        self.variables: list[tuple[Variable, Storage]] = [(Variable(-1, s.name), s) for s in layout.shared]
+        self.variables: list[tuple[RecordedVariable, Storage]] = [
+            (RecordedVariable(-1, s.name), s) for s in layout.shared
+        ]
         for number, instance in enumerate(layout.instances):
-            self.variables += [(Variable(number, s.name), s) for s in instance.own]
+            self.variables += [(RecordedVariable(number, s.name), s) for s in instance.own]
         self._owner_of_int: dict[int, int] = {}
         self._owner_of_real: dict[int, int] = {}
         for position, (_, storage) in enumerate(self.variables):
@@ -109,21 +111,21 @@ class StepReader:
         ints, reals = self._kernel.snapshot()
         return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
 
-    def _part(self, instance: int, way: int, places: list[int]) -> Part:
+    def _part(self, instance: int, way: int, places: list[int]) -> AutomatonStep:
         edge, destination = self.legend.ways[way]
         _, source = self.legend.locations[places[instance]]
-        return Part(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
+        return AutomatonStep(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
 
     def _changes(
         self, ints: list[int], reals: list[float], ints_after: list[int], reals_after: list[float]
-    ) -> tuple[Change, ...]:
+    ) -> tuple[VariableChange, ...]:
         changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
         changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
         found = []
         for position in sorted(changed):
             variable, storage = self.variables[position]
             before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
-            found.append(Change(variable, _value(storage, before), _value(storage, after)))
+            found.append(VariableChange(variable, _value(storage, before), _value(storage, after)))
         return tuple(found)
 
     def standstill(self, system: System) -> Standstill:
@@ -141,7 +143,9 @@ class StepReader:
 class Recorder:
     """Simulates single traces of a question."""
 
-    def __init__(self, checker: Checker, asked: Asked, seed: int, max_steps: int, scheduler: int = 0) -> None:
+    def __init__(
+        self, checker: ModelChecker, asked: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
+    ) -> None:
         compiled = checker.compiled(asked)
         self.legend = checker.legend
         self.system = checker.model.system
@@ -193,20 +197,20 @@ class Recorder:
         recording.verdict = verdict
         recording.end = End.CUT if verdict == UNKNOWN else End(self._kernel.ending())
         if verdict == FAULTY:
-            recording.problem = Problem(recording.trace, *self._kernel.problem())
+            recording.problem = TraceProblem(recording.trace, *self._kernel.problem())
 
     def standstill(self) -> Standstill:
         """The state in which the last walk ended."""
         return self._steps.standstill(self.system)
 
-    def reads(self, part: Part) -> set[Variable]:
+    def reads(self, part: AutomatonStep) -> set[RecordedVariable]:
         """The variables on which a part of a step depends."""
         layout = self.legend.layout.instances[part.instance]
         found = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
         for assignment in part.destination.assignments:
             found |= read_by(assignment, layout.names.functions)
         own = {storage.name for storage in layout.own}
-        return {Variable(part.instance if name in own else -1, name) for name in found}
+        return {RecordedVariable(part.instance if name in own else -1, name) for name in found}
 
 
 def _value(storage: Storage, cells: Sequence[int] | Sequence[float]) -> Plain:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from roaml.smc.batch import Outcome, Payload, Problem, Task
+from roaml.smc.batch import BatchOutcome, Payload, Task, TraceProblem
 from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pulse, Runner
@@ -191,7 +191,7 @@ Watch = Callable[[Tally], None]
 class TraceFaultError(Exception):
     """A trace executed an undefined operation; the compiled code determines which and where."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
         self.problem = problem
 
@@ -290,7 +290,7 @@ def _tasks(payload: Payload, options: Options, done: int, first: int, scheduler:
         done += size
 
 
-def _add(tally: Tally, outcome: Outcome, question: Question, options: Options, first: int) -> None:
+def _add(tally: Tally, outcome: BatchOutcome, question: Question, options: Options, first: int) -> None:
     ratio = ratio_of(question, options)
     rows = zip(outcome.verdicts, outcome.ends, outcome.steps, outcome.rewards, strict=True)
     for verdict, reason, steps, reward in rows:

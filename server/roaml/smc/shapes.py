@@ -26,7 +26,7 @@ from roaml.jani.operators import BinaryOperator, Signature
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BasicType, BoundedType, Type
 from roaml.smc.fault import FaultError
-from roaml.smc.names import Meaning, Names, unsupported
+from roaml.smc.names import Meaning, StorageNames, unsupported
 from roaml.smc.registers import BOOL, INT, REAL, Number, Operand, Region
 
 MOST_ELEMENTS = 1_000_000
@@ -42,7 +42,7 @@ _ARITHMETIC = (
 # ------------------------------------------------------------------- expressions
 
 
-def kind(node: Expression, names: Names) -> str:
+def kind(node: Expression, names: StorageNames) -> str:
     """The kind of a scalar, or of the elements of an array."""
     match node:
         case Integer():
@@ -90,7 +90,7 @@ def kind(node: Expression, names: Names) -> str:
             raise FaultError(unsupported(node), node.origin)
 
 
-def shape(node: Expression, names: Names) -> tuple[int, ...]:
+def shape(node: Expression, names: StorageNames) -> tuple[int, ...]:
     """The lengths of an array in all dimensions; () for a scalar."""
     match node:
         case Name():
@@ -120,14 +120,14 @@ def shape(node: Expression, names: Names) -> tuple[int, ...]:
             return ()
 
 
-def _argument(node: Expression, type_: Type, names: Names) -> Meaning:
+def _argument(node: Expression, type_: Type, names: StorageNames) -> Meaning:
     """The value of a parameter where only shapes are needed."""
     if isinstance(type_, ArrayType):
         return Region(kind_of(type_), shape(node, names), -1)
     return Operand(kind_of(type_), -1, known(node, names))
 
 
-def length(node: ArrayConstructor, names: Names) -> int:
+def length(node: ArrayConstructor, names: StorageNames) -> int:
     """The number of elements of an array constructor."""
     try:
         size = evaluate(node.length, names.constants(), names.functions)
@@ -138,7 +138,7 @@ def length(node: ArrayConstructor, names: Names) -> int:
     return size
 
 
-def known(node: Expression, names: Names) -> Number | None:
+def known(node: Expression, names: StorageNames) -> Number | None:
     """The value of a scalar that does not depend on the state."""
     match node:
         case Integer() | Real() | Boolean():

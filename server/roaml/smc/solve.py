@@ -14,7 +14,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.smc.explore import Explorer, State, StateFaultError, TooManyChoicesError
+from roaml.smc.explore import ExploredState, Explorer, StateFaultError, TooManyChoicesError
 from roaml.smc.goal import NOT, STUCK
 from roaml.smc.program import FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
@@ -96,7 +96,7 @@ def _explored(
     """
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
     explorer = Explorer(compiled, limit=work // max(1, size))
-    number: dict[State, int] = {explorer.initial: 0}
+    number: dict[ExploredState, int] = {explorer.initial: 0}
     verdicts = [explorer.verdict(explorer.initial)]
     choices: list[tuple[_Choice, ...]] = []
     waiting = deque(number)

@@ -12,19 +12,19 @@ from dataclasses import dataclass
 
 from roaml.jani.model import Automaton
 from roaml.smc.end import End
-from roaml.smc.record import Part, Plain, Recorder, Recording, TraceStep, Variable
+from roaml.smc.record import AutomatonStep, Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
 
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A whole trace, and its relevant steps.
+    """A whole trace, and which of its steps matter.
 
     Attributes:
-        clock: for each step the time in s; `None` if the model has no clock.
-        relevant: the indices of the relevant steps, in their order.
-        variables: the variables that the property reads.
-        automata: for each instance in the steps, its automaton.
+        clock: for each step the time in seconds, None where the model has no clock.
+        relevant: the indices of the steps that matter, in their order.
+        variables: what the property reads.
+        automata: of each instance that the steps name.
         start: the variables of the model before the first step.
         standstill: where it has ended, if it is stuck there.
         is_whole: whether all of it is to be shown, not only what matters.
@@ -86,7 +86,7 @@ def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> It
 
 
 def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...]) -> list[int]:
-    last_change: dict[Variable, list[int]] = {}
+    last_change: dict[RecordedVariable, list[int]] = {}
     last_step: dict[int, list[int]] = {}
     for i, step in enumerate(steps):
         for change in step.changes:
@@ -94,7 +94,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
         for part in step.parts:
             last_step.setdefault(part.instance, []).append(i)
     kept: set[int] = set()
-    waiting = [i for name in variables for i in last_change.get(Variable(-1, name), ())]
+    waiting = [i for name in variables for i in last_change.get(RecordedVariable(-1, name), ())]
     if steps:
         waiting.append(len(steps) - 1)
     while waiting:
@@ -110,7 +110,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
     return sorted(kept)
 
 
-def _cause(steps: list[TraceStep], own: list[int], part: Part, i: int) -> int | None:
+def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) -> int | None:
     """The latest earlier step in which the automaton took part together with another one."""
     before = [k for k in own if k < i]
     for k in reversed(before):

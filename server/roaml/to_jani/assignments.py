@@ -10,13 +10,13 @@ from roaml.expr.tree import Expr, Member
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.operators import BinaryOperator
-from roaml.to_jani.shapes import Shape, length_name
-from roaml.to_jani.values import Listed, Scope, Stored, at, elements_as, lengths_as
+from roaml.to_jani.shapes import ArrayShape, length_name
+from roaml.to_jani.values import JaniScope, Listed, Stored, at, elements_as, lengths_as
 
 Write = tuple[LValue, Expression]
 
 
-def assigned(location: Expr, value: Expr, scope: Scope) -> list[Write]:
+def assigned(location: Expr, value: Expr, scope: JaniScope) -> list[Write]:
     """The assignments for `location := value`; the values are those before it."""
     if isinstance(location, Member) and location.name == "length":
         array = scope.stored(location.object)
@@ -28,13 +28,13 @@ def assigned(location: Expr, value: Expr, scope: Scope) -> list[Write]:
     return [*_content(target, value, scope), *_grown(target)]
 
 
-def stored_in(variable: str, shape: Shape, value: Expr, scope: Scope) -> list[Write]:
+def stored_in(variable: str, shape: ArrayShape, value: Expr, scope: JaniScope) -> list[Write]:
     """The assignments that store a value in a whole variable."""
     return list(_content(Stored(variable, shape), value, scope))
 
 
-def _content(target: Stored, value: Expr, scope: Scope) -> Iterator[Write]:
-    part = Shape(target.shape.base, target.shape.capacities[len(target.indexes) :])
+def _content(target: Stored, value: Expr, scope: JaniScope) -> Iterator[Write]:
+    part = ArrayShape(target.shape.base, target.shape.capacities[len(target.indexes) :])
     if target.dimensions == 0:
         yield _lvalue(target.value), scope.scalar(value)
         return

@@ -10,29 +10,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Destination, Edge, Element, Location, Sync, System
-from roaml.model.translated import (
-    BLACKBOARD_REQUEST,
-    BLACKBOARD_WRITE_PREFIX,
+from roaml.scxml.model import EventRole
+from roaml.scxml.names import (
     CLOCK_ACTION,
-    CLOCK_STEP,
     RECEIVED,
     WAITING,
-    is_internal,
-    is_timer,
     on_receive,
     on_send,
 )
-from roaml.to_jani.events import Event
+from roaml.to_jani.events import EventUsage
 
 CLOCK_ENABLE = "__as2fm__global_timer_enable"
 BLACKBOARD_ENABLE = "__as2fm__blackboard_requests_enable"
 
 
-def has_automaton(event: Event) -> bool:
-    return bool(event.senders) and not is_internal(event.name)
+def has_automaton(event: EventUsage) -> bool:
+    return bool(event.senders) and not event.role.is_internal
 
 
-def event_automaton(event: Event, has_clock: bool) -> Automaton:
+def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
     """The buffer of an event; if the event has no receiver, the buffer accepts everything."""
     origin = event.origin
 
@@ -42,18 +38,18 @@ def event_automaton(event: Event, has_clock: bool) -> Automaton:
     names = [WAITING]
     if event.receivers:
         names = [RECEIVED, WAITING]
-        edges = [edge(WAITING, on_send(event.name), RECEIVED), edge(RECEIVED, on_receive(event.name), WAITING)]
+        edges = [edge(WAITING, on_send(event.event), RECEIVED), edge(RECEIVED, on_receive(event.event), WAITING)]
         if has_clock:
             edges.append(edge(WAITING, CLOCK_ENABLE, WAITING))
-        if event.name.startswith(BLACKBOARD_WRITE_PREFIX):
+        if event.role is EventRole.BLACKBOARD_WRITE:
             edges.append(edge(WAITING, BLACKBOARD_ENABLE, WAITING))
     else:
-        edges = [edge(WAITING, on_send(event.name), WAITING)]
+        edges = [edge(WAITING, on_send(event.event), WAITING)]
     locations = tuple(Location(name, origin=origin) for name in names)
     return Automaton(event.name, locations, (WAITING,), tuple(edges), origin=origin)
 
 
-def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, Event]) -> System:
+def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> System:
     """
     Args:
         automata: all of them, those of events included.
@@ -64,17 +60,18 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
     calm = {name: (index, CLOCK_ENABLE) for name, index in waited_for.items()}
     syncs: list[Sync] = []
     for event in table.values():
-        if event.name == CLOCK_STEP:
-            others = [each for name, each in calm.items() if name != BLACKBOARD_REQUEST]
+        if event.role is EventRole.CLOCK_STEP:
+            others = [wait for name, wait in calm.items() if table[name].role is not EventRole.BLACKBOARD_READ]
             syncs += [_sync(CLOCK_ACTION, [(clock, CLOCK_ACTION), *others]) for clock in event.receivers]
-        elif is_timer(event.name):
-            ticked = [(i, on_receive(event.name)) for i in event.receivers]
+        elif event.role is EventRole.TIMER_TICK:
+            ticked = [(i, on_receive(event.event)) for i in event.receivers]
             for clock in event.senders:
-                syncs.append(_sync(on_receive(event.name), [(clock, on_send(event.name)), *ticked, *calm.values()]))
+                syncs.append(_sync(on_receive(event.event), [(clock, on_send(event.event)), *ticked, *calm.values()]))
         elif event.name in buffers:
-            syncs += _communication(event, buffers)
-    known = {action for event in table.values() for action in (on_send(event.name), on_receive(event.name))}
-    known -= {CLOCK_STEP}
+            syncs += _communication(event, buffers, table)
+    known = {on_receive(event.event) for event in table.values()}
+    # The clock's step to itself is no communication: it sends alone.
+    known |= {on_send(event.event) for event in table.values() if event.role is not EventRole.CLOCK_STEP}
     for index, automaton in enumerate(automata[: len(automata) - len(buffers)]):
         own = dict.fromkeys(edge.action for edge in automaton.edges if edge.action and edge.action not in known)
         syncs += [Sync(((index, action),), action) for action in own]
@@ -82,11 +79,12 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
     return System(tuple(Element(automaton.name) for automaton in automata), tuple(syncs))
 
 
-def _communication(event: Event, buffers: Mapping[str, int]) -> Iterable[Sync]:
-    send, receive, buffer = on_send(event.name), on_receive(event.name), buffers[event.name]
+def _communication(event: EventUsage, buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> Iterable[Sync]:
+    send, receive, buffer = on_send(event.event), on_receive(event.event), buffers[event.name]
     settled: list[tuple[int, str]] = []
-    if event.name == BLACKBOARD_REQUEST:
-        settled = [(i, BLACKBOARD_ENABLE) for name, i in buffers.items() if name.startswith(BLACKBOARD_WRITE_PREFIX)]
+    if event.role is EventRole.BLACKBOARD_READ:
+        writes = (i for name, i in buffers.items() if table[name].role is EventRole.BLACKBOARD_WRITE)
+        settled = [(i, BLACKBOARD_ENABLE) for i in writes]
     for sender in event.senders:
         yield _sync(send, [(sender, send), (buffer, send), *settled])
     if event.receivers:

@@ -17,14 +17,14 @@ from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
-from roaml.model.translated import is_internal, is_synchronising, on_receive, on_send
 from roaml.scxml.model import Assign, Body, If, Role, Send, State
+from roaml.scxml.names import on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
-from roaml.to_jani.events import Event
-from roaml.to_jani.moves import Behavior, Move
-from roaml.to_jani.shapes import Shape, shape_of
-from roaml.to_jani.values import Scope, all_of, negated
+from roaml.to_jani.events import EventUsage
+from roaml.to_jani.moves import AutomatonMoves, Move
+from roaml.to_jani.shapes import ArrayShape, shape_of
+from roaml.to_jani.values import JaniScope, all_of, negated
 
 FIRST = "-first-exec"
 
@@ -75,7 +75,7 @@ class Flow:
     edges: tuple[Edge, ...]
 
 
-def flow_of(behavior: Behavior, table: Mapping[str, Event], max_array_size: int, random_values: int) -> Flow:
+def flow_of(behavior: AutomatonMoves, table: Mapping[str, EventUsage], max_array_size: int, random_values: int) -> Flow:
     """The flow of an automaton. Transitions on an event that no automaton sends are left out.
 
     Args:
@@ -88,7 +88,9 @@ _CERTAIN = Clause(jani.Real(1.0))
 
 
 class _FlowBuilder:
-    def __init__(self, behavior: Behavior, table: Mapping[str, Event], max_array_size: int, random_values: int) -> None:
+    def __init__(
+        self, behavior: AutomatonMoves, table: Mapping[str, EventUsage], max_array_size: int, random_values: int
+    ) -> None:
         self.behavior = behavior
         self.table = table
         self.max_array_size = max_array_size
@@ -96,7 +98,7 @@ class _FlowBuilder:
         self.variables = {data.id: shape_of(data.type, max_array_size) for data in behavior.automaton.data}
         self.locations: dict[str, Origin] = {state.id: state.origin for state in behavior.automaton.states}
         self.drafts: list[_Draft] = []
-        self.scopes: dict[str, Scope] = {}
+        self.scopes: dict[str, JaniScope] = {}
 
     def build(self) -> Flow:
         events = self.behavior.events()
@@ -105,18 +107,18 @@ class _FlowBuilder:
         initial = self.behavior.automaton.initial
         if self.behavior.start is not None:
             initial = self.start(self.behavior.start, initial)
-        dead = {on_receive(event) for event in events if not self.table[event].senders}
+        dead = {on_receive(self.table[event].event) for event in events if not self.table[event].senders}
         edges = tuple(draft.finished() for draft in self.drafts if draft.action not in dead)
         locations = tuple(Location(name, origin=origin) for name, origin in self.locations.items())
         return Flow(locations, initial, edges)
 
-    def scope(self, event: str) -> Scope:
+    def scope(self, event: str) -> JaniScope:
         if event not in self.scopes:
-            params: dict[str, Shape] = {}
+            params: dict[str, ArrayShape] = {}
             if event:
                 types = self.table[event].params
                 params = {name: shape_of(type_, self.max_array_size, sent=True) for name, type_ in types.items()}
-            self.scopes[event] = Scope(self.variables, event, params)
+            self.scopes[event] = JaniScope(self.variables, event, params)
         return self.scopes[event]
 
     def location(self, wanted: str, origin: Origin) -> str:
@@ -140,9 +142,10 @@ class _FlowBuilder:
             earlier.append(cond)
         return conditions
 
-    def move(self, move: Move, scope: Scope, guard: Expression | None) -> None:
+    def move(self, move: Move, scope: JaniScope, guard: Expression | None) -> None:
         stem = f"{move.source}-{move.number}"
-        action = on_receive(move.event) if move.event else stem
+        awaited = move.transition.event
+        action = on_receive(awaited) if awaited else stem
         ways = [
             _Way(_CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin)
             for outcome in move.outcomes
@@ -169,14 +172,14 @@ class _FlowBuilder:
             return
         for event in events:
             conditions = handled.get(event, ())
-            if None not in conditions and (conditions or not is_synchronising(event)):
+            if None not in conditions and (conditions or not self.table[event].role.is_synchronising):
                 way = _Way(_CERTAIN, state.origin, state.id)
                 guard = _unless(None, conditions)
-                self.drafts.append(_Draft(state.id, on_receive(event), guard, [way], state.origin))
+                self.drafts.append(_Draft(state.id, on_receive(self.table[event].event), guard, [way], state.origin))
 
     # ------------------------------------------------------------------- bodies
 
-    def run(self, body: Body, way: _Way, tag: str, final: str, scope: Scope) -> None:
+    def run(self, body: Body, way: _Way, tag: str, final: str, scope: JaniScope) -> None:
         """Continue `way` with everything in `body`; it ends in the location `final`."""
         for i, statement in enumerate(body):
             stem = f"{tag}-{i}"
@@ -195,7 +198,7 @@ class _FlowBuilder:
         self.drafts.append(_Draft(source, action, guard, [way], origin))
         return way
 
-    def assign(self, statement: Assign, way: _Way, stem: str, scope: Scope) -> _Way:
+    def assign(self, statement: Assign, way: _Way, stem: str, scope: JaniScope) -> _Way:
         draws = _count_draws(statement.value)
         if draws == 0:
             way.store(assigned(statement.location, statement.value, scope), statement.origin)
@@ -213,19 +216,19 @@ class _FlowBuilder:
         self.drafts.append(_Draft(before, before, None, ways, origin))
         return self.next_way(after, "after-draw", origin)
 
-    def send(self, statement: Send, way: _Way, stem: str, scope: Scope) -> _Way:
+    def send(self, statement: Send, way: _Way, stem: str, scope: JaniScope) -> _Way:
         way.location = self.location(stem, statement.origin)
         following = self.next_way(way.location, on_send(statement.event), statement.origin)
-        if not is_internal(statement.event):
-            params = self.table[statement.event].params
+        if not statement.event.role.is_internal:
+            params = self.table[statement.event.name].params
             for param in statement.params:
                 shape = shape_of(params[param.name], self.max_array_size, sent=True)
-                variable = f"{statement.event}__{param.name}"
+                variable = f"{statement.event.name}__{param.name}"
                 following.send(stored_in(variable, shape, param.value, scope), param.origin)
-            following.send([(jani.Name(f"{statement.event}.valid"), jani.Boolean(True))], statement.origin)
+            following.send([(jani.Name(f"{statement.event.name}.valid"), jani.Boolean(True))], statement.origin)
         return following
 
-    def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: Scope) -> _Way:
+    def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: JaniScope) -> _Way:
         origin = statement.origin
         before, after = self.location(f"{stem}-if", origin), self.location(f"{stem}-endif", origin)
         way.location = before

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 from roaml.expr.infer import infer
 from roaml.expr.types import UNKNOWN, Struct, Type, join
-from roaml.scxml.model import Body, Send, statements
+from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
 from roaml.text import Location
-from roaml.to_jani.moves import Behavior
+from roaml.to_jani.moves import AutomatonMoves
 
 
 @dataclass(slots=True)
-class Event:
+class EventUsage:
     """
     Attributes:
         params: name -> type, in the order of their first sending.
@@ -23,7 +23,7 @@ class Event:
         origin: of what first sends it, or else first waits for it.
     """
 
-    name: str
+    event: ScxmlEvent
     origin: Location
     params: dict[str, Type] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
@@ -31,11 +31,19 @@ class Event:
     receivers: dict[int, None] = field(default_factory=dict)
 
     @property
+    def name(self) -> str:
+        return self.event.name
+
+    @property
+    def role(self) -> EventRole:
+        return self.event.role
+
+    @property
     def data(self) -> Struct:
         return Struct("", (("data", Struct("", tuple(self.params.items()))),))
 
 
-def event_table(behaviors: Sequence[Behavior]) -> dict[str, Event]:
+def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
     """All events by name, in the order of their first occurrence."""
     table = _occurrences(behaviors)
     for _ in range(_ROUNDS):
@@ -48,24 +56,25 @@ _ROUNDS = 4
 """The maximum number of rounds in which types are passed from the data of one event to the parameters of another."""
 
 
-def _occurrences(behaviors: Sequence[Behavior]) -> dict[str, Event]:
-    table: dict[str, Event] = {}
+def _occurrences(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
+    table: dict[str, EventUsage] = {}
     for index, behavior in enumerate(behaviors):
         for _, moves in behavior.moves:
             for move in moves:
-                if move.event:
-                    origin = move.transition.origin
-                    table.setdefault(move.event, Event(move.event, origin)).receivers[index] = None
+                if (awaited := move.transition.event) is not None:
+                    event = EventUsage(awaited, move.transition.origin)
+                    table.setdefault(awaited.name, event).receivers[index] = None
                 for outcome in move.outcomes:
                     _sent(outcome.body, index, table)
         _sent(behavior.start or (), index, table)
     return table
 
 
-def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
+def _sent(body: Body, index: int, table: dict[str, EventUsage]) -> None:
     for statement in statements(body):
         if isinstance(statement, Send):
-            event = table.setdefault(statement.event, Event(statement.event, statement.origin))
+            sent = statement.event
+            event = table.setdefault(sent.name, EventUsage(sent, statement.origin))
             if not event.senders:
                 event.origin = statement.origin
             event.senders[index] = None
@@ -73,7 +82,7 @@ def _sent(body: Body, index: int, table: dict[str, Event]) -> None:
                 event.places.setdefault(param.name, param.origin)
 
 
-def _infer_params(behaviors: Sequence[Behavior], table: Mapping[str, Event]) -> bool:
+def _infer_params(behaviors: Sequence[AutomatonMoves], table: Mapping[str, EventUsage]) -> bool:
     """Infer types once from everything that is sent; return whether an unknown type remains that another round may
     infer."""
     waiting = False
@@ -85,7 +94,7 @@ def _infer_params(behaviors: Sequence[Behavior], table: Mapping[str, Event]) -> 
                 scope["_event"] = table[trigger].data
             for statement in statements(body):
                 if isinstance(statement, Send):
-                    params = table[statement.event].params
+                    params = table[statement.event.name].params
                     for param in statement.params:
                         type_, _ = infer(param.value, scope.get)
                         known = params.get(param.name, UNKNOWN)

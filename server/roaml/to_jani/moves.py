@@ -16,7 +16,7 @@ from roaml.text import Location
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class MoveOutcome:
     """One target of a transition with all statements on the way."""
 
     state: str
@@ -32,15 +32,16 @@ class Move:
     source: str
     number: int
     transition: Transition
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[MoveOutcome, ...]
 
     @property
     def event(self) -> str:
-        return self.transition.event
+        """The name of the event; "" for none."""
+        return self.transition.event.name if self.transition.event else ""
 
 
 @dataclass(frozen=True, slots=True)
-class Behavior:
+class AutomatonMoves:
     """
     Attributes:
         start: what the initial state does first; None if nothing.
@@ -61,16 +62,16 @@ class Behavior:
             yield "", self.start
 
     def events(self) -> dict[str, None]:
-        """The events that the automaton waits for, in order."""
+        """The names of the events that it waits for, in order."""
         return dict.fromkeys(move.event for _, moves in self.moves for move in moves if move.event)
 
 
-def behavior_of(automaton: Automaton) -> Behavior:
+def behavior_of(automaton: Automaton) -> AutomatonMoves:
     entries = {state.id: state.entry for state in automaton.states}
 
     def move(state: State, number: int, transition: Transition) -> Move:
         outcomes = tuple(
-            Outcome(
+            MoveOutcome(
                 target.state,
                 target.probability,
                 (*state.exit, *target.body, *entries.get(target.state, ())),
@@ -81,4 +82,4 @@ def behavior_of(automaton: Automaton) -> Behavior:
         return Move(state.id, number, transition, outcomes)
 
     moves = tuple((s, tuple(move(s, n, t) for n, t in enumerate(s.transitions))) for s in automaton.states)
-    return Behavior(automaton, entries.get(automaton.initial) or None, moves)
+    return AutomatonMoves(automaton, entries.get(automaton.initial) or None, moves)

@@ -8,16 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
-from roaml.model.translated import BLACKBOARD_REQUEST
-from roaml.scxml.model import Data, Network, Role
+from roaml.scxml.model import Data, EventRole, Network, Role
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
-from roaml.to_jani.events import Event, event_table
-from roaml.to_jani.moves import Behavior, behavior_of
+from roaml.to_jani.events import EventUsage, event_table
+from roaml.to_jani.moves import AutomatonMoves, behavior_of
 from roaml.to_jani.properties import expanded
-from roaml.to_jani.shapes import Shape, constructed_zero, jani_type, shape_of
-from roaml.to_jani.values import Scope, elements_as, lengths_as
+from roaml.to_jani.shapes import ArrayShape, constructed_zero, jani_type, shape_of
+from roaml.to_jani.values import JaniScope, elements_as, lengths_as
 
 FEATURES = ("arrays", "trigonometric-functions")
 DESCRIPTION = "Translated from HL-SCXML by roaml"
@@ -31,7 +30,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     automata = [_automaton(behavior, table, network) for behavior in behaviors]
     events = [event for event in table.values() if has_automaton(event)]
     # The read request of the blackboard is last, as in the reference translator.
-    events.sort(key=lambda event: event.name == BLACKBOARD_REQUEST)
+    events.sort(key=lambda event: event.role is EventRole.BLACKBOARD_READ)
     buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
     automata += [event_automaton(event, has_clock) for event in events]
     globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}
@@ -52,7 +51,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     )
 
 
-def _automaton(behavior: Behavior, table: Mapping[str, Event], network: Network) -> Automaton:
+def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], network: Network) -> Automaton:
     automaton = behavior.automaton
     flow = flow_of(behavior, table, network.max_array_size, network.random_values)
     variables = tuple(v for data in automaton.data for v in _local_variables(data, network.max_array_size))
@@ -66,7 +65,7 @@ def _automaton(behavior: Behavior, table: Mapping[str, Event], network: Network)
     )
 
 
-_CONSTANTS = Scope({}, "", {})
+_CONSTANTS = JaniScope({}, "", {})
 
 
 def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
@@ -80,9 +79,9 @@ def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
         yield Variable(name, jani_type(length), lengths_as(array, shape, k + 1), origin=data.origin)
 
 
-def _global_shapes(event: Event, max_array_size: int) -> Iterator[tuple[str, tuple[Shape, Location]]]:
+def _global_shapes(event: EventUsage, max_array_size: int) -> Iterator[tuple[str, tuple[ArrayShape, Location]]]:
     """The variables of an event: its flag, its parameters and their lengths (docs/spec/jani.md#global-variables)."""
-    yield f"{event.name}.valid", (Shape(BOOL), event.origin)
+    yield f"{event.name}.valid", (ArrayShape(BOOL), event.origin)
     for param, type_ in event.params.items():
         name, origin = f"{event.name}__{param}", event.places[param]
         shape = shape_of(type_, max_array_size, sent=True)

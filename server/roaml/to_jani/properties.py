@@ -17,11 +17,11 @@ from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import Filter, Probability, Property
 from roaml.jani.rewrite import rewrite
-from roaml.to_jani.shapes import Shape
+from roaml.to_jani.shapes import ArrayShape
 from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
 
 
-def expanded(property_: Property, variables: Mapping[str, Shape]) -> Property:
+def expanded(property_: Property, variables: Mapping[str, ArrayShape]) -> Property:
     """`variables` are the global ones."""
 
     def change(node: Node) -> Node:
@@ -40,7 +40,7 @@ def expanded(property_: Property, variables: Mapping[str, Shape]) -> Property:
     return rewrite(property_, change)
 
 
-def _stored(expression: Expression, variables: Mapping[str, Shape]) -> Stored | None:
+def _stored(expression: Expression, variables: Mapping[str, ArrayShape]) -> Stored | None:
     indexes: list[Expression] = []
     while isinstance(expression, ArrayAccess):
         indexes.insert(0, expression.index)

@@ -21,7 +21,7 @@ _ITERATOR = "__array_iterator_dim_"
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class ArrayShape:
     """`capacities` are the maximum numbers of elements in each dimension, outermost first; empty for scalars."""
 
     base: BasicType
@@ -32,41 +32,41 @@ class Shape:
         return len(self.capacities)
 
     @property
-    def element(self) -> Shape:
+    def element(self) -> ArrayShape:
         """The shape of an element of the outermost dimension."""
-        return Shape(self.base, self.capacities[1:])
+        return ArrayShape(self.base, self.capacities[1:])
 
-    def lengths(self, array: str) -> Iterator[tuple[str, Shape]]:
+    def lengths(self, array: str) -> Iterator[tuple[str, ArrayShape]]:
         """The companion variables of an array of this shape with their shapes."""
         for k in range(self.dimensions):
-            yield length_name(array, k + 1), Shape(INT, self.capacities[:k])
+            yield length_name(array, k + 1), ArrayShape(INT, self.capacities[:k])
 
 
-SCALAR_INT = Shape(INT)
+SCALAR_INT = ArrayShape(INT)
 
 
 def length_name(array: str, dimension: int) -> str:
     return f"{array}.d{dimension}_len"
 
 
-def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> Shape:
+def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape:
     """The shape of a variable. A parameter of an event has the capacity `max_array_size` in every dimension
     (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
     if isinstance(element, EmptyArray) or is_kind(element, "string"):
         bounds = (*bounds, None)
     capacities = tuple(max_array_size if sent or bound is None else bound for bound in bounds)
-    return Shape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities)
+    return ArrayShape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities)
 
 
-def jani_type(shape: Shape) -> JaniType:
+def jani_type(shape: ArrayShape) -> JaniType:
     type_: JaniType = shape.base
     for _ in shape.capacities:
         type_ = ArrayType(type_)
     return type_
 
 
-def zero(shape: Shape) -> Expression:
+def zero(shape: ArrayShape) -> Expression:
     """The value of a variable before anything is stored in it."""
     value = _ZEROS[shape.base]
     for capacity in reversed(shape.capacities):
@@ -74,7 +74,7 @@ def zero(shape: Shape) -> Expression:
     return value
 
 
-def constructed_zero(shape: Shape) -> Expression:
+def constructed_zero(shape: ArrayShape) -> Expression:
     """The same, written with array constructors, so that its size does not grow with the capacities."""
     value = _ZEROS[shape.base]
     for k in range(shape.dimensions, 0, -1):

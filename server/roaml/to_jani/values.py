@@ -31,7 +31,7 @@ from roaml.jani.expressions import ArrayAccess, ArrayValue, Expression, Integer,
 from roaml.jani.operators import BinaryOperator, NumberConstant
 from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.jani.types import REAL
-from roaml.to_jani.shapes import SCALAR_INT, Shape, length_name, zero
+from roaml.to_jani.shapes import SCALAR_INT, ArrayShape, length_name, zero
 
 _BINARY = {
     Operator.OR: BinaryOperator.OR,
@@ -109,7 +109,7 @@ class Stored:
     """A variable, or the part of one at `indexes`."""
 
     variable: str
-    shape: Shape
+    shape: ArrayShape
     indexes: tuple[Expression, ...] = ()
 
     @property
@@ -157,7 +157,7 @@ def length_of(array: ArrayForm) -> Expression:
             return jani.Conditional(array.test, length_of(array.then), length_of(array.otherwise))
 
 
-def elements_as(array: ArrayForm, shape: Shape) -> Expression:
+def elements_as(array: ArrayForm, shape: ArrayShape) -> Expression:
     """The JANI value of an array, with literals padded with zeros to the capacities of `shape`
     (docs/spec/jani.md#assignments)."""
     match array:
@@ -175,7 +175,7 @@ def elements_as(array: ArrayForm, shape: Shape) -> Expression:
             return ArrayValue((*elements, *(zero(inner),) * missing))
 
 
-def lengths_as(array: ArrayForm, shape: Shape, dimension: int) -> Expression:
+def lengths_as(array: ArrayForm, shape: ArrayShape, dimension: int) -> Expression:
     """The value of the companion `dk_len` with k = `dimension` for a variable of `shape` that holds the array."""
     match array:
         case Stored():
@@ -191,12 +191,12 @@ def lengths_as(array: ArrayForm, shape: Shape, dimension: int) -> Expression:
                 for element in array.elements
                 if isinstance(element, Listed)
             ]
-            empty = zero(Shape(SCALAR_INT.base, shape.capacities[1 : dimension - 1]))
+            empty = zero(ArrayShape(SCALAR_INT.base, shape.capacities[1 : dimension - 1]))
             missing = max(0, shape.capacities[0] - len(rows))
             return ArrayValue((*rows, *(empty,) * missing))
 
 
-def as_base(value: Expression, shape: Shape) -> Expression:
+def as_base(value: Expression, shape: ArrayShape) -> Expression:
     """A literal as it is stored: whole numbers among reals are reals (docs/spec/jani.md#values)."""
     if shape.base is not REAL:
         return value
@@ -212,7 +212,7 @@ def as_base(value: Expression, shape: Shape) -> Expression:
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class JaniScope:
     """The meaning of names in one place.
 
     Attributes:
@@ -221,9 +221,9 @@ class Scope:
         params: the parameters of that event.
     """
 
-    variables: Mapping[str, Shape]
+    variables: Mapping[str, ArrayShape]
     event: str
-    params: Mapping[str, Shape]
+    params: Mapping[str, ArrayShape]
 
     def stored(self, expr: Expr) -> Stored | None:
         """The variable or parameter that `expr` is, or is a part of; `None` for other expressions.
@@ -308,7 +308,7 @@ class Scope:
         if isinstance(expr, Index):
             array = self.array(expr.object)
             if array is not None:
-                return at(elements_as(array, Shape(SCALAR_INT.base)), self.scalar(expr.index))
+                return at(elements_as(array, ArrayShape(SCALAR_INT.base)), self.scalar(expr.index))
         return ZERO
 
     def length(self, expr: Member) -> Expression:

@@ -12,7 +12,7 @@ from roaml.smc.run import Seen
 from roaml.text import Location
 from roaml.verification.results import Result
 from roaml.verification.target import Target
-from roaml.views.story import Line, heading, lines
+from roaml.views.story import StoryLine, heading, lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Counterexample:
     heading: str
     verdict: str
     trace: int
-    lines: tuple[Line, ...]
+    lines: tuple[StoryLine, ...]
 
 
 def unwanted_verdict(result: Result) -> int:

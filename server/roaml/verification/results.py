@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from roaml.smc.choices import Choices
-from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.story import Story, tell
@@ -49,8 +49,8 @@ class Traces:
     """The traces under uniform choices for a property. Each can be simulated again."""
 
     target: Target
-    checker: Checker
-    asked: Asked
+    checker: ModelChecker
+    asked: CompiledProperty
     options: Options
 
     def recorder(self) -> Recorder:

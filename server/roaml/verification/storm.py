@@ -13,8 +13,8 @@ from typing import Any
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
 from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
-from roaml.smc.goal import Asked, Question
-from roaml.smc.model import Checker
+from roaml.smc.goal import CompiledProperty, Question
+from roaml.smc.model import ModelChecker
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.results import Exact
 from roaml.verification.schedulers import asks_for_minimum
@@ -27,7 +27,7 @@ class ExactError(ValueError):
     """There is no exact answer; the message contains the reason."""
 
 
-def exact_values(checker: Checker, asked: Asked, limit: int) -> Exact:
+def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> Exact:
     """The exact least and greatest value of a property.
 
     Args:

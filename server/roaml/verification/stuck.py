@@ -14,8 +14,8 @@ from typing import TypeAlias
 
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Asked
-from roaml.smc.model import Checker
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
@@ -103,7 +103,7 @@ class Look:
         return self.stuck is None or self.level != ERROR
 
 
-def look(target: Target, checker: Checker, options: Options, level: str, pulse: Pulse | None = None) -> Look:
+def look(target: Target, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None) -> Look:
     """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
@@ -112,7 +112,7 @@ def look(target: Target, checker: Checker, options: Options, level: str, pulse: 
     return Look(answer, stuck_in(target, checker, checker.stuck, answer), level)
 
 
-def _answer(checker: Checker, options: Options, pulse: Pulse | None) -> Answer:
+def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Answer:
     asked, tally = checker.stuck, Tally()
     alone = Alone(checker.compiled(asked))
     for traces in range(BATCH_SIZE, MAX_TRACES + BATCH_SIZE, BATCH_SIZE):
@@ -126,12 +126,14 @@ def _answer(checker: Checker, options: Options, pulse: Pulse | None) -> Answer:
     return answer
 
 
-def can_be_stuck(checker: Checker) -> bool:
+def can_be_stuck(checker: ModelChecker) -> bool:
     """Whether the meaning of a stuck trace is known, because the model is a translated system."""
     return any(checker.program.location_mark)
 
 
-def stuck_in(target: Target, checker: Checker, asked: Asked, answer: Answer, scheduler: int = 0) -> Stuck | None:
+def stuck_in(
+    target: Target, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
+) -> Stuck | None:
     """The traces of an answer that got stuck; `None` if none did."""
     ended = answer.tally.ends.get(End.STUCK)
     if ended is None:

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, replace
 from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import STUCK_PROPERTY, Asked, with_threshold
+from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
-from roaml.smc.model import Checker
+from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
@@ -30,7 +30,7 @@ class NoThresholdError(ValueError):
     """A sequential test requires a property that is compared with a number."""
 
 
-def checker_of(target: Target, properties: Iterable[str] | None = None) -> Checker:
+def checker_of(target: Target, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
@@ -43,13 +43,13 @@ def checker_of(target: Target, properties: Iterable[str] | None = None) -> Check
     """
     model, ends = target.model, marks(target.model)
     if properties is None:
-        return Checker(model, model.properties, ends)
+        return ModelChecker(model, model.properties, ends)
     names = list(dict.fromkeys(properties))
     asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in model.properties)
     if asks_stuck:
         names.remove(STUCK_PROPERTY)
     chosen = select(model.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
-    return Checker(model, chosen, ends, asks_stuck=asks_stuck)
+    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck)
 
 
 def verifier_of(
@@ -93,7 +93,7 @@ class Verifier:
     """A target with compiled properties, and their expectations; see `verifier_of`."""
 
     target: Target
-    checker: Checker
+    checker: ModelChecker
     options: Options = field(default_factory=Options)
     expectations: tuple[Expectation, ...] = ()
     only_uniform: bool = False
@@ -103,7 +103,7 @@ class Verifier:
         """The names of the properties, in their order."""
         return self.checker.names
 
-    def question(self, name: str) -> Asked:
+    def question(self, name: str) -> CompiledProperty:
         """A property, compared with the first expected number, which a sequential test needs.
 
         Raises:
@@ -118,7 +118,7 @@ class Verifier:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
         return asked
 
-    def expected(self, asked: Asked) -> tuple[Expectation, ...]:
+    def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
         """The expectations of a property: its own, and those in `expectations`."""
         name, threshold = asked.question.name, asked.question.threshold
         own = tuple(expectation for expectation in self.expectations if expectation.name == name)
@@ -140,7 +140,7 @@ class Verifier:
 
     def answer(
         self,
-        asked: Asked,
+        asked: CompiledProperty,
         pool: Pool,
         tally: Tally | None = None,
         watch: Watch | None = None,
@@ -167,7 +167,7 @@ class Verifier:
             choices = self.checker.choices(asked, answer, pool, pulse)
         return self._judged(asked, answer, choices, time.monotonic() - began)
 
-    def check_method(self, asked: Asked) -> None:
+    def check_method(self, asked: CompiledProperty) -> None:
         """
         Raises:
             NoThresholdError: a sequential test is to be made, and there is no number to compare with.
@@ -176,7 +176,7 @@ class Verifier:
         if self.options.method == SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
-    def interrupted(self, asked: Asked, tally: Tally, seconds: float) -> Result:
+    def interrupted(self, asked: CompiledProperty, tally: Tally, seconds: float) -> Result:
         """What is known of a property so far."""
         answer = summary(asked.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
@@ -186,7 +186,9 @@ class Verifier:
         """The result of a property that cannot be answered."""
         return Result(name, None, (), 0.0, refusal=refusal(fault, self.target, self.options.seed))
 
-    def sampled(self, asked: Asked, search: Search, seconds: float, *, is_interrupted: bool = False) -> Result:
+    def sampled(
+        self, asked: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
+    ) -> Result:
         """The least and the greatest probability that sampled schedulers achieve, as far as a search has come."""
         sampled = []
         for side, (scheduler, tally) in search.found.items():
@@ -214,7 +216,7 @@ class Verifier:
             stuck.shortest(result.stuck for result in sampled),
         )
 
-    def exact(self, asked: Asked, max_states: int) -> Result:
+    def exact(self, asked: CompiledProperty, max_states: int) -> Result:
         """The exact minimum and maximum of a property, by Storm.
 
         Raises:
@@ -230,7 +232,7 @@ class Verifier:
         """Make traces to see whether the system gets stuck; see `stuck.can_be_stuck`."""
         return stuck.look(self.target, self.checker, self.options, level, pulse)
 
-    def _judged(self, asked: Asked, answer: Answer, choices: Choices | None, seconds: float) -> Result:
+    def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:
         verdicts = tuple(
             under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in self.expected(asked)
         )

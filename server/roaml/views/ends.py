@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from roaml.jani.model import Automaton, Model
-from roaml.model.translated import (
+from roaml.scxml.names import (
     CLOCK,
     RECEIVED,
     TIME_IS_OVER,
     TREE_HAS_FINISHED,
     TREE_ROOT_PREFIX,
     WAITING,
+    named,
     on_send,
 )
 from roaml.smc.end import End
@@ -33,7 +34,7 @@ def marks(model: Model) -> Mapping[tuple[str, str], End]:
 def is_event(automaton: Automaton) -> bool:
     """Whether it holds an event between sending and receiving, if the event has a receiver."""
     locations = {location.name for location in automaton.locations}
-    sends = on_send(automaton.name)
+    sends = on_send(named(automaton.name))
     return locations <= {WAITING, RECEIVED} and any(edge.action == sends for edge in automaton.edges)
 
 

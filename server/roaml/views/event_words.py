@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection
 
 from roaml.model.system import safe_name
-from roaml.model.translated import (
+from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.model.globals import FIELD_PREFIX
-from roaml.model.translated import is_length, received_by, sent_by
-from roaml.smc.record import Part, Plain, TraceStep
+from roaml.scxml.names import is_length, received_by, sent_by
+from roaml.smc.record import AutomatonStep, Plain, TraceStep
 
 _VALID = ".valid"
 
@@ -39,7 +39,7 @@ class EventReader:
             if change.variable.instance < 0:
                 self._values[change.variable.name] = change.after
 
-    def actors(self, step: TraceStep) -> list[Part]:
+    def actors(self, step: TraceStep) -> list[AutomatonStep]:
         """The parts of a step but for those of automata that only hold an event."""
         return [part for part in step.parts if part.automaton not in self._events]
 

@@ -14,7 +14,7 @@ class Kind(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class GraphNode:
     """`lines` are its label; `minor` nodes are in the background."""
 
     id: str
@@ -23,7 +23,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class GraphLink:
     source: str
     target: str
     lines: tuple[str, ...] = ()
@@ -35,6 +35,6 @@ class Graph:
 
     kind: Kind
     title: str
-    nodes: tuple[Node, ...]
-    links: tuple[Link, ...]
+    nodes: tuple[GraphNode, ...]
+    links: tuple[GraphLink, ...]
     initial: str = ""

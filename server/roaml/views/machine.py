@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.model.machine import Chart, Handler, Machine, Target
-from roaml.views.graph import Graph, Kind, Link, Node
+from roaml.roles import ProtocolPart
+from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
 
 def machine_graph(machine: Machine) -> tuple[Graph, ...]:
@@ -16,7 +17,7 @@ def machine_graph(machine: Machine) -> tuple[Graph, ...]:
 
 
 def _chart(chart: Chart, title: str) -> Graph:
-    nodes = tuple(Node(state.id.value, (state.id.value,)) for state in chart.states if state.id)
+    nodes = tuple(GraphNode(state.id.value, (state.id.value,)) for state in chart.states if state.id)
     links = tuple(
         link
         for state in chart.states
@@ -28,16 +29,20 @@ def _chart(chart: Chart, title: str) -> Graph:
     return Graph(Kind.STATES, title, nodes, links, chart.initial.value if chart.initial else "")
 
 
-def _links(source: str, handler: Handler) -> Iterator[Link]:
+def _links(source: str, handler: Handler) -> Iterator[GraphLink]:
     label = trigger_label(handler)
     for target in handler.targets:
         if target.state is not None:
-            yield Link(source, target.state.value, (*label, *chance_label(handler, target)))
+            yield GraphLink(source, target.state.value, (*label, *chance_label(handler, target)))
 
 
 def trigger_label(handler: Handler) -> tuple[str, ...]:
     """The trigger of a transition, and its condition: a line for each."""
-    words = [handler.element.name.removeprefix("ros_").removeprefix("bt_")] if handler.trigger != "event" else []
+    words = (
+        [handler.element.name.removeprefix("ros_").removeprefix("bt_")]
+        if handler.trigger is not ProtocolPart.EVENT
+        else []
+    )
     words += [name.value for name in (handler.event, handler.handle, handler.child) if name]
     lines = [" ".join(words)] if handler.trigger else []
     return (*lines, *([f"[{' '.join(handler.cond.text.split())}]"] if handler.cond else []))

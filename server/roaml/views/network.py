@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from roaml.jani.model import Model
-from roaml.model.translated import is_generated, received_by, sent_by
-from roaml.views.graph import Graph, Kind, Link, Node
+from roaml.scxml.names import is_generated, received_by, sent_by
+from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
 
 def network_graph(model: Model, title: str) -> Graph:
@@ -23,9 +23,9 @@ def network_graph(model: Model, title: str) -> Graph:
             for target in receivers.get(event, ()):
                 labels.setdefault((source, target), []).append(event)
     nodes = tuple(
-        Node(automaton.name, (automaton.name,), is_generated(automaton.name))
+        GraphNode(automaton.name, (automaton.name,), is_generated(automaton.name))
         for automaton in model.automata
         if automaton.name not in senders
     )
-    links = tuple(Link(source, target, tuple(events)) for (source, target), events in labels.items())
+    links = tuple(GraphLink(source, target, tuple(events)) for (source, target), events in labels.items())
     return Graph(Kind.NETWORK, title, nodes, links)

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from roaml.views.graph import Graph, Kind, Node
+from roaml.views.graph import Graph, GraphNode, Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ def _plantuml(graph: Graph) -> Iterator[str]:
     yield "@enduml"
 
 
-def _plantuml_text(node: Node) -> str:
+def _plantuml_text(node: GraphNode) -> str:
     return '"' + "\\n".join(line.replace('"', "<U+0022>") for line in node.lines) + '"'
 
 

@@ -11,7 +11,7 @@ from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.smc.record import VERDICTS, Change, Plain
+from roaml.smc.record import VERDICTS, Plain, VariableChange
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
@@ -25,7 +25,7 @@ PlaceOf = Callable[[Origin], str]
 """File and line of an origin, for readers."""
 
 
-class Line(NamedTuple):
+class StoryLine(NamedTuple):
     """The turn of one automaton from one event to the next; `details` are its effects.
 
     `place` and `origin` are the place of the turn, as a phrase and in the text; `location` is the location after it.
@@ -43,26 +43,26 @@ class Line(NamedTuple):
     location: str = ""
 
 
-def lines(story: Story, place_of: PlaceOf) -> list[Line]:
+def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     """The story as a table; if it gets stuck, with the waiting automata at its end."""
     return [*_told(story, place_of), *_waiting(story, place_of)]
 
 
-def _told(story: Story, place_of: PlaceOf) -> list[Line]:
+def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     told = turns(story)
     folded = _folded(story, told)
     found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
-        found.insert(FIRST, Line(told[FIRST].number, "", "", _more(folded), "", ()))
+        found.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
     return found
 
 
-def _waiting(story: Story, place_of: PlaceOf) -> list[Line]:
+def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     found = []
     for wait in waits_of(story):
         place = "" if wait.origin is None else place_of(wait.origin)
         found.append(
-            Line(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
+            StoryLine(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
         )
     return found
 
@@ -72,8 +72,8 @@ def waits_of(story: Story) -> tuple[Wait, ...]:
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
-def _line(turn: Turn, place_of: PlaceOf) -> Line:
-    return Line(
+def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
+    return StoryLine(
         turn.number,
         "" if turn.time is None else f"{turn.time:.3f} s",
         turn.who,
@@ -253,7 +253,7 @@ def _message(message: Message) -> str:
     return f"{message.name}({_short(values)})" if values else message.name
 
 
-def _change(change: Change) -> str:
+def _change(change: VariableChange) -> str:
     return f"{change.variable.name}: {_shown(change.before, change.after)}"
 
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 
 from roaml.model.expand import Constant, Instance
 from roaml.model.system import System
-from roaml.views.graph import Graph, Kind, Link, Node
+from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
 _OWN = ("ID", "name")
 
 
 def tree_graph(system: System) -> Graph:
     nodes = tuple(_node(instance) for instance in system.instances)
-    links = tuple(Link(str(each.number), str(child)) for each in system.instances for child in each.children)
+    links = tuple(GraphLink(str(each.number), str(child)) for each in system.instances for child in each.children)
     title = system.tree_paths[0].replace("\\", "/").rpartition("/")[2] if system.tree_paths else "tree"
     return Graph(Kind.TREE, title, nodes, links)
 
 
-def _node(instance: Instance) -> Node:
-    return Node(str(instance.number), (title_of(instance), *ports_of(instance), str(instance.number)))
+def _node(instance: Instance) -> GraphNode:
+    return GraphNode(str(instance.number), (title_of(instance), *ports_of(instance), str(instance.number)))
 
 
 def title_of(instance: Instance) -> str:

@@ -16,9 +16,9 @@ from dataclasses import dataclass, field
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.system import builtin_plugins
-from roaml.model.translated import is_generated, is_length, received_by, sent_by
 from roaml.model.value_types import STATUSES
-from roaml.smc.record import Change, Part, Plain, TraceStep
+from roaml.scxml.names import is_generated, is_length, received_by, sent_by
+from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
 
@@ -47,8 +47,8 @@ class Turn:
     time: float | None
     heard: Message | None
     action: str | None
-    parts: list[Part] = field(default_factory=list)
-    changes: list[Change] = field(default_factory=list)
+    parts: list[AutomatonStep] = field(default_factory=list)
+    changes: list[VariableChange] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
     matters: bool = False
     ends: bool = False
@@ -204,7 +204,7 @@ class _Reader:
         event = received_by(step.action or "")
         return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
 
-    def _changes(self, step: TraceStep, part: Part, *, is_last: bool) -> Iterator[Change]:
+    def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
         """The changes of its own variables, and of the model's that carry no event; the latter are included once."""
         for change in step.changes:
             instance, name = change.variable

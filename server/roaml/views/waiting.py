@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
-from roaml.model.translated import (
+from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     BLACKBOARD,
     CLOCK,
@@ -25,6 +25,7 @@ from roaml.model.translated import (
     SERVICE_HANDLER_PREFIX,
     TREE_ROOT_PREFIX,
     is_timer,
+    named,
     on_receive,
     on_send,
     received_by,
@@ -140,7 +141,7 @@ class _Chain:
         else:
             for event in filter(self.is_pending, self.events):
                 for receiver in self.not_taking(event):
-                    self.follow(receiver, on_receive(event))
+                    self.follow(receiver, on_receive(named(event)))
         for number, links in self.links.items():
             if self.is_shown(number):
                 yield from (self.words(link) for link in links)
@@ -163,7 +164,7 @@ class _Chain:
 
     def not_taking(self, event: str) -> list[int]:
         """The automata that must receive an event and cannot."""
-        action = on_receive(event)
+        action = on_receive(named(event))
         return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
 
     def blocked(self, number: int, wanted: str) -> Iterator[_Link]:
@@ -183,7 +184,7 @@ class _Chain:
                     if event not in self.events:
                         late = [(received_by(action), other)]
                     for name, each in late:
-                        link = _Link(number, wanted, name, edge.origin, True, ((each, on_receive(name)),))
+                        link = _Link(number, wanted, name, edge.origin, True, ((each, on_receive(named(name))),))
                         found.setdefault((name, each), link)
         yield from found.values()
 
@@ -197,14 +198,14 @@ class _Chain:
         active = {event: edge for event, edge in best.items() if not self.is_asleep(event, number)}
         for event, edge in (active or best).items():
             if self.is_pending(event):
-                others = tuple((each, on_receive(event)) for each in self.not_taking(event) if each != number)
+                others = tuple((each, on_receive(named(event))) for each in self.not_taking(event) if each != number)
                 yield _Link(number, wanted, event, edge.origin, True, others)
             else:
-                others = tuple((sender, on_send(event)) for sender in self.senders(event))
+                others = tuple((sender, on_send(named(event))) for sender in self.senders(event))
                 yield _Link(number, wanted, event, edge.origin, others=others)
 
     def senders(self, event: str) -> list[int]:
-        return self.does.get(on_send(event), []) if event else []
+        return self.does.get(on_send(named(event)), []) if event else []
 
     def is_asleep(self, event: str, asker: int) -> bool:
         """Whether all possible senders of an event wait for the automaton that waits for it: children that are not
@@ -212,7 +213,7 @@ class _Chain:
         senders = self.senders(event)
         return bool(senders) and all(
             not any(True for _ in self.blocked(sender, ""))
-            and (awaited := self.awaited(sender, on_send(event)))
+            and (awaited := self.awaited(sender, on_send(named(event))))
             and all(self.senders(each) == [asker] for each in awaited)
             for sender in senders
         )

@@ -20,7 +20,7 @@ from typing import Any
 
 from pygls.protocol import default_converter
 
-from as2fm_lsp.inbox import LONGEST_MESSAGE, bodies
+from as2fm_lsp.inbox import MAX_MESSAGE_BYTES, bodies
 from as2fm_lsp.server import create
 from fuzz.corpus import Model, snippets
 from fuzz.strategy import Failure, Strategy
@@ -301,7 +301,7 @@ def _odd_bytes(random: Random, message: Message) -> bytes:
 
 def _odd_header(random: Random, message: Message) -> bytes:
     body = json.dumps(message).encode()
-    length = random.choice([b"0", b"-1", b"9" * 4301, b"%d" % (LONGEST_MESSAGE + 1), b"1e3", b"", b"\xd9\xa3"])
+    length = random.choice([b"0", b"-1", b"9" * 4301, b"%d" % (MAX_MESSAGE_BYTES + 1), b"1e3", b"", b"\xd9\xa3"])
     end = random.choice([b"\r\n\r\n", b"\n\n", b"\r\n", b"", b"\r\nContent-Type: x\r\n\r\n", b"\r\n\r\n\r\n"])
     name = random.choice([b"Content-Length: ", b"content-length:", b"Content-Length ", b"X-Content-Length: ", b""])
     return name + random.choice([length, b"%d" % len(body)]) + end + body + b"\r\n"

@@ -14,11 +14,13 @@ from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.paths import slashed
 from roaml.text import SourceFile, Span
 
-_AROUND = 200
+_CONTEXT_CHARACTERS = 200
 """The maximum number of characters before and after a position: generated files may have everything on one line."""
 
 
-class Place(NamedTuple):
+class LineRange(NamedTuple):
+    """Lines and columns from 1, in code points; the end is exclusive."""
+
     line: int
     column: int
     end_line: int
@@ -29,7 +31,7 @@ class RelatedEntry(NamedTuple):
     """A further place that explains a diagnostic."""
 
     file: str
-    place: Place
+    place: LineRange
     message: str
 
 
@@ -39,7 +41,7 @@ class Entry:
 
     diagnostic: Diagnostic
     file: str
-    place: Place
+    place: LineRange
     source: SourceFile
     related: tuple[RelatedEntry, ...] = ()
 
@@ -72,7 +74,9 @@ class Entry:
         """Does not change when lines are added or removed elsewhere: computed from the file's name, code, message and
         the text on the line around the position."""
         at = self.line.start + self.place.column - 1
-        around = self.source.text[max(self.line.start, at - _AROUND) : min(self.line.end, at + _AROUND)]
+        around = self.source.text[
+            max(self.line.start, at - _CONTEXT_CHARACTERS) : min(self.line.end, at + _CONTEXT_CHARACTERS)
+        ]
         parts = (slashed(file), self.code, self.message, around.strip())
         return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
@@ -100,9 +104,9 @@ def entry(diagnostic: Diagnostic, source_of: Callable[[str], SourceFile], shown:
     return Entry(diagnostic, shown(diagnostic.path), place_of(source, diagnostic.span), source, related)
 
 
-def place_of(source: SourceFile, span: Span) -> Place:
+def place_of(source: SourceFile, span: Span) -> LineRange:
     start, end = source.lines.position(span.start), source.lines.position(span.end)
-    return Place(start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+    return LineRange(start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
 
 def shown_path(path: str) -> str:

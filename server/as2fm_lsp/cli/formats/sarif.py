@@ -12,7 +12,7 @@ import urllib.parse
 from collections import Counter
 from typing import Any
 
-from as2fm_lsp.cli.formats.report import Entry, Place, Report
+from as2fm_lsp.cli.formats.report import Entry, LineRange, Report
 from roaml import __version__
 from roaml.project.paths import slashed
 from roaml.rules import BY_CODE, cited, document
@@ -73,7 +73,7 @@ def _result(entry: Entry, index: int, seen: Counter[str]) -> dict[str, Any]:
     return result
 
 
-def _location(file: str, place: Place) -> dict[str, Any]:
+def _location(file: str, place: LineRange) -> dict[str, Any]:
     region = {
         "startLine": place.line,
         "startColumn": place.column,

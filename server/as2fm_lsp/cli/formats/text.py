@@ -9,7 +9,7 @@ from as2fm_lsp.cli.formats.report import Entry, Report
 from roaml.diagnostics import Severity
 
 _COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFORMATION: "36", Severity.HINT: "34"}
-_WIDEST = 160
+_MAX_COLUMNS = 160
 
 
 def render(report: Report) -> str:
@@ -24,13 +24,13 @@ def summary(report: Report) -> str:
     for entry in report.entries:
         counts[entry.diagnostic.severity] += 1
     plural = {Severity.INFORMATION: "information"}
-    found = [
+    parts = [
         f"{count} {plural.get(severity, severity.label + ('' if count == 1 else 's'))}"
         for severity, count in counts.items()
         if count
     ]
     files = f"{report.checked} {'file' if report.checked == 1 else 'files'} checked"
-    return f"{files}: {', '.join(found) or 'no diagnostics'}"
+    return f"{files}: {', '.join(parts) or 'no diagnostics'}"
 
 
 def _paint(text: str, color: str) -> str:
@@ -54,8 +54,8 @@ def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-u
     place, line = entry.place, entry.line
     start = place.column - 1
     end = place.end_column - 1 if place.end_line == place.line else line.end - line.start
-    cut = start - 40 if start > _WIDEST - 40 else 0
-    text = _visible(entry.source.text[line.start + cut : min(line.end, line.start + cut + _WIDEST)])
+    cut = start - 40 if start > _MAX_COLUMNS - 40 else 0
+    text = _visible(entry.source.text[line.start + cut : min(line.end, line.start + cut + _MAX_COLUMNS)])
     if cut:
         text, start, end = f"…{text[1:]}", start - cut, end - cut
     # Tabs are kept in the line of carets, so that it is aligned with the one above.

@@ -15,11 +15,11 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.workspace import Snapshot
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Edit, Span
 from roaml.xml_syntax import Element
 
-_RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives == "result")
+_RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives is ProtocolPart.RESULT)
 """The handlers of the results that an action may have."""
 
 
@@ -67,7 +67,9 @@ def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> It
         if client.kind is not SymbolKind.ACTION_CLIENT or client.handle is None or not _sends_goals(machine, client):
             continue
         known_handlers = [
-            h for h in state.handlers if h.trigger == "result" and h.handle and h.handle.value == client.handle.value
+            h
+            for h in state.handlers
+            if h.trigger is ProtocolPart.RESULT and h.handle and h.handle.value == client.handle.value
         ]
         missing = [name for name in _RESULTS if name not in {h.element.name for h in known_handlers}]
         if missing:

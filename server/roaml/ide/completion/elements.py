@@ -13,6 +13,7 @@ from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.completion.values import candidates
+from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
@@ -38,6 +39,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
         return
     parent = parents[-1]
     if parent.type is None:
+        if request.forest is not None and any(each.element.name == "BehaviorTree" for each in parents):
+            yield from _tree_nodes(request, parents, bare=bare)  # in a node that only a library or a model knows
         return
     if bare and "field" in parent.type.children:
         yield from fields_to_add(request, parent.element)
@@ -146,12 +149,27 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
     for name in request.trees.trees if bare else ():
         around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
         if name and (around is None or around.value != name):
-            about = Symbol(request.trees.owner, SymbolKind.TREE, name)
+            about = request.trees.tree_symbol(request.path, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
             yield Item(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
+    yield from _known_nodes(request, bare=bare)
     for type_ in grammar.elements.values():
-        if type_.node:
+        is_known = request.forest is not None and type_.name not in (*EXPLICIT, *SUBTREES[:1])
+        if type_.node and not is_known:
             yield _node(request, type_, parents, bare=bare)
+
+
+def _known_nodes(request: Request, *, bare: bool) -> Iterator[Item]:
+    """The nodes that libraries and models describe, for a tree that belongs to no system."""
+    forest = request.forest
+    for name in dict.fromkeys(forest.names) if forest else ():
+        known = forest.node(name) if forest else None
+        if known is not None:
+            insert = _plugin(request, name, request.file.grammar, has_children=known.children[1] > 0) if bare else ""
+            detail = f"{known.kind.value}, {known.library}" if known.library else known.kind.value
+            about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
+            rank = Rank.USUAL if known.library else Rank.BEST
+            yield Item(name, ItemKind.PLUGIN, insert, detail, about, rank)
 
 
 def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> Item:

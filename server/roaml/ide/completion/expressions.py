@@ -248,7 +248,7 @@ def _wanted_field(request: Request, element: Element, holder: Element) -> Type |
     if statement is None or name is None or request.machine is None:
         return None
     declaration = find_handle(request.machine, statement)
-    return _at(interface_part(statement.type.sends, declaration, request.environment), name.value)
+    return _at(interface_part(statement.part, declaration, request.environment), name.value)
 
 
 def _wanted_output(request: Request, element: Element) -> Type | None:

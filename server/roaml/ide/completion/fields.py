@@ -13,7 +13,7 @@ from roaml.ide.completion.request import Request, Subject
 from roaml.language import ElementType
 from roaml.model.machine import Communicate, Declaration
 from roaml.model.ros import InterfaceType
-from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, find_handle, section_of
 from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
@@ -120,4 +120,4 @@ def _required(request: Request, declaration: Declaration | None, type_: ElementT
 
 
 def _section(type_: ElementType) -> str:
-    return SECTIONS.get(type_.sends, type_.sends)
+    return section_of(type_.sends) if type_.sends else ""

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet, escaped
-from roaml.ide.names.lookup import systems_of
-from roaml.ide.names.occurrences import kind_in
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Schema
 from roaml.model.kinds import FileKind
@@ -22,7 +20,7 @@ _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCT
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Item]] | None:
     """The completions at a caret, and what they replace; `None` in other files, or if there are none."""
-    kind = next(kind_in(analysis, path, system) for system in systems_of(analysis, path))
+    kind = next(analysis.kind_in(path, system) for system in analysis.systems_of(path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
     source = analysis.source(path)
@@ -166,7 +164,7 @@ def _quoted(text: str) -> str:
 
 def _names(analysis: Analysis, path: str) -> Iterator[Item]:
     """The variables of the translated systems."""
-    for system in systems_of(analysis, path):
+    for system in analysis.systems_of(path):
         for name, variable in (analysis.globals(system) if system else {}).items():
             about = Symbol(system or "", SymbolKind.GLOBAL, name)
             rank = Rank.LIKELY if name.endswith(".valid") else Rank.USUAL

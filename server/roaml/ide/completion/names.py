@@ -9,6 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank
 from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import Request, Subject
+from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import uses
 from roaml.model.machine import Declaration, Send
@@ -214,6 +215,13 @@ def _plugin_names(request: Request, subject: Subject) -> Iterator[Item]:
         about = Symbol(path, SymbolKind.MACHINE, name)
         yield Item(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
     wanted = subject.type.name.lower()
+    if request.forest is not None:
+        for name in dict.fromkeys(request.forest.names):
+            known = request.forest.node(name)
+            if known is not None and known.kind.value == wanted:
+                about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
+                yield Item(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
+        return
     for name in builtin_plugins():
         type_ = request.file.grammar.elements[name]
         if type_.node == wanted:
@@ -236,7 +244,7 @@ def _tree_names(request: Request, subject: Subject) -> Iterator[Item]:
     for name, (path, _) in request.trees.trees.items():
         if name:
             file = path.replace("\\", "/").rpartition("/")[2]
-            yield Item(name, ItemKind.PLUGIN, detail=file, about=Symbol(request.trees.owner, SymbolKind.TREE, name))
+            yield Item(name, ItemKind.PLUGIN, detail=file, about=request.trees.tree_symbol(request.path, name))
 
 
 def _some(names: Iterable[str]) -> str:

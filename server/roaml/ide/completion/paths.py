@@ -11,6 +11,7 @@ from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
 from roaml.model.machine import Machine
 from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES
 from roaml.project.paths import seen_from
+from roaml.roles import ProtocolPart
 
 _BY_SECTION = {
     "data_declarations": (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
@@ -57,4 +58,4 @@ def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:
 
 def _is_plugin(machine: Machine) -> bool:
     handlers = (handler for chart in machine.charts for state in chart.states for handler in state.handlers)
-    return bool(machine.ports) or any(handler.trigger == "bt-tick" for handler in handlers)
+    return bool(machine.ports) or any(handler.trigger is ProtocolPart.BT_TICK for handler in handlers)

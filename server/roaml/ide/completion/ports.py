@@ -10,8 +10,10 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import channels, plugins
 from roaml.ide.completion.request import Request, Subject
+from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.frames import names_in
 from roaml.language import ElementType
+from roaml.libraries import Node
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
@@ -39,6 +41,9 @@ class Port:
 
 def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Port, ...]:
     """The ports of the plugin with this name, or of the node of BehaviorTree.CPP that `type_` describes."""
+    known = request.forest.node(name) if request.forest else None
+    if known is not None:
+        return tuple(_of_library(known))
     if type_ is not None and type_.node and type_.name == name:
         found = []
         for attribute in type_.ports:
@@ -63,6 +68,14 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
         for port in outline.ports
         if port.key != CHILDREN_COUNT
     )
+
+
+def _of_library(known: Node) -> Iterator[Port]:
+    for port in known.ports:
+        if not port.alias_of:
+            about = Symbol("", SymbolKind.JSON, port.name, describe_forest.port(known, port))
+            default = port.default or ""
+            yield Port(port.name, port.type, port.direction.value, port.required, default, about)
 
 
 def node_name(element: Element) -> str:
@@ -131,6 +144,9 @@ def _constants(request: Request, name: str, port: Port) -> Iterator[Item]:
         return
     if port.default and blackboard_variable(port.default) is None:
         yield Item(port.default, ItemKind.VALUE, detail="default", rank=Rank.LIKELY)
+    if port.type == "NodeStatus":
+        for status in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED"):
+            yield Item(status, ItemKind.VALUE, rank=Rank.LIKELY)
     if port.type == "bool":
         yield Item("true", ItemKind.VALUE, rank=Rank.LIKELY)
         yield Item("false", ItemKind.VALUE, rank=Rank.LIKELY)

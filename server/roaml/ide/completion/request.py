@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from roaml.forest.forest import Forest
 from roaml.ide.names.frames import Trees
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
@@ -47,12 +47,12 @@ class Request:
     @cached_property
     def system_path(self) -> str | None:
         """The system in which types are resolved; if there are several, the first."""
-        return systems_of(self.analysis, self.path)[0]
+        return self.analysis.systems_of(self.path)[0]
 
     @cached_property
     def systems(self) -> tuple[System, ...]:
         """The systems of the file; for a system file, itself."""
-        paths = (self.path, *systems_of(self.analysis, self.path))
+        paths = (self.path, *self.analysis.systems_of(self.path))
         found = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
         return tuple(system for system in found if system is not None)
 
@@ -79,6 +79,11 @@ class Request:
     @cached_property
     def trees(self) -> Trees:
         return trees_of(self.analysis, self.path, self.system_path)
+
+    @cached_property
+    def forest(self) -> Forest | None:
+        """What is known of the nodes of a tree that belongs to no system."""
+        return None if self.system_path else self.analysis.forest(self.path)
 
     @cached_property
     def chart(self) -> Chart | None:

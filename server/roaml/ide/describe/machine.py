@@ -13,7 +13,6 @@ from roaml.ide.describe.language import array_size, value_range
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, prose
 from roaml.ide.describe.system import channel
 from roaml.ide.names.in_machine import interface_symbol
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import uses
 from roaml.language import ElementType
@@ -24,26 +23,26 @@ from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import Automaton, System, sanitise
 from roaml.model.value_types import TypedMachine, Use
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
 _OCCASIONS = {
-    "": "by itself",
-    "message": "a message on",
-    "request": "a request to",
-    "response": "the response of",
-    "goal": "a goal for",
-    "goal-response": "the answer to a goal of",
-    "feedback": "feedback of",
-    "result": "the result of",
-    "tick": "the timer",
-    "thread-start": "the start of a thread of",
-    "thread-free": "the end of a thread of",
-    "bt-tick": "a tick",
-    "bt-halt": "a halt",
-    "child-status": "the answer of child",
-    "child-halted": "the halt of child",
+    None: "by itself",
+    ProtocolPart.MESSAGE: "a message on",
+    ProtocolPart.REQUEST: "a request to",
+    ProtocolPart.RESPONSE: "the response of",
+    ProtocolPart.GOAL: "a goal for",
+    ProtocolPart.GOAL_RESPONSE: "the answer to a goal of",
+    ProtocolPart.FEEDBACK: "feedback of",
+    ProtocolPart.RESULT: "the result of",
+    ProtocolPart.TICK: "the timer",
+    ProtocolPart.THREAD_START: "the start of a thread of",
+    ProtocolPart.THREAD_FREE: "the end of a thread of",
+    ProtocolPart.BT_TICK: "a tick",
+    ProtocolPart.BT_HALT: "a halt",
+    ProtocolPart.CHILD_STATUS: "the answer of child",
+    ProtocolPart.CHILD_HALTED: "the halt of child",
 }
 
 _KINDS = {
@@ -77,7 +76,7 @@ def _action(automaton: Automaton, handle: str) -> str:
 
 
 def linked_systems(analysis: Analysis, path: str) -> Iterator[System]:
-    for each in systems_of(analysis, path):
+    for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         if system is not None:
             yield system
@@ -101,7 +100,7 @@ def variable(analysis: Analysis, symbol: Symbol) -> str:
     found = {(c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id}
     data = found.get((symbol.scope, symbol.name))
     parts: dict[str, None] = {}
-    for system in systems_of(analysis, symbol.path):
+    for system in analysis.systems_of(symbol.path):
         typed = analysis.typed_in(symbol.path, system) if machine else None
         if typed is not None:
             parts[_variable(analysis, symbol, data, typed)] = None
@@ -184,7 +183,7 @@ def _source(value: Value) -> str:
 def _counted(analysis: Analysis, symbol: Symbol) -> str:
     reads: set[Span] = set()
     writes: set[Span] = set()
-    for system in systems_of(analysis, symbol.path):
+    for system in analysis.systems_of(symbol.path):
         for each in uses(analysis, symbol.path, system).by_symbol.get(symbol, ()):
             if not each.defines:
                 (writes if each.access is Access.WRITE else reads).add(each.span)
@@ -257,20 +256,26 @@ def occasion(handler: Handler) -> str:
     """A phrase for the trigger of a transition."""
     if handler.event is not None:
         return name(handler.event.value)
-    words = _OCCASIONS.get(handler.trigger, handler.trigger)
+    words = _OCCASIONS[handler.trigger]
     about = handler.handle or handler.child
     return (
         f"{words} {name(about.value)}" if about else words.removesuffix(" on").removesuffix(" of").removesuffix(" to")
     )
 
 
-_PROTOCOL = {"bt-tick": "tick", "bt-halt": "halt", "bt-status": "response", "bt-halted": "halt_response"}
+_PROTOCOL = {
+    ProtocolPart.BT_TICK: "tick",
+    ProtocolPart.BT_HALT: "halt",
+    ProtocolPart.BT_STATUS: "response",
+    ProtocolPart.BT_HALTED: "halt_response",
+}
 """The events between a plugin and its parent -> the end of the event's name."""
 
 
 def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
     """The events of plain SCXML that an element of the tree protocol becomes; "" for other elements."""
-    end = _PROTOCOL.get(type_.receives or type_.sends)
+    part = type_.receives or type_.sends
+    end = _PROTOCOL.get(part) if part else None
     nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
     events = names((f"{node_id(each)}_{end}" for each in nodes), 4)
     return f"In plain SCXML {events}" if events else ""

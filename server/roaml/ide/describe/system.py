@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe.language import builtin_node, members, value_range
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
-from roaml.ide.names.lookup import systems_of, thing
+from roaml.ide.names.lookup import thing
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.names.translated import global_variables
@@ -18,10 +19,18 @@ from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
 from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
+
+_NODE = re.compile(r"bt_(\d{1,9})_")
+
+
+def node_of(system: System, variable: str) -> Automaton | None:
+    """The node of the tree of a global variable."""
+    number = _NODE.match(variable)
+    return system.by_instance.get(int(number[1])) if number else None
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:
@@ -163,7 +172,7 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
     full = dict.fromkeys(_full_name(each) for each in variables)
     bound: list[BoundPort] = []
     types: dict[str, None] = {}
-    for each in systems_of(analysis, symbol.path):
+    for each in analysis.systems_of(symbol.path):
         system = analysis.system(each) if each else None
         for variable in full if system else ():
             assert system is not None
@@ -254,7 +263,7 @@ _MOST = 3
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
     """The nodes of executed trees for a node of a file, in all systems of the file."""
-    for each in systems_of(analysis, path):
+    for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         for automaton in system.automata if system else ():
             source = automaton.instance.source if automaton.instance else None

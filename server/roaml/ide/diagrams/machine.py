@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
 from roaml.model.machine import Chart, Handler, State, Thread
 from roaml.project.analysis import Analysis
+from roaml.roles import ProtocolPart
 from roaml.text import Location
 from roaml.views.machine import chance_label, trigger_label
 
@@ -81,9 +82,9 @@ def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> I
 
 def _kind(handler: Handler) -> EdgeKind:
     match handler.trigger:
-        case "":
+        case None:
             return EdgeKind.EVENTLESS
-        case "event":
+        case ProtocolPart.EVENT:
             return EdgeKind.EVENT
         case trigger:
-            return EdgeKind.BT if trigger.startswith(_BT) else EdgeKind.ROS
+            return EdgeKind.BT if trigger.value.startswith(_BT) else EdgeKind.ROS

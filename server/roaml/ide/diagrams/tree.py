@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
-from roaml.ide.names.lookup import systems_of
 from roaml.model.expand import Instance, Reference, expand, node_at
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
@@ -28,12 +27,12 @@ _KINDS: Mapping[str, NodeKind] = {
 
 def tree_picture(analysis: Analysis, path: str) -> Picture | None:
     """The tree of a system, given by its system file or any other of its files; `None` if there is none."""
-    system = next((found for s in systems_of(analysis, path) if s and (found := analysis.system(s))), None)
+    system = next((found for s in analysis.systems_of(path) if s and (found := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances = system.tree_paths, system.instances
     else:
         paths = analysis.trees_from(path)
-        instances = expand(analysis.outlines_from(path))
+        instances = expand(analysis.outlines_from(path)).instances
     if not paths:
         return None
     drawn = _Tree(analysis, paths, instances, system)

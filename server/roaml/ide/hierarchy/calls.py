@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import interface_symbol
-from roaml.ide.names.lookup import Use, occurrences_at, systems_of, thing
+from roaml.ide.names.lookup import Use, occurrences_at, thing
 from roaml.ide.names.occurrence import HANDLES, Access
-from roaml.ide.names.occurrences import uses
+from roaml.ide.names.occurrences import trees_of, uses
 from roaml.model.outline import InterfaceUse
 from roaml.model.system import Automaton, System
 from roaml.model.tree import nodes
@@ -145,7 +145,7 @@ def _of_interface(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator
 
 
 def _systems(analysis: Analysis, path: str) -> tuple[System, ...]:
-    found = (analysis.system(system) for system in systems_of(analysis, path) if system)
+    found = (analysis.system(system) for system in analysis.systems_of(path) if system)
     return tuple(system for system in found if system is not None)
 
 
@@ -181,7 +181,7 @@ def _places(analysis: Analysis, system: str, automaton: Automaton, use: Interfac
 
 def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
     wanted = Access.READ if into else Access.WRITE
-    for system in systems_of(analysis, symbol.path):
+    for system in analysis.systems_of(symbol.path):
         for each in uses(analysis, symbol.path, system).all:
             if each.symbol.kind is SymbolKind.EVENT and each.access is wanted:
                 yield each.symbol, each.span
@@ -206,13 +206,13 @@ def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
 
 def _tree_around(analysis: Analysis, symbol: Symbol, use: Use) -> Symbol | None:
     file = analysis.tree(use.path)
-    owner = next((system for system in systems_of(analysis, use.path) if system), use.path)
+    trees = trees_of(analysis, use.path, analysis.systems_of(use.path)[0])
     for tree in file.trees if file else ():
         for node in nodes(tree):
             if tree.id and node.plugin and node.element.open_span.contains(use.occurrence.span.start):
                 inside = node.plugin.value == use.occurrence.symbol.name and use.occurrence.symbol.kind == symbol.kind
                 if inside and node.element.open_span.start < use.occurrence.span.start:
-                    return Symbol(owner, SymbolKind.TREE, tree.id.value)
+                    return trees.tree_symbol(use.path, tree.id.value)
     return None
 
 
@@ -230,7 +230,7 @@ def _in_tree(analysis: Analysis, place: Location) -> Iterator[_Edge]:
     for tree in file.trees if file else ():
         if tree.id is None or tree.id.span != place.span:
             continue
-        for system in systems_of(analysis, place.path):
+        for system in analysis.systems_of(place.path):
             for each in uses(analysis, place.path, system).all:
                 inside = tree.element.content_span.start <= each.span.start < tree.element.content_span.end
                 if inside and each.symbol.kind in (SymbolKind.MACHINE, SymbolKind.TREE):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, unwrap
-from roaml.ide.names.lookup import occurrences_at, systems_of
+from roaml.ide.names.lookup import occurrences_at
 from roaml.ide.navigation import definition_of
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import KIND_NAMES, Definition, Kind
@@ -81,7 +81,7 @@ def _types_of(analysis: Analysis, path: str, symbol: Symbol) -> Iterator[Symbol]
         case SymbolKind.ROS_TYPE | SymbolKind.STRUCT:
             yield symbol
         case SymbolKind.VARIABLE | SymbolKind.MEMBER:
-            for system in systems_of(analysis, path):
+            for system in analysis.systems_of(path):
                 if symbol.kind is SymbolKind.VARIABLE:
                     type_ = analysis.typed_in(symbol.path, system).variables.get(symbol.scope, {}).get(symbol.name)
                 else:

@@ -3,49 +3,39 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.ide.describe import property_file as describe_properties
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.markdown import code, paragraphs
+from roaml.ide.hover.place import Place
 from roaml.ide.json_tree import members
-from roaml.ide.names.lookup import systems_of
 from roaml.json_syntax import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
-from roaml.model.system import Automaton, System
-from roaml.project.analysis import Analysis
 from roaml.text import Span
 
-_NODE = re.compile(r"bt_(\d{1,9})_")
 
-
-def global_variable(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """The global variable at a place, in each system of the file."""
-    value = analysis.json(path)
+def global_variable(place: Place) -> tuple[Span, str] | None:
+    """The global variable whose name is at a place, in each system of the file."""
+    analysis, offset = place.analysis, place.offset
+    value = analysis.json(place.path)
     found = value_at(value[0], offset) if value else None
     if not isinstance(found, JsonString) or not found.content_span.contains(offset):
         return None
     texts: dict[str, None] = {}
-    for each in systems_of(analysis, path):
+    for each in place.systems:
         system = analysis.system(each) if each else None
         variable = analysis.globals(each).get(found.value) if each else None
         if system is not None and variable is not None:
-            node = node_of(system, found.value)
+            node = describe_system.node_of(system, found.value)
             about = describe_system.node(system, node) if node else ""
             texts[paragraphs(describe_properties.global_variable(variable), about)] = None
     return (found.content_span, paragraphs(*texts)) if texts else None
 
 
-def node_of(system: System, variable: str) -> Automaton | None:
-    """The node of the tree of a global variable."""
-    number = _NODE.match(variable)
-    return system.by_instance.get(int(number[1])) if number else None
-
-
-def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
+def in_json(place: Place) -> tuple[Span, str] | None:
     """The description of a key or an operator in the syntax of properties; the formula of a property."""
-    value = analysis.json(path)
+    value, offset = place.analysis.json(place.path), place.offset
     if value is None:
         return None
     for schema, owner, member in _members_at(value[0], offset):

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from roaml.ide.describe import system as describe_system
+from roaml.ide.hover.place import Place
 from roaml.model.tree import TreeNode, nodes
-from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 
-def node_at(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """The description of the node whose name or plugin is at a place; `None` if there is none."""
+def tree_node(place: Place) -> tuple[Span, str] | None:
+    """What the node becomes whose name or plugin is at a place; None if there is none."""
+    analysis, path, offset = place.analysis, place.path, place.offset
     file = analysis.tree(path)
     for tree in file.trees if file else ():
         if not tree.element.span.contains(offset):

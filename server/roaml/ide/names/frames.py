@@ -2,25 +2,26 @@
 """The executed tree with the places of all that is written in it: which text a blackboard variable or a port's constant
 comes from.
 
-Follows `roaml.model.expand`, which works without places, step by step; a test holds the two against each other.
+`roaml.model.expand` puts the subtrees in place, without places in the text; here each part gets the text that it is
+made of.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
+from roaml.forest.scripts import names_in as names_in_script
+from roaml.forest.scripts import script_attributes
 from roaml.ide.names.occurrence import Form, tree_node
-from roaml.model.expand import ROOT_NUMBER, extent, main_tree, tree_file_outline
+from roaml.model import expand
+from roaml.model.expand import TreeFileOutline, tree_called
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
-
-AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
 
 Piece = tuple[str, Symbol | None, Form]
 """A part of a name that the translation makes: its text and what that comes from, if anything."""
@@ -42,54 +43,90 @@ class Frame:
     """One instance of a tree.
 
     Attributes:
+        expanded: the same instance without places.
+        tree: of the file.
         prefix: of the full names of its variables.
         settings: what the attributes of the subtree node, and defaults, say.
         outer: the instance around it.
-        names: the variables that the tree's text mentions.
+        names: the variables that the tree's text mentions, also through defaults.
     """
 
-    path: str
+    expanded: expand.Frame
     tree: Tree
     prefix: tuple[Piece, ...]
     settings: Mapping[str, Setting]
-    autoremap: bool
     outer: Frame | None
     names: frozenset[str]
+    is_alone: bool = False
+
+    @property
+    def path(self) -> str:
+        return self.expanded.tree.path
 
     @property
     def key(self) -> TreeKey:
-        return self.path, self.tree.id.value if self.tree.id else ""
+        return self.expanded.tree.path, self.expanded.tree.id
 
     def knows(self, name: str) -> bool:
         if name in self.names or name in self.settings:
             return True
-        return self.autoremap and self.outer is not None and self.outer.knows(name)
+        return self.takes_all and self.outer is not None and self.outer.knows(name)
+
+    @property
+    def takes_all(self) -> bool:
+        """Whether names that nothing is said of are taken from outside."""
+        return self.expanded.autoremap
 
     def is_shared(self, name: str) -> bool:
         """Whether `name` is the same variable as the one with this name outside."""
-        if self.outer is None or name.startswith(("@", "_")):
-            return name in self.settings and self.settings[name].value.value.strip() == "{=}"
         if name in self.settings:
             return self.settings[name].value.value.strip() == "{=}"
-        return self.autoremap and self.outer.knows(name)
+        if self.outer is None or name.startswith("@"):
+            return False
+        if self.is_alone:  # scripts name variables, too, which the expansion does not know
+            return self.takes_all and not name.startswith("_") and self.outer.knows(name)
+        return self.expanded.resolve(name) == self.outer.expanded.resolve(name)
 
 
 class Trees:
     """The tree files of a system, the executed one first.
 
     Args:
-        paths: of the files.
-        owner: the system file, or the tree file if it is looked at alone.
+        outlines: of the files.
+        owner: the system file, or the first tree file if there is no system.
+        is_alone: there is no system, so scripts name variables, too.
     """
 
-    def __init__(self, analysis: Analysis, paths: tuple[str, ...], owner: str) -> None:
-        found = ((path, analysis.tree(path)) for path in paths)
-        self.files: dict[str, TreeFile] = {path: file for path, file in found if file is not None}
+    def __init__(
+        self, analysis: Analysis, outlines: tuple[TreeFileOutline, ...], owner: str, *, is_alone: bool = False
+    ) -> None:
+        self.is_alone = is_alone
+        files = ((outline.path, analysis.tree(outline.path)) for outline in outlines)
+        self.files: dict[str, TreeFile] = {path: file for path, file in files if file is not None}
         self.owner = owner
         self.trees: dict[str, tuple[str, Tree]] = {}
         for path, file in self.files.items():
             for tree in file.trees:
                 self.trees.setdefault(tree.id.value if tree.id else "", (path, tree))
+        self._outlines = outlines
+
+    def tree_symbol(self, path: str, name: str) -> Symbol:
+        """The tree that a name means in a file. Without a system, files that are not included by each other may have
+        trees of one name."""
+        home = self.owner
+        if self.is_alone:
+            defining = [p for p, file in self.files.items() if any(t.id and t.id.value == name for t in file.trees)]
+            if len(defining) > 1:
+                home = path if path in defining else defining[0]
+        return Symbol(home, SymbolKind.TREE, name)
+
+    def names_in(self, tree: Tree) -> Iterator[str]:
+        """The variables that a tree refers to."""
+        yield from names_in(tree)
+        if self.is_alone:
+            for node in nodes(tree):
+                for attribute in script_attributes(node):
+                    yield from (name for name, _ in names_in_script(attribute.value))
 
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
@@ -105,31 +142,81 @@ class Trees:
         return found
 
     @cached_property
-    def main(self) -> tuple[str, Tree] | None:
-        outlines = tuple(tree_file_outline(path, file) for path, file in self.files.items())
-        main = main_tree(outlines)
-        if isinstance(main, tuple) or not extent(outlines).is_expanded:
-            return None
-        for tree in self.files[main.path].trees:
-            if (tree.id.value if tree.id else "") == main.id:
-                return main.path, tree
-        return None
-
-    @cached_property
-    def _walked(self) -> tuple[tuple[tuple[Frame, TreeNode], ...], tuple[Frame, ...]]:
-        walk = _Walk(self)
-        if self.main is not None:
-            walk.run(*self.main)
-        return tuple(walk.nodes), tuple(walk.frames)
+    def _expansion(self) -> expand.Expansion:
+        return expand.expand(self._outlines)
 
     @property
-    def nodes(self) -> Mapping[int, tuple[Frame, TreeNode]]:
-        """The executed nodes by number."""
-        return dict(enumerate(self._walked[0], ROOT_NUMBER))
+    def main(self) -> tuple[str, Tree] | None:
+        frames = self.frames
+        return (frames[0].path, frames[0].tree) if frames else None
 
     @property
     def frames(self) -> tuple[Frame, ...]:
-        return self._walked[1]
+        return tuple(self._frames.values())
+
+    @cached_property
+    def nodes(self) -> Mapping[int, tuple[Frame, TreeNode]]:
+        """The executed nodes by number."""
+        return {
+            instance.number: (
+                self._frames[self._expansion.frame_of[instance.number]],
+                self._nodes[instance.source.path, instance.source.tree][instance.source.position],
+            )
+            for instance in self._expansion.instances
+        }
+
+    @cached_property
+    def _nodes(self) -> Mapping[TreeKey, tuple[TreeNode, ...]]:
+        """The nodes of each tree by their position."""
+        frames = {frame.key: frame.tree for frame in self.frames}
+        return {key: tuple(nodes(tree)) for key, tree in frames.items()}
+
+    @cached_property
+    def _frames(self) -> Mapping[expand.Frame, Frame]:
+        frames: dict[expand.Frame, Frame] = {}
+        names: dict[TreeKey, frozenset[str]] = {}
+        for expanded in self._expansion.frames:
+            tree = tree_called(self.files[expanded.tree.path], expanded.tree.id)
+            assert tree is not None
+            outer = frames[expanded.outer] if expanded.outer is not None else None
+            prefix, settings = self._use(expanded, outer)
+            key = expanded.tree.path, expanded.tree.id
+            if key not in names:
+                names[key] = self._names(tree)
+            frames[expanded] = Frame(expanded, tree, prefix, settings, outer, names[key], self.is_alone)
+        return frames
+
+    def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:
+        """What the names in an instance begin with, and what is said where it is used."""
+        if expanded.use is None or outer is None:
+            return (), {}
+        node = tuple(nodes(outer.tree))[expanded.use.position]
+        assert node.plugin is not None
+        if node.name is not None:
+            source, written = tree_node(*outer.key, expanded.use.position, node.name.value), node.name.value
+        else:
+            source, written = self.tree_symbol(outer.path, node.plugin.value), node.plugin.value
+        lead = expanded.word[: len(expanded.word) - len(written)]
+        prefix: tuple[Piece, ...] = (
+            *outer.prefix,
+            (lead, None, Form.AS_IS),
+            (expanded.word.removeprefix(lead), source, Form.WORD),
+            (f"{expanded.suffix}__", None, Form.AS_IS),
+        )
+        settings = dict(self.defaults.get(node.plugin.value, {}))
+        settings |= {port.key.value: Setting(outer.path, port.value) for port in node.ports}
+        return prefix, {name: value for name, value in settings.items() if not name.startswith("_")}
+
+    def _names(self, tree: Tree) -> frozenset[str]:
+        """The variables that a tree refers to, also through defaults."""
+        names = set(self.names_in(tree))
+        for node in nodes(tree):
+            plugin = node.plugin.value if node.plugin else ""
+            for key, setting in self.defaults.get(plugin, {}).items():
+                variable = blackboard_variable(setting.value.value)
+                if variable is not None and node.element.get(key) is None:
+                    names.add(key if variable == "=" else variable)
+        return frozenset(names)
 
     # ------------------------------------------------------------- variables
 
@@ -171,13 +258,13 @@ class Trees:
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
-                if self.variable(*key, symbol.name) == symbol and new in names_in(tree):
+                if self.variable(*key, symbol.name) == symbol and new in self.names_in(tree):
                     return True
         for frame in self.frames:
             own = self.variable(*frame.key, symbol.name) == symbol and symbol.name in frame.names
             if own and (new in frame.names or new in frame.settings):
                 return True
-            if frame.outer is None or not frame.autoremap or new in frame.settings:
+            if frame.outer is None or not frame.takes_all or new in frame.settings:
                 continue
             outside = self.variable(*frame.outer.key, symbol.name) == symbol and frame.outer.knows(symbol.name)
             free = own and symbol.name not in frame.settings
@@ -231,80 +318,3 @@ def names_in(tree: Tree) -> Iterator[str]:
             variable = blackboard_variable(attribute.value)
             if variable is not None:
                 yield attribute.name if variable == "=" and node.is_subtree else variable
-
-
-class _Walk:
-    def __init__(self, trees: Trees) -> None:
-        self.trees = trees
-        self.nodes: list[tuple[Frame, TreeNode]] = []
-        self.frames: list[Frame] = []
-        self.prefixes: set[str] = set()
-        self.counts: dict[str, int] = {}
-        self.positions: dict[Tree, dict[TreeNode, int]] = {}
-        self.known_names: dict[Tree, frozenset[str]] = {}
-
-    def run(self, path: str, main: Tree) -> None:
-        """Works with a list of what is still to be placed, as `roaml.model.expand` does."""
-        frame = Frame(path, main, (), {}, False, None, self.names(main))
-        self.frames.append(frame)
-        pending = [(root, frame, frozenset((frame.key[1],))) for root in main.roots[:1]]
-        while pending:
-            node, frame, inside = pending.pop()
-            if not node.is_subtree:
-                self.nodes.append((frame, node))
-                pending += ((child, frame, inside) for child in reversed(node.children))
-                continue
-            inner_path, tree = self.trees.trees.get(node.plugin.value if node.plugin else "", ("", None))
-            if tree is not None and tree.roots and (tree.id.value if tree.id else "") not in inside:
-                inner = self.enter(node, inner_path, tree, frame, self.position(frame.tree, node))
-                pending.append((tree.roots[0], inner, inside | {inner.key[1]}))
-
-    def position(self, tree: Tree, node: TreeNode) -> int:
-        if tree not in self.positions:
-            self.positions[tree] = {each: position for position, each in enumerate(nodes(tree))}
-        return self.positions[tree][node]
-
-    def names(self, tree: Tree) -> frozenset[str]:
-        """With those that a tree uses through defaults."""
-        if tree not in self.known_names:
-            self.known_names[tree] = self.names_of(tree)
-        return self.known_names[tree]
-
-    def names_of(self, tree: Tree) -> frozenset[str]:
-        found = set(names_in(tree))
-        for node in nodes(tree):
-            plugin = node.plugin.value if node.plugin else ""
-            for key, setting in self.trees.defaults.get(plugin, {}).items():
-                variable = blackboard_variable(setting.value.value)
-                if variable is not None and node.element.get(key) is None:
-                    found.add(key if variable == "=" else variable)
-        return frozenset(found)
-
-    def enter(self, node: TreeNode, path: str, tree: Tree, frame: Frame, position: int) -> Frame:
-        assert node.plugin is not None
-        if node.name is not None:
-            source, written = tree_node(*frame.key, position, node.name.value), node.name.value
-        else:
-            source, written = Symbol(self.trees.owner, SymbolKind.TREE, node.plugin.value), node.plugin.value
-        word = re.sub(r"\W", "_", written, flags=re.ASCII)
-        lead = "" if word[:1].isalpha() or word[:1] == "_" else "_"
-        above, suffix = "".join(piece[0] for piece in frame.prefix), ""
-        wanted = f"{above}{lead}{word}"
-        while f"{wanted}{suffix}__" in self.prefixes:
-            count = self.counts[wanted] = self.counts.get(wanted, 1) + 1
-            suffix = f"_{count}"
-        self.prefixes.add(f"{above}{lead}{word}{suffix}__")
-        prefix: tuple[Piece, ...] = (
-            *frame.prefix,
-            (lead, None, Form.AS_IS),
-            (word, source, Form.WORD),
-            (f"{suffix}__", None, Form.AS_IS),
-        )
-        settings = dict(self.trees.defaults.get(node.plugin.value, {}))
-        settings |= {port.key.value: Setting(frame.path, port.value) for port in node.ports}
-        settings = {name: value for name, value in settings.items() if not name.startswith("_")}
-        values = (attribute for name in AUTOREMAP if (attribute := node.element.get(name)))
-        autoremap = any(attribute.value in ("true", "1") for attribute in values)
-        inner = Frame(path, tree, prefix, settings, autoremap, frame, self.names(tree))
-        self.frames.append(inner)
-        return inner

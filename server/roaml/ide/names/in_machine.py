@@ -51,7 +51,7 @@ from roaml.model.value_types import (
     find_handle,
     interface_part,
 )
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
 
 """Kind of ROS type -> the kind of symbol that a declaration of this type names."""
@@ -206,7 +206,7 @@ class _Machine:
                     yield from self.keys(member.value, type_)
 
     def handler(self, chart: Chart, handler: Handler) -> Iterator[Occurrence]:
-        if handler.trigger == "event" and handler.event is not None:
+        if handler.trigger is ProtocolPart.EVENT and handler.event is not None:
             yield from self.events(handler.event)
         yield from self.handle(handler.handle, find_handle(self.machine, handler), Access.READ)
         for target in handler.targets:
@@ -263,7 +263,7 @@ class _Machine:
     def communicate(self, scope: _Scope, statement: Communicate) -> Iterator[Occurrence]:
         declaration = find_handle(self.machine, statement)
         yield from self.handle(statement.handle, declaration, Access.WRITE)
-        part = interface_part(statement.type.sends, declaration, self.environment)
+        part = interface_part(statement.part, declaration, self.environment)
         for field in statement.fields:
             yield from self.field(field, part)
             yield from self.value(scope, field.value)
@@ -324,7 +324,7 @@ class _Scope:
         yield Occurrence(node.span, variable(self.machine.path, node.name, self.chart.scope), access=access)
 
     def member(self, node: Member, access: Access) -> Iterator[Occurrence]:
-        event = self.handler.event if self.handler and self.handler.trigger == "event" else None
+        event = self.handler.event if self.handler and self.handler.trigger is ProtocolPart.EVENT else None
         if event is not None and _is_event_data(node.object) and "_event" in self.known:
             symbol = parameter(self.machine.owner, event.value, node.name)
             yield Occurrence(node.name_span, symbol, access=Access.READ)

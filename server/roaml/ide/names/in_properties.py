@@ -18,9 +18,9 @@ from roaml.ide.names.occurrence import Access, Form, Occurrence, parameter, tree
 from roaml.jani.properties import Property, identifiers
 from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
 from roaml.model.system import Automaton, Channel, System, safe_name, sanitise
-from roaml.model.translated import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 from roaml.text import Span
 
 # The events of a service or action -> the part of the interface that they carry.

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
+from roaml.forest.scripts import parsed, script_attributes
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
@@ -13,8 +14,10 @@ from roaml.model.expand import Constant
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import System
-from roaml.model.tree import SUBTREES, NodeModel, PortSetting, TreeNode, blackboard_variable, nodes
+from roaml.model.tree import SUBTREES, NodeModel, PortSetting, TreeNode, blackboard_variable, is_variable_name, nodes
 from roaml.roles import SymbolKind
+from roaml.script.tree import Assignment, walk
+from roaml.script.tree import Name as Variable
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
 
@@ -42,6 +45,8 @@ class _Tree:
                     symbol = tree_node(self.path, inside, position, node.name.value)
                     yield Occurrence(node.name.span, symbol, defines=True)
                 yield from self.subtree(node, inside) if node.is_subtree else self.node(node, inside)
+                if self.trees.is_alone:
+                    yield from self.scripts(node, inside)
         for model in self.file.models:
             yield from self.model(model)
         yield from self.defaults()
@@ -49,7 +54,7 @@ class _Tree:
 
     def tree_name(self, name: Name | None, *, defines: bool = False) -> Iterator[Occurrence]:
         if name is not None:
-            yield Occurrence(name.span, Symbol(self.owner, SymbolKind.TREE, name.value), defines)
+            yield Occurrence(name.span, self.trees.tree_symbol(self.path, name.value), defines)
 
     # ----------------------------------------------------------------- nodes
 
@@ -110,6 +115,31 @@ class _Tree:
         start = decoded.text.find(name, decoded.text.find("{"))
         return None if start < 0 else decoded.span(start, start + len(name))
 
+    def scripts(self, node: TreeNode, inside: str) -> Iterator[Occurrence]:
+        """The variables in scripts. Where there is no system, they have a meaning."""
+        for attribute in script_attributes(node):
+            script, _ = parsed(self.document.decoded(attribute.value_span))
+            targets: set[int] = set()
+            for expr in walk(script):
+                if isinstance(expr, Assignment):
+                    targets.add(id(expr.target))
+                elif not isinstance(expr, Variable):
+                    continue
+                variable = expr.target if isinstance(expr, Assignment) else expr
+                if isinstance(expr, Assignment) or id(expr) not in targets:
+                    name = variable.name
+                    span = Span(variable.span.start + len(name) - len(name.removeprefix("@")), variable.span.end)
+                    access = Access.WRITE if isinstance(expr, Assignment) else Access.READ
+                    symbol = self.trees.variable(self.path, inside, name)
+                    yield Occurrence(span, symbol, access is Access.WRITE, access)
+        name_port = _NAMING.get(node.plugin.value if node.plugin else "")
+        setting = next((s.value for s in node.ports if s.key.value == name_port), None)
+        if setting is not None and is_variable_name(setting.value):
+            access = Access.WRITE if name_port == "output_key" else Access.TEXT
+            symbol = self.trees.variable(self.path, inside, setting.value)
+            start = setting.span.start + (1 if setting.value.startswith("@") else 0)
+            yield Occurrence(Span(start, setting.span.end), symbol, access is Access.WRITE, access)
+
     # ---------------------------------------------------------------- models
 
     def model(self, model: NodeModel) -> Iterator[Occurrence]:
@@ -122,7 +152,7 @@ class _Tree:
                     yield Occurrence(port.name.span, symbol)
             return
         if model.id is not None:
-            yield Occurrence(model.id.span, self.plugin_symbol(model.id.value))
+            yield Occurrence(model.id.span, self.plugin_symbol(model.id.value), self.trees.is_alone)
         path, _ = self.plugin(model.id)
         for port in model.ports:
             if port.name is not None and path:
@@ -167,6 +197,14 @@ class _Tree:
                         if span.end > span.start:
                             found[Occurrence(span, symbol)] = None
         yield from found
+
+
+_NAMING = {
+    "SetBlackboard": "output_key",
+    "UnsetBlackboard": "key",
+    **dict.fromkeys(("WasEntryUpdated", "SkipUnlessUpdated", "WaitValueUpdate"), "entry"),
+}
+"""The ports whose text is the name of a variable, where there is no system."""
 
 
 def _access(outline: MachineOutline | None, key: str) -> Access:

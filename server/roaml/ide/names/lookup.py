@@ -14,6 +14,7 @@ from functools import cached_property
 from roaml.diagnostics import Symbol
 from roaml.ide.names.occurrence import HANDLES, Occurrence
 from roaml.ide.names.occurrences import Uses, uses
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
@@ -53,17 +54,12 @@ class Thing:
         return frozenset(symbol.kind for symbol in self.symbols)
 
 
-def systems_of(analysis: Analysis, path: str) -> tuple[str | None, ...]:
-    """The systems in which a file is analysed; (None) if it is in none."""
-    return analysis.memberships.get(path, ()) or (None,)
-
-
 def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
     """The occurrences at a caret, in each system; a name that begins there takes precedence over one that ends
     there."""
     found = dict.fromkeys(
         each
-        for system in systems_of(analysis, path)
+        for system in analysis.systems_of(path)
         for each in uses(analysis, path, system).all
         if each.span.contains(offset) and each.span.start < each.span.end
     )
@@ -98,7 +94,7 @@ def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
 
 
 def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
-    for system in systems_of(analysis, path):
+    for system in analysis.systems_of(path):
         for occurrence in uses(analysis, path, system).by_span.get(span, ()):
             yield occurrence.symbol
 
@@ -106,7 +102,7 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
 def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
     """The files that can use a symbol, as they are in the relevant systems."""
     if symbol.kind in _IN_ONE_FILE:
-        for system in systems_of(analysis, symbol.path):
+        for system in analysis.systems_of(symbol.path):
             yield symbol.path, uses(analysis, symbol.path, system)
         return
     if not symbol.path:
@@ -114,7 +110,12 @@ def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
     elif symbol.path in analysis.system_paths:
         systems = (symbol.path,)
     else:
-        systems = systems_of(analysis, symbol.path)
+        systems = analysis.systems_of(symbol.path)
     for system in systems:
-        for path in analysis.files_of(system) if system else (symbol.path,):
+        for path in analysis.files_of(system) if system else _family(analysis, symbol.path):
             yield path, uses(analysis, path, system)
+
+
+def _family(analysis: Analysis, path: str) -> tuple[str, ...]:
+    """The files that see the names of a file that belongs to no system."""
+    return analysis.family(path) if analysis.kind(path) is FileKind.TREE else (path,)

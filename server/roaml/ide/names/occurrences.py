@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -33,7 +34,7 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     if source is None:
         return _index(())
     key: tuple[object, ...] = (source.digest, analysis.structs(system))
-    if kind_in(analysis, path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
+    if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
         key = (*key, analysis.typed_in(path, system))  # everything that it uses of its system
     else:
         key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
@@ -65,7 +66,7 @@ def _index(found: Iterable[Occurrence]) -> Uses:
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
-    kind = kind_in(analysis, path, system)
+    kind = analysis.kind_in(path, system)
     assert source is not None
     if kind is FileKind.MACHINE:
         machine = analysis.machine(path)
@@ -98,17 +99,10 @@ def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, .
 
 
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
-    """The trees of a system, or those of a tree file alone with what it includes."""
-    paths = analysis.tree_paths(system) if system else analysis.trees_from(path)
-    digests = tuple(getattr(analysis.source(each), "digest", b"") for each in paths)
-    owner = system or path
-    return analysis.memo.get("trees", owner, (paths, digests), lambda: Trees(analysis, paths, owner))
-
-
-def kind_in(analysis: Analysis, path: str, system: str | None) -> FileKind:
-    """The kind of a file: by its content, otherwise as a system lists it."""
-    kind = analysis.kind(path)
-    if kind is not FileKind.UNKNOWN or system is None:
-        return kind
-    listed = (f.found for f in analysis.listed(system) if f.path == path)
-    return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
+    """The trees of a system, or those of a tree file alone with the files that are connected with it by includes."""
+    outlines = analysis.tree_outlines(system) if system else analysis.family_outlines(path)
+    paths = analysis.tree_paths(system) if system else tuple(outline.path for outline in outlines)
+    digests = tuple(getattr(analysis.source(tree), "digest", b"") for tree in paths)
+    owner = system or next(iter(paths), path)
+    make = functools.partial(Trees, analysis, outlines, owner, is_alone=system is None)
+    return analysis.memo.get("trees", owner, (outlines, digests), make)

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import global_names, trees_of
 from roaml.model.globals import GlobalVariable
 from roaml.project.analysis import Analysis
@@ -16,7 +15,7 @@ def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable
     """The global variables whose names contain a symbol, in all its systems, flags (`.valid`) first."""
     found: dict[str, GlobalVariable] = {}
     if symbol.path:
-        systems = (symbol.path,) if symbol.path in analysis.system_paths else systems_of(analysis, symbol.path)
+        systems = (symbol.path,) if symbol.path in analysis.system_paths else analysis.systems_of(symbol.path)
     else:
         systems = analysis.system_paths
     for system in systems:

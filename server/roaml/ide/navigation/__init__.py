@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, Type, unwrap
-from roaml.ide.names.lookup import Thing, Use, occurrences_at, systems_of, thing, thing_at
+from roaml.ide.names.lookup import Thing, Use, occurrences_at, thing, thing_at
 from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
 from roaml.lower.nodes import node_file
@@ -117,7 +117,7 @@ def type_definition(analysis: Analysis, path: str, offset: int) -> tuple[Locatio
     """The definition of the type of the symbol at a caret: a struct, or a ROS definition file."""
     found: dict[Location, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
-        for system in systems_of(analysis, path):
+        for system in analysis.systems_of(path):
             found.update(dict.fromkeys(_type_of(analysis, path, system, occurrence.symbol)))
     return tuple(found)
 

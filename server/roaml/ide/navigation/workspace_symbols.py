@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.names.lookup import systems_of
 from roaml.ide.names.occurrences import uses
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -29,7 +28,7 @@ def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found,
     wanted = query.casefold()
     found: dict[tuple[str, Span, SymbolKind], Found] = {}
     for path in paths:
-        for system in systems_of(analysis, path):
+        for system in analysis.systems_of(path):
             for each in uses(analysis, path, system).all:
                 if each.defines and _matches(each.symbol.name.casefold(), wanted):
                     entry = Found(each.symbol, path, each.span, _container(analysis, path, each.symbol))

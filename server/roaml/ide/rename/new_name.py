@@ -13,18 +13,18 @@ from collections.abc import Iterator
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES
 from roaml.ide.names.in_machine import is_implicit
-from roaml.ide.names.lookup import Thing, systems_of, where
+from roaml.ide.names.lookup import Thing, where
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.system import sanitise
-from roaml.model.translated import is_synchronising
 from roaml.model.value_types import STATUSES
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+from roaml.scxml.names import is_synchronising
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
@@ -48,7 +48,7 @@ def problem(analysis: Analysis, found: Thing, new: str) -> str:
             if other not in found.symbols and _clashes(symbol, other, new):
                 return f"{_article(other.kind)} `{other.name}` already exists"
         if symbol.kind is SymbolKind.BLACKBOARD:
-            trees = (trees_of(analysis, symbol.path, system) for system in systems_of(analysis, symbol.path))
+            trees = (trees_of(analysis, symbol.path, system) for system in analysis.systems_of(symbol.path))
             if any(each.is_taken(symbol, new) for each in trees):
                 return f"a blackboard variable `{new}` already exists"
         if handle := _handle_called(analysis, found, symbol, new):

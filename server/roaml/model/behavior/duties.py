@@ -11,14 +11,27 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from roaml.model.behavior.explore import NOWHERE, Behavior, Configuration, Duty, Step
+from roaml.roles import ProtocolPart
 
 Possible: TypeAlias = Callable[[Step], bool]
 
 TICK, HALT = Duty("tick", ""), Duty("halt", "")
-_TAKING = {"tick": "bt-tick", "halt": "bt-halt", "request": "request", "goal": "goal", "result": "thread-start"}
+_TAKING = {
+    "tick": ProtocolPart.BT_TICK,
+    "halt": ProtocolPart.BT_HALT,
+    "request": ProtocolPart.REQUEST,
+    "goal": ProtocolPart.GOAL,
+    "result": ProtocolPart.THREAD_START,
+}
 
 
-_FOLLOWING = ("response", "result", "goal-response", "child-status", "child-halted")
+_FOLLOWING = (
+    ProtocolPart.RESPONSE,
+    ProtocolPart.RESULT,
+    ProtocolPart.GOAL_RESPONSE,
+    ProtocolPart.CHILD_STATUS,
+    ProtocolPart.CHILD_HALTED,
+)
 """Events that answer something that was sent; other events come spontaneously."""
 
 
@@ -54,7 +67,7 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
     between = [
         step
         for step in behavior.steps
-        if possible(step) and not (step.event and step.event.part in ("bt-tick", "bt-halt"))
+        if possible(step) and not (step.event and step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT))
     ]
     lost = waiting - _back((taking & waiting) | known, between)
     # If an event still follows without a request, the machine does not stay.
@@ -115,13 +128,15 @@ def is_suspicious(behavior: Behavior) -> bool:
     known = behavior.chart.__dict__.setdefault("suspicion", {})
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}
-        duties = {Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, "goal")}
+        duties = {
+            Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, ProtocolPart.GOAL)
+        }
         asked = [duty for duty in duties if duty.kind in ("tick", "halt")]
         known[behavior] = (
             any(step.faults for step in behavior.steps)
             or any(unfinished(behavior, duty) for duty in duties)
             or any(untaken(behavior, duty) for duty in asked)
-            or any(event.part == "thread-start" for step in behavior.steps for event in step.sent)
+            or any(event.part is ProtocolPart.THREAD_START for step in behavior.steps for event in step.sent)
         )
     return bool(known[behavior])
 

@@ -40,6 +40,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression
 from roaml.model.value_types import STATUSES, find_handle
+from roaml.roles import ProtocolPart
 from roaml.text import Span
 
 MOST_CONFIGURATIONS = 4000
@@ -54,7 +55,7 @@ class Event(NamedTuple):
     """An event that a machine receives or sends: the part of an interface or of the tree protocol, with its name in the
     schema, and the handle or the name of the event ("" for the tree)."""
 
-    part: str
+    part: ProtocolPart
     name: str
 
 
@@ -254,11 +255,22 @@ class _Group(NamedTuple):
 _Found = tuple[str, _Path, Handler, int, bool]
 """The target of a step, the history within it, its handler, the choice, and whether the event is ignored."""
 
-_ANSWERABLE = ("bt-tick", "bt-halt", "request", "goal", "response", "result", "child-status", "child-halted")
+_ANSWERABLE = (
+    ProtocolPart.BT_TICK,
+    ProtocolPart.BT_HALT,
+    ProtocolPart.REQUEST,
+    ProtocolPart.GOAL,
+    ProtocolPart.RESPONSE,
+    ProtocolPart.RESULT,
+    ProtocolPart.CHILD_STATUS,
+    ProtocolPart.CHILD_HALTED,
+)
 """Events that are lost if no condition holds, and that a client or parent waits for."""
 _CODES = (4, 5, 6)
-_ANSWERED = {"response": "response", "result": "outcome", "goal-response": "decision"}
+_ANSWERED = {ProtocolPart.RESPONSE: "response", ProtocolPart.RESULT: "outcome", ProtocolPart.GOAL_RESPONSE: "decision"}
 """What a client waits for, by the event that it receives."""
+_ARRIVED = {ProtocolPart.GOAL: "asked", ProtocolPart.THREAD_START: "accepted"}
+"""What the id of a goal is that an event brings."""
 
 
 @dataclass(eq=False)
@@ -363,7 +375,7 @@ class _Explorer:
             and not variables_in((statement.location.tree,)).isdisjoint(numbers)
             for state in self.chart.states
             for handler in state.handlers
-            if handler.trigger == "thread-free"
+            if handler.trigger is ProtocolPart.THREAD_FREE
             for target in handler.targets
             for statement in statements(target.body)
         )
@@ -511,13 +523,13 @@ class _Explorer:
     def event(self, handler: Handler) -> Event | None:
         """The event that a handler waits for; `None` if it waits for none."""
         match handler.trigger:
-            case "":
+            case None:
                 return None
-            case "event":
-                return Event("event", handler.event.value if handler.event else "")
-            case "bt-tick" | "bt-halt":
+            case ProtocolPart.EVENT:
+                return Event(ProtocolPart.EVENT, handler.event.value if handler.event else "")
+            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
                 return Event(handler.trigger, "")
-            case "child-status" | "child-halted":
+            case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
                 return Event(handler.trigger, handler.child.value if handler.child else "")
         declaration = self.declaration(handler)
         handle = declaration.handle if declaration and declaration.handle else handler.handle
@@ -525,15 +537,15 @@ class _Explorer:
 
     def _may_come(self, configuration: Configuration, event: Event) -> bool:
         match event.part:
-            case "bt-tick" | "bt-halt":
+            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
                 return configuration.tree not in ("ticked", "halting")
-            case "child-status":
+            case ProtocolPart.CHILD_STATUS:
                 return configuration.phase("child") in ("ticked", "several")
-            case "child-halted":
+            case ProtocolPart.CHILD_HALTED:
                 return configuration.phase("child") in ("halted", "several")
-            case "request" | "goal":
-                return not configuration.phase(event.part, event.name)
-            case "response" | "result" | "goal-response":
+            case ProtocolPart.REQUEST | ProtocolPart.GOAL:
+                return not configuration.phase(event.part.value, event.name)
+            case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
                 return bool(configuration.phase(_ANSWERED[event.part], event.name))
         return True
 
@@ -555,12 +567,12 @@ class _Explorer:
 
     def _decide(self, group: _Group, taken: _Path) -> None:
         event, handlers = group.event, group.handlers
-        if event is not None and event.part == "result":
+        if event is not None and event.part is ProtocolPart.RESULT:
             for code in _CODES:
                 with_code = tuple(h for h in handlers if h.type.code in (code, 0))
                 if with_code:
                     self._choose(group, with_code, taken)
-        elif event is not None and event.part == "goal-response":
+        elif event is not None and event.part is ProtocolPart.GOAL_RESPONSE:
             self._answered(group, handlers[0], taken)
         else:
             self._choose(group, handlers, taken)
@@ -570,9 +582,9 @@ class _Explorer:
         facts, event = self.facts, group.event
         ways = [taken.knowledge]
         matters = event is not None and event.part in _ANSWERABLE
-        if event is not None and event.part in ("child-status", "child-halted"):
+        if event is not None and event.part in (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED):
             facts = self.status_facts
-            if event.part == "child-status":
+            if event.part is ProtocolPart.CHILD_STATUS:
                 ways = [facts.know(taken.knowledge, "_bt.status", Domain(frozenset(STATUSES.values())))]
         for handler in handlers:
             if handler.cond is None:
@@ -601,7 +613,7 @@ class _Explorer:
     def _execute(self, group: _Group, handler: Handler, paths: list[_Path], only: int | None = None) -> None:
         state, event = group.state, group.event
         leave = state.exit.statements if state.exit else ()
-        arrived = {"goal": "asked", "thread-start": "accepted"}.get(event.part if event else "")
+        arrived = _ARRIVED.get(event.part) if event else None
         self.goal_here = f"{arrived} {event.name}" if event and arrived else "any"
         for choice, target in enumerate(handler.targets):
             if only is not None and choice != only:
@@ -613,7 +625,7 @@ class _Explorer:
                 known = self._kept(path.knowledge) if entered else NOTHING
                 after = name if entered else NOWHERE
                 done = path._replace(knowledge=known)
-                if event is not None and event.part == "goal":  # the earlier goal is an accepted one again
+                if event is not None and event.part is ProtocolPart.GOAL:  # the earlier goal is an accepted one again
                     done = done.with_ids(f"earlier {event.name}", f"accepted {event.name}")
                 self.found.append((after, done, handler, choice, False))
 
@@ -622,20 +634,20 @@ class _Explorer:
         if event is None:
             return path
         match event.part:
-            case "bt-tick":
+            case ProtocolPart.BT_TICK:
                 return path.at("tree", "", "ticked")
-            case "bt-halt":
+            case ProtocolPart.BT_HALT:
                 return path.at("tree", "", "halting")
-            case "child-status" | "child-halted":
+            case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
                 return path if path.phase("child") == "several" else path.at("child", "", "")
-            case "request":
+            case ProtocolPart.REQUEST:
                 return path.at("request", event.name, "due")
-            case "goal":
+            case ProtocolPart.GOAL:
                 path = path.with_ids(f"accepted {event.name}", f"earlier {event.name}")
                 return path.at("goal", event.name, "due")
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 return path.at("result", event.name, "due")
-            case "response" | "result" | "goal-response":
+            case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
                 kind = _ANSWERED[event.part]
                 return path if path.phase(kind, event.name) == "several" else path.at(kind, event.name, "")
         return path
@@ -677,10 +689,12 @@ class _Explorer:
             case ReturnHalted():
                 return (self._halted(statement, path),)
             case Send():
-                return (self._sent(path, Event("event", statement.event.value if statement.event else "")),)
+                return (self._sent(path, Event(ProtocolPart.EVENT, statement.event.value if statement.event else "")),)
             case CallChild():
                 busy, called = path.phase("child"), "halted" if statement.halts else "ticked"
-                sent = self._sent(path, Event("child-halt" if statement.halts else "child-tick", ""))
+                sent = self._sent(
+                    path, Event(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
+                )
                 return (sent.at("child", "", "several" if busy else called),)
             case Communicate():
                 return (self._communicate(statement, path),)
@@ -749,7 +763,7 @@ class _Explorer:
             value = self.facts.value(path.knowledge, Name(Span(0, 0), word))
             answers = tuple(name for name, number in STATUSES.items() if number == value)
         self.statuses[statement].update(answers)
-        path = self._sent(path, Event("bt-status", ""))
+        path = self._sent(path, Event(ProtocolPart.BT_STATUS, ""))
         if path.phase("tree") == "ticked":
             phases = {"running" if answer == "RUNNING" else "ended" for answer in answers} or {"running", "ended"}
             return [path.at("tree", "", phase) for phase in sorted(phases)]
@@ -758,7 +772,7 @@ class _Explorer:
         return (path.wrong("unasked", duty, statement),)
 
     def _halted(self, statement: ReturnHalted, path: _Path) -> _Path:
-        path = self._sent(path, Event("bt-halted", ""))
+        path = self._sent(path, Event(ProtocolPart.BT_HALTED, ""))
         if path.phase("tree") == "halting":
             return path.at("tree", "", "ended")
         kind = "wrong-kind" if path.phase("tree") == "ticked" else "unasked"
@@ -768,26 +782,26 @@ class _Explorer:
         declaration = self.declaration(statement)
         if declaration is None or declaration.handle is None:
             return path
-        part, handle = statement.type.sends, declaration.handle.value
+        part, handle = statement.part, declaration.handle.value
         path = self._sent(path, Event(part, handle))
         match part:
-            case "request":
+            case ProtocolPart.REQUEST:
                 return path.at("response", handle, "several" if path.phase("response", handle) else "awaited")
-            case "goal":
+            case ProtocolPart.GOAL:
                 return path.at("decision", handle, "several" if path.phase("decision", handle) else "awaited")
-            case "response":
+            case ProtocolPart.RESPONSE:
                 if path.phase("request", handle):
                     return path.at("request", handle, "")
                 return path.wrong("unasked", Duty("request", handle), statement)
-            case "goal-accepted" | "goal-rejected":
-                return self._decided(statement, path, handle, part == "goal-accepted")
-            case "result":
+            case ProtocolPart.GOAL_ACCEPTED | ProtocolPart.GOAL_REJECTED:
+                return self._decided(statement, path, handle, part is ProtocolPart.GOAL_ACCEPTED)
+            case ProtocolPart.RESULT:
                 return self._finished(statement, path, handle)
-            case "feedback":
+            case ProtocolPart.FEEDBACK:
                 return self._checked_id(
                     statement, path, handle, Duty("result", handle), ("asked", "accepted", "earlier")
                 )
-            case "thread-start":
+            case ProtocolPart.THREAD_START:
                 path = self._checked_id(statement, path, handle, Duty("result", handle), ("asked", "accepted"))
                 return self._started(statement, path, handle)
         return path

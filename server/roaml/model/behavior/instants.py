@@ -18,32 +18,36 @@ from roaml.model.behavior.explore import Event, Step
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import SENDS
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 
-_PROMISED = {"response": "request", "goal-response": "goal", "result": "result"}
+_PROMISED = {ProtocolPart.RESPONSE: "request", ProtocolPart.GOAL_RESPONSE: "goal", ProtocolPart.RESULT: "result"}
 """The events that a client receives, with the duty of the server that they answer."""
 _KINDS = {
-    "message": (SymbolKind.SUBSCRIBER,),
-    "request": (SymbolKind.SERVICE_SERVER,),
-    "response": (SymbolKind.SERVICE_CLIENT,),
-    "goal": (SymbolKind.ACTION_SERVER,),
-    "goal-response": (SymbolKind.ACTION_CLIENT,),
-    "feedback": (SymbolKind.ACTION_CLIENT,),
-    "result": (SymbolKind.ACTION_CLIENT,),
+    ProtocolPart.MESSAGE: (SymbolKind.SUBSCRIBER,),
+    ProtocolPart.REQUEST: (SymbolKind.SERVICE_SERVER,),
+    ProtocolPart.RESPONSE: (SymbolKind.SERVICE_CLIENT,),
+    ProtocolPart.GOAL: (SymbolKind.ACTION_SERVER,),
+    ProtocolPart.GOAL_RESPONSE: (SymbolKind.ACTION_CLIENT,),
+    ProtocolPart.FEEDBACK: (SymbolKind.ACTION_CLIENT,),
+    ProtocolPart.RESULT: (SymbolKind.ACTION_CLIENT,),
 }
 _SENDERS = {
-    "message": SymbolKind.PUBLISHER,
-    "request": SymbolKind.SERVICE_CLIENT,
-    "goal": SymbolKind.ACTION_CLIENT,
-    "feedback": SymbolKind.ACTION_SERVER,
+    ProtocolPart.MESSAGE: SymbolKind.PUBLISHER,
+    ProtocolPart.REQUEST: SymbolKind.SERVICE_CLIENT,
+    ProtocolPart.GOAL: SymbolKind.ACTION_CLIENT,
+    ProtocolPart.FEEDBACK: SymbolKind.ACTION_SERVER,
 }
 
 _SERVERS = {
-    "response": SymbolKind.SERVICE_SERVER,
-    "goal-response": SymbolKind.ACTION_SERVER,
-    "result": SymbolKind.ACTION_SERVER,
+    ProtocolPart.RESPONSE: SymbolKind.SERVICE_SERVER,
+    ProtocolPart.GOAL_RESPONSE: SymbolKind.ACTION_SERVER,
+    ProtocolPart.RESULT: SymbolKind.ACTION_SERVER,
 }
-_ANSWERS = {"response": ("response",), "goal-response": ("goal-accepted", "goal-rejected"), "result": ("result",)}
+_ANSWERS = {
+    ProtocolPart.RESPONSE: (ProtocolPart.RESPONSE,),
+    ProtocolPart.GOAL_RESPONSE: (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED),
+    ProtocolPart.RESULT: (ProtocolPart.RESULT,),
+}
 """The events that a server sends and a client receives."""
 
 _Fact = tuple[int, Event]
@@ -100,12 +104,12 @@ class _Solver:
 
     def senders(self, automaton: Automaton, event: Event) -> Iterator[tuple[Automaton, Event]]:
         """The automata that may send what arrives at `automaton` as `event`, with the event that they send."""
-        if event.part == "event":
+        if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
                 yield sender, event
             return
-        if event.part in ("thread-start", "thread-free"):
+        if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
             yield automaton, event
             return
         channel = channel_of(self.system, automaton, event)
@@ -151,11 +155,11 @@ class Instants:
 
     def possible(self, step: Step) -> bool:
         """Whether the plugin can take a step. Some servers never reject a goal."""
-        if step.event is None or step.event.part in ("bt-tick", "bt-halt"):
+        if step.event is None or step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT):
             return True
-        if step.event.part == "goal-response":
+        if step.event.part is ProtocolPart.GOAL_RESPONSE:
             server = server_of(self.system, self.plugin, step.event)
-            answer = ("goal-accepted", "goal-rejected")[step.choice]
+            answer = (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED)[step.choice]
             if server is not None and answer not in server.use.sends:
                 return False
         return self.comes(step.event)
@@ -163,18 +167,18 @@ class Instants:
     def _holds(self, solver: _Solver, number: int, event: Event) -> bool:
         automaton = self.system.automata[number]
         match event.part:
-            case "child-status" | "child-halted":
+            case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
                 return True
-            case "bt-tick" | "bt-halt":
+            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
                 return id(automaton) in self.below
-            case "response" | "goal-response" | "result":
+            case ProtocolPart.RESPONSE | ProtocolPart.GOAL_RESPONSE | ProtocolPart.RESULT:
                 server = server_of(self.system, automaton, event)
                 if server is None or may_be_sent(self.system, automaton, event):
                     return True
                 if not is_readable(self.system, server.automaton):
                     return True
                 return not any(self._takes_time(server, p) for p in self._kept(server, event))
-        if event == START or event.part == "tick" or is_clock(self.system, automaton, event):
+        if event == START or event.part is ProtocolPart.TICK or is_clock(self.system, automaton, event):
             return False
         if may_be_sent(self.system, automaton, event):
             return True
@@ -212,7 +216,7 @@ class Instants:
                 if server and self._takes_time(server, promise):
                     awaited = self._first(server.automaton, promise.needs)
                     return Delay(automaton, event, server, promise, self._delay(server.automaton, awaited, seen))
-        if event.part != "tick" and not is_clock(self.system, automaton, event):
+        if event.part is not ProtocolPart.TICK and not is_clock(self.system, automaton, event):
             for sender, sent in self.solver.senders(automaton, event):
                 for cause in sorted(self.solver.causes(sender, sent)):
                     return Delay(automaton, event, next=self._delay(sender, cause, seen))
@@ -227,16 +231,16 @@ class Instants:
 
 def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
     """Whether an event may come from an unreadable part."""
-    if event.part == "event":
+    if event.part is ProtocolPart.EVENT:
         return system.may(SENDS, event.name)
-    if event.part in ("thread-start", "thread-free"):
-        acts: tuple[str, ...] = (f"action-server {event.part}",)
+    if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
+        acts: tuple[str, ...] = (f"action-server {event.part.value}",)
         name = next(
             (automaton.interface_name(use) for use in automaton.outline.interfaces if use.handle == event.name), ""
         )
     else:
         sender = _SENDERS.get(event.part) or _SERVERS[event.part]
-        acts = tuple(f"{sender.value} {part}" for part in _ANSWERS.get(event.part, (event.part,)))
+        acts = tuple(f"{sender.value} {part.value}" for part in _ANSWERS.get(event.part, (event.part,)))
         channel = channel_of(system, automaton, event)
         name = channel.name if channel else ""
     return any(system.may(act, name or "") for act in acts)
@@ -261,7 +265,7 @@ def server_of(system: System, automaton: Automaton, event: Event) -> Endpoint | 
 
 
 def is_clock(system: System, automaton: Automaton, event: Event) -> bool:
-    if event.part != "message":
+    if event.part is not ProtocolPart.MESSAGE:
         return False
     uses = (
         use for use in automaton.outline.interfaces if use.kind is SymbolKind.SUBSCRIBER and use.handle == event.name
@@ -299,7 +303,13 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
 
     def holds(solver: _Solver, number: int, awaited: Event) -> bool:
         automaton = system.automata[number]
-        if awaited == START or awaited.part in ("tick", "bt-tick", "bt-halt", "child-status", "child-halted"):
+        if awaited == START or awaited.part in (
+            ProtocolPart.TICK,
+            ProtocolPart.BT_TICK,
+            ProtocolPart.BT_HALT,
+            ProtocolPart.CHILD_STATUS,
+            ProtocolPart.CHILD_HALTED,
+        ):
             return True
         if is_clock(system, automaton, awaited) or may_be_sent(system, automaton, awaited):
             return True
@@ -318,7 +328,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
         return False
 
     solver = _Solver(system, holds)
-    if is_clock(system, receiver, event) or (event.part == "event" and event in sent):
+    if is_clock(system, receiver, event) or (event.part is ProtocolPart.EVENT and event in sent):
         return True
     senders = list(solver.senders(receiver, event))
     if may_be_sent(system, receiver, event) or not all(is_readable(system, sender) for sender, _ in senders):
@@ -326,7 +336,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
     if any(sender is receiver and what in sent for sender, what in senders):
         return True
     # Each copy of a thread is a sender of its own.
-    several = len(senders) > 1 or (event.part == "thread-free" and max(copies[1:], default=1) > 1)
+    several = len(senders) > 1 or (event.part is ProtocolPart.THREAD_FREE and max(copies[1:], default=1) > 1)
     for sender, what in senders:
         number = solver.number(sender)
         if several and any(solver.solve(number, cause) for cause in sends(solver, sender, what)):

@@ -12,17 +12,24 @@ from typing import TypeAlias
 
 from roaml.model.behavior.explore import NOWHERE, Behavior, Duty, Event, Step, explore
 from roaml.model.machine import Chart, Machine
+from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[Event]]
 """Alternatives: each is a set of events that together are sufficient. Without an alternative, it never comes."""
 
 AT_ONCE: frozenset[Event] = frozenset()
-START = Event("start", "")
+START = Event(ProtocolPart.START, "")
 """The time before the first event of a machine."""
 
 MOST_ALTERNATIVES = 6
 MOST_EVENTS = 4
-REPEATED = ("message", "event", "feedback", "thread-start", "thread-free")
+REPEATED = (
+    ProtocolPart.MESSAGE,
+    ProtocolPart.EVENT,
+    ProtocolPart.FEEDBACK,
+    ProtocolPart.THREAD_START,
+    ProtocolPart.THREAD_FREE,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,15 +117,15 @@ class _Summary:
         """The duties of the machine as a server."""
         found: dict[Duty, None] = {}
         for event in self.events:
-            if event.part in ("request", "goal"):
-                found[Duty(event.part, event.name)] = None
-            if event.part in ("goal", "thread-start"):
+            if event.part in (ProtocolPart.REQUEST, ProtocolPart.GOAL):
+                found[Duty(event.part.value, event.name)] = None
+            if event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START):
                 found[Duty("result", event.name)] = None
         return list(found)
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
         """The places where an answer is owed, and where a request is not even handled."""
-        taking, configurations = Event(duty.kind, duty.handle), self.behavior.configurations
+        taking, configurations = Event(ProtocolPart(duty.kind), duty.handle), self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
         answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]

@@ -11,7 +11,7 @@ from roaml.model.behavior.explore import Behavior, Duty, Event, Step
 from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
 from roaml.model.machine import Handler
 from roaml.model.system import Automaton, System
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place, plugins
 from roaml.rules.support.asynchronous import rewritten
@@ -49,7 +49,7 @@ def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
     This is the handler of the step. If the step is a decision on a goal, which has no content, these are the handlers
     of the ticks that lead there.
     """
-    if step.event is None or step.event.part != "goal-response":
+    if step.event is None or step.event.part is not ProtocolPart.GOAL_RESPONSE:
         return (step.handler,)
     sources, waiting = {step.source}, [step.source]
     found: dict[Handler, None] = {}
@@ -107,7 +107,7 @@ def _reasons(system: System, delay: Delay | None) -> Iterator[str]:
     while delay is not None and delay.next is not None:
         then = delay.next
         what = _named(system, then.automaton, then.event)
-        timed = then.event.part == "tick"
+        timed = then.event.part is ProtocolPart.TICK
         if delay.promise is not None and delay.server is not None:
             name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
             doing, state = _DOING[delay.event.part], delay.promise.state
@@ -121,15 +121,19 @@ def _reasons(system: System, delay: Delay | None) -> Iterator[str]:
         delay = then
 
 
-_DOING = {"response": "answers", "goal-response": "decides on the goals of", "result": "sends the result of"}
+_DOING = {
+    ProtocolPart.RESPONSE: "answers",
+    ProtocolPart.GOAL_RESPONSE: "decides on the goals of",
+    ProtocolPart.RESULT: "sends the result of",
+}
 _WHAT = {
-    "response": "the response of",
-    "goal-response": "the decision on its goal for",
-    "result": "the result of",
-    "feedback": "feedback of",
-    "message": "a message on",
-    "request": "a request for",
-    "goal": "a goal for",
+    ProtocolPart.RESPONSE: "the response of",
+    ProtocolPart.GOAL_RESPONSE: "the decision on its goal for",
+    ProtocolPart.RESULT: "the result of",
+    ProtocolPart.FEEDBACK: "feedback of",
+    ProtocolPart.MESSAGE: "a message on",
+    ProtocolPart.REQUEST: "a request for",
+    ProtocolPart.GOAL: "a goal for",
 }
 
 
@@ -141,19 +145,19 @@ def _channel(system: System, automaton: Automaton, event: Event) -> str:
 def _named(system: System, automaton: Automaton, event: Event) -> str:
     """A phrase for the event that is waited for."""
     match event.part:
-        case "tick":
+        case ProtocolPart.TICK:
             return f"its timer `{event.name}`"
-        case "event":
+        case ProtocolPart.EVENT:
             return f"the event `{event.name}`"
-        case "start":
+        case ProtocolPart.START:
             return "its start"
-        case "bt-tick" | "bt-halt":
-            return f"the next {event.part[3:]} of `{automaton.name}`"
-        case "thread-start":
+        case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
+            return f"the next {event.part.value[3:]} of `{automaton.name}`"
+        case ProtocolPart.THREAD_START:
             return "the start of a thread"
-        case "thread-free":
+        case ProtocolPart.THREAD_FREE:
             return "a thread that becomes free"
-    return f"{_WHAT.get(event.part, event.part)} {_channel(system, automaton, event)}"
+    return f"{_WHAT.get(event.part, event.part.value)} {_channel(system, automaton, event)}"
 
 
 def _related(delay: Delay) -> Iterator[Related]:
@@ -162,7 +166,7 @@ def _related(delay: Delay) -> Iterator[Related]:
         if each.promise is not None and each.server is not None:
             path, promise = each.server.automaton.path, each.promise
             yield Related(Symbol(path, SymbolKind.STATE, promise.state, promise.scope), "the machine waits here")
-        elif each.next is None and each.event.part == "tick":
+        elif each.next is None and each.event.part is ProtocolPart.TICK:
             yield Related(Symbol(each.automaton.path, SymbolKind.TIMER, each.event.name), "the timer")
         each = each.next
 

@@ -10,6 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.behavior.explore import Behavior, Duty, Event, Fault, Step
 from roaml.model.machine import Communicate, Handler, If, ReturnHalted, ReturnStatus, Statement, statements
 from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import SENT, answered_in, behaviors, place, plugins
 from roaml.text import TextEdit
@@ -36,8 +37,8 @@ def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Faul
     if fault.duty.kind in ("tick", "halt"):
         if not in_tree or behavior.chart is not context.machine.chart:
             return False
-        takes = "bt-tick" if isinstance(fault.statement, ReturnStatus) else "bt-halt"
-        if not any(s.event and s.event.part == takes for s in behavior.steps) and not _twice(step, fault):
+        takes = ProtocolPart.BT_TICK if isinstance(fault.statement, ReturnStatus) else ProtocolPart.BT_HALT
+        if not any(s.event and s.event.part is takes for s in behavior.steps) and not _twice(step, fault):
             return False  # the missing handler is reported instead
     elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
         return False
@@ -48,8 +49,8 @@ def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Faul
 
 def _is_asked(behavior: Behavior, duty: Duty) -> bool:
     """Whether this chart handles the events that the duty answers."""
-    kinds = ("goal", "thread-start") if duty.kind == "result" else (duty.kind,)
-    return any(step.event and step.event.part in kinds and step.event.name == duty.handle for step in behavior.steps)
+    parts = (ProtocolPart.GOAL, ProtocolPart.THREAD_START) if duty.kind == "result" else (ProtocolPart(duty.kind),)
+    return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
 
 def _owes_another(behavior: Behavior, step: Step, duty: Duty) -> bool:
@@ -65,9 +66,9 @@ def _twice(step: Step, fault: Fault) -> bool:
 def _answers(fault: Fault) -> set[Event]:
     """The events that answer the duty of a fault."""
     if fault.duty.kind == "goal":
-        parts = {"goal-accepted", "goal-rejected"}
+        parts = {ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED}
     elif fault.duty.kind in ("tick", "halt"):
-        parts = {"bt-status", "bt-halted"}
+        parts = {ProtocolPart.BT_STATUS, ProtocolPart.BT_HALTED}
     else:
         parts = {SENT[fault.duty.kind]}
     handle = "" if fault.duty.kind in ("tick", "halt") else fault.duty.handle
@@ -169,12 +170,12 @@ def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement
 
 def _event(context: MachineContext, statement: Statement) -> Event | None:
     if isinstance(statement, ReturnStatus):
-        return Event("bt-status", "")
+        return Event(ProtocolPart.BT_STATUS, "")
     if isinstance(statement, ReturnHalted):
-        return Event("bt-halted", "")
+        return Event(ProtocolPart.BT_HALTED, "")
     if isinstance(statement, Communicate):
         declaration = find_handle(context.machine, statement)
-        return Event(statement.type.sends, declaration.handle.value) if declaration and declaration.handle else None
+        return Event(statement.part, declaration.handle.value) if declaration and declaration.handle else None
     return None
 
 

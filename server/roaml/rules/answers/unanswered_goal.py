@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.behavior.explore import Behavior, Duty, Step
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.support.interfaces import declared
@@ -18,7 +18,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
     accept or end a goal are reported by silent-server."""
     awaited = _awaited(context)
     for behavior in behaviors(context):
-        asked = {s.event.name for s in behavior.steps if s.event and s.event.part in ("goal", "thread-start")}
+        asked = {
+            s.event.name
+            for s in behavior.steps
+            if s.event and s.event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
+        }
         for name in sorted(asked):
             for kind in ("goal", "result"):
                 duty = Duty(kind, name)
@@ -33,7 +37,7 @@ def _awaited(context: MachineContext) -> set[str]:
     return {
         declaration.handle.value
         for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER)
-        if declaration.handle and any("result" in client.use.receives for client in channel.users)
+        if declaration.handle and any(ProtocolPart.RESULT in client.use.receives for client in channel.users)
     }
 
 
@@ -53,13 +57,13 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
     how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"
-    if (ends and not {e.part for e in step.sent} & {"goal-accepted"}) or not (ends or _asks(step)):
+    if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _asks(step)):
         which = "the goal that waits here"
     return f"{which} {how}, so its client waits for ever; {end} on every path"
 
 
 def _asks(step: Step) -> bool:
-    return step.event is not None and step.event.part == "goal"
+    return step.event is not None and step.event.part is ProtocolPart.GOAL
 
 
 RULE = Rule(

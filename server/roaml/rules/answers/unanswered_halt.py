@@ -12,6 +12,7 @@ from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, Step
 from roaml.model.machine import State
 from roaml.model.system import Automaton
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
@@ -69,7 +70,7 @@ def _message(step: Step, certain: bool) -> str:
         what = "events are dropped while this condition does not hold, so the halt is never answered"
         tag = f"<{step.handler.element.name}>"
         return f"{what} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    halted = step.event is not None and step.event.part == "bt-halt"
+    halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
     where = "a halt that is handled here" if halted else "the halt that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
@@ -108,7 +109,12 @@ def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:
     """Add a `<bt_return_halted />` to the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     sent = {event.part for event in step.sent}
-    if place.complete and step.certain and not step.ignored and not sent & {"bt-halted", "bt-status"}:
+    if (
+        place.complete
+        and step.certain
+        and not step.ignored
+        and not sent & {ProtocolPart.BT_HALTED, ProtocolPart.BT_STATUS}
+    ):
         yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 

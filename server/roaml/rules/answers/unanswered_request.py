@@ -11,6 +11,7 @@ from roaml.model.behavior.explore import Behavior, Duty, Step
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
 from roaml.rules.support.interfaces import response
@@ -20,7 +21,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     """Report services that answer on some paths only. Services that never answer are reported by silent-server."""
     for behavior in behaviors(context):
         asked = {
-            step.event.name: step.handler for step in behavior.steps if step.event and step.event.part == "request"
+            step.event.name: step.handler
+            for step in behavior.steps
+            if step.event and step.event.part is ProtocolPart.REQUEST
         }
         for name, handler in asked.items():
             duty = Duty("request", name)
@@ -37,7 +40,7 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Ha
 
 
 def _message(step: Step, duty: Duty, certain: bool) -> str:
-    asked = step.event is not None and step.event.part == "request"
+    asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
     if step.ignored:
         what = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
         if not asked:

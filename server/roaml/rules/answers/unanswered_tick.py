@@ -11,6 +11,7 @@ from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, Step
 from roaml.model.system import Automaton
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
@@ -57,7 +58,7 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 
 def _message(step: Step, certain: bool) -> str:
-    ticked = step.event is not None and step.event.part == "bt-tick"
+    ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
     if step.ignored:
         tag = f"<{step.handler.element.name}>"
         what = "a tick that arrives while this condition does not hold is dropped and never answered,"
@@ -101,7 +102,7 @@ def _fixes(context: MachineContext, step: Step) -> Iterator[Fix]:
     document, element = context.document, step.handler.element
     if not element.complete or step.event is None:
         return
-    if step.ignored and step.event.part == "bt-tick":
+    if step.ignored and step.event.part is ProtocolPart.BT_TICK:
         state = next((s for s in context.machine.chart.states if step.handler in s.handlers), None)
         if state is not None and state.id is not None:
             lines = (f'<bt_tick target="{state.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
@@ -110,7 +111,7 @@ def _fixes(context: MachineContext, step: Step) -> Iterator[Fix]:
                 (after(document, element, *lines),),
                 preferred=False,
             )
-    elif not step.ignored and "bt-status" not in {e.part for e in step.sent} and step.certain:
+    elif not step.ignored and ProtocolPart.BT_STATUS not in {e.part for e in step.sent} and step.certain:
         place = step.handler.targets[step.choice].element or element
         if place.complete:
             yield Fix("Answer the tick with `SUCCESS`", (last_in(document, place, ANSWER),), preferred=False)

@@ -15,7 +15,7 @@ from roaml.model.machine import Assign, Chart, Communicate, If, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
 from roaml.model.value_types import find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, is_spelled, place
 from roaml.rules.support.interfaces import declared
@@ -120,7 +120,7 @@ def _constant_finding(statements: list[Communicate], why: str) -> Finding:
 
 def _wrong_constant(system: System, channel: Channel, value: float) -> str:
     """Why a constant cannot be the id of all goals of an action; "" if it can."""
-    clients = [user.automaton.name for user in channel.users if "goal" in user.use.sends]
+    clients = [user.automaton.name for user in channel.users if ProtocolPart.GOAL in user.use.sends]
     if 0 <= value < len(channel.users) and value == int(value):
         if len(clients) < 2:
             return ""
@@ -148,7 +148,11 @@ def _asks_for_ids(chart: Chart) -> bool:
 
 def _store(context: MachineContext, step: Step, variable: str) -> Iterator[Fix]:
     element = step.handler.targets[step.choice].element or step.handler.element
-    if step.event is not None and step.event.part in ("goal", "thread-start") and element.complete:
+    if (
+        step.event is not None
+        and step.event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
+        and element.complete
+    ):
         edit = first_in(context.document, element, f'<assign location="{variable}" expr="_action.goal_id" />')
         yield Fix(f"Store the goal id in `{variable}`", (edit,))
 

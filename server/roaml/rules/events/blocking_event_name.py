@@ -9,9 +9,10 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
-from roaml.model.translated import is_synchronising
 from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.scxml.names import is_synchronising
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -31,8 +32,8 @@ def _with_feedback(machine: Machine) -> Iterator[Declaration]:
     """The declarations of actions whose feedback the machine sends or handles."""
     users: list[Communicate | Handler] = []
     for chart in machine.charts:
-        users += [s for s in chart.statements if isinstance(s, Communicate) and s.type.sends == "feedback"]
-        users += [h for state in chart.states for h in state.handlers if h.trigger == "feedback"]
+        users += [s for s in chart.statements if isinstance(s, Communicate) and s.type.sends is ProtocolPart.FEEDBACK]
+        users += [h for state in chart.states for h in state.handlers if h.trigger is ProtocolPart.FEEDBACK]
     used = [find_handle(machine, user) for user in users]
     return (declaration for declaration in machine.declarations if declaration in used)
 

@@ -60,7 +60,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if known:
         message = f"`{name}` is not available here; `<{tag}>` provides {listing(known)}"
         return RULE.at(problem.span, message, *_fixes(context, problem, known))
-    if place.handler is not None and place.handler.trigger == "":
+    if place.handler is not None and place.handler.trigger is None:
         message = (
             f"`{name}` is not available here, because this transition has no event; add the `event` whose data it uses"
         )

@@ -14,8 +14,9 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import System
-from roaml.model.translated import TIMER_PREFIX
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.scxml.names import TIMER_PREFIX
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
 """Events that ticked and halted plugins in an older version; removed-bt-event reports them."""
@@ -40,7 +41,7 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
         for state in chart.states:
             for handler in state.handlers:
                 event = handler.event
-                if handler.trigger != "event" or event is None:
+                if handler.trigger is not ProtocolPart.EVENT or event is None:
                     continue
                 if event.value in OF_THE_TREE and context.listed_as != {"node_models"}:
                     continue

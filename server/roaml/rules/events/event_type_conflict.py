@@ -12,7 +12,7 @@ from roaml.model.machine import Communicate, Declaration, Param, Send
 from roaml.model.outline import SentField
 from roaml.model.system import Event
 from roaml.model.value_types import TypedValue, Use, find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 from roaml.rules.support.types import phrase
@@ -92,13 +92,13 @@ def same(left: Type, right: Type) -> bool:
 # ------------------------------------------------------------------ ROS fields
 
 
-def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, str], list[Param]]:
+def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPart], list[Param]]:
     """The fields that the machine sends, by declaration and part of the interface."""
-    found: defaultdict[tuple[Declaration, str], list[Param]] = defaultdict(list)
+    found: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Communicate) and (declaration := find_handle(context.machine, statement)):
-                found[declaration, statement.type.sends] += statement.fields
+                found[declaration, statement.part] += statement.fields
     return found
 
 

@@ -12,19 +12,20 @@ from roaml.model.behavior.instants import comes_again
 from roaml.model.machine import CallChild, Communicate, Handler, Send, Statement, statements
 from roaml.model.syntax import Expression
 from roaml.model.value_types import Place, TypedValue, Use, find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
 
 _ANSWERS = {
-    "request": ("response",),
-    "response": ("request",),
-    "goal": ("goal-accepted", "goal-rejected"),
-    "result": ("goal",),
-    "goal-response": ("goal",),
-    "child-status": ("child",),
-    "child-halted": ("child",),
-    "bt-tick": ("bt-status",),
-    "bt-halt": ("bt-halted",),
+    ProtocolPart.REQUEST: (ProtocolPart.RESPONSE,),
+    ProtocolPart.RESPONSE: (ProtocolPart.REQUEST,),
+    ProtocolPart.GOAL: (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED),
+    ProtocolPart.RESULT: (ProtocolPart.GOAL,),
+    ProtocolPart.GOAL_RESPONSE: (ProtocolPart.GOAL,),
+    ProtocolPart.CHILD_STATUS: (ProtocolPart.CHILD_TICK, ProtocolPart.CHILD_HALT),
+    ProtocolPart.CHILD_HALTED: (ProtocolPart.CHILD_TICK, ProtocolPart.CHILD_HALT),
+    ProtocolPart.BT_TICK: (ProtocolPart.BT_STATUS,),
+    ProtocolPart.BT_HALT: (ProtocolPart.BT_HALTED,),
 }
 """What a machine must send before the next event of a kind can arrive."""
 
@@ -57,8 +58,9 @@ def _may_be_newer(context: MachineContext, place: Place, at: int) -> bool:
 
 def _event(context: MachineContext, user: Handler | Communicate) -> Event:
     """The event that a handler receives, or that an element sends."""
-    part = user.trigger if isinstance(user, Handler) else user.type.sends
-    if isinstance(user, Handler) and user.trigger == "event":
+    part = user.trigger if isinstance(user, Handler) else user.part
+    assert part is not None
+    if isinstance(user, Handler) and user.trigger is ProtocolPart.EVENT:
         return Event(part, user.event.value if user.event else "")
     declaration = find_handle(context.machine, user)
     return Event(part, declaration.handle.value if declaration and declaration.handle else "")
@@ -72,9 +74,9 @@ def _sent_before(context: MachineContext, place: Place, handler: Handler, at: in
     for statement in executed:
         match statement:
             case Send(event=event) if event is not None:
-                yield Event("event", event.value)
+                yield Event(ProtocolPart.EVENT, event.value)
             case CallChild():
-                yield Event("child", "")
+                yield Event(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
             case Communicate() if not statement.element.span.end > at:
                 yield _event(context, statement)
 
@@ -98,7 +100,12 @@ def _severity(value: TypedValue) -> Severity | None:
     """Data of the tree protocol cannot be overwritten, because a node answers once per tick; data that are only sent on
     seldom are."""
     handler = value.place.handler
-    if handler is not None and handler.trigger in ("child-status", "child-halted", "bt-tick", "bt-halt"):
+    if handler is not None and handler.trigger in (
+        ProtocolPart.CHILD_STATUS,
+        ProtocolPart.CHILD_HALTED,
+        ProtocolPart.BT_TICK,
+        ProtocolPart.BT_HALT,
+    ):
         return Severity.HINT
     return Severity.HINT if value.use in (Use.PARAMETER, Use.FIELD, Use.ARGUMENT, Use.OUTPUT) else None
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import indent_of, removal
 from roaml.model.syntax import Name
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, listing
 from roaml.text import TextEdit
 from roaml.xml_syntax import Attribute, Element
@@ -18,7 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for state in chart.states:
             for handler in state.handlers:
                 attribute = handler.element.get("event")
-                if handler.trigger == "event" and attribute is not None and attribute.has_value:
+                if handler.trigger is ProtocolPart.EVENT and attribute is not None and attribute.has_value:
                     yield from _check(handler.element, attribute, handler.event, context.source.text)
 
 

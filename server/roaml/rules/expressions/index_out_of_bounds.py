@@ -139,7 +139,7 @@ def _has_room(context: MachineContext, place: Place, array: Expr, bound: int) ->
     return any(_limits(context, condition.tree, array, bound, holds) for condition, holds in conditions)
 
 
-def _trigger(handler: Handler) -> tuple[str, ...]:
+def _trigger(handler: Handler) -> tuple[object, ...]:
     """The trigger that handlers which are tested in order have in common."""
     names = (handler.event, handler.handle, handler.child)
     return (handler.trigger, *(name.value if name else "" for name in names))

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.model.machine import Declaration, Handler
 from roaml.model.value_types import find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 
@@ -19,7 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if system is None:
         return
     for declaration, _, action in declared(context, SymbolKind.ACTION_CLIENT):
-        if not action.sources or any("feedback" in server.use.sends for server in action.sources):
+        if not action.sources or any(ProtocolPart.FEEDBACK in server.use.sends for server in action.sources):
             continue
         if any(system.may("action-server feedback", action.name, server.automaton) for server in action.sources):
             continue
@@ -34,7 +34,7 @@ def _handlers(context: MachineContext, declaration: Declaration) -> Iterator[Han
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
-                if handler.trigger == "feedback" and find_handle(context.machine, handler) is declaration:
+                if handler.trigger is ProtocolPart.FEEDBACK and find_handle(context.machine, handler) is declaration:
                     yield handler
 
 

@@ -11,17 +11,17 @@ from roaml.language import HL_SCXML
 from roaml.model.machine import Communicate, Declaration
 from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 
 ANSWERS = {
-    "response": (SymbolKind.SERVICE_CLIENT, "ros_service_send_request"),
-    "goal-response": (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
-    "feedback": (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
-    "result": (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
-    "thread-free": (SymbolKind.ACTION_SERVER, "ros_action_thread_free"),
-    "thread-start": (SymbolKind.ACTION_SERVER, "ros_action_start_thread"),
+    ProtocolPart.RESPONSE: (SymbolKind.SERVICE_CLIENT, "ros_service_send_request"),
+    ProtocolPart.GOAL_RESPONSE: (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
+    ProtocolPart.FEEDBACK: (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
+    ProtocolPart.RESULT: (SymbolKind.ACTION_CLIENT, "ros_action_send_goal"),
+    ProtocolPart.THREAD_FREE: (SymbolKind.ACTION_SERVER, "ros_action_thread_free"),
+    ProtocolPart.THREAD_START: (SymbolKind.ACTION_SERVER, "ros_action_start_thread"),
 }
 
 

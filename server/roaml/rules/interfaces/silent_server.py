@@ -11,7 +11,7 @@ from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Automaton, Channel, Endpoint, System
 from roaml.model.value_types import find_handle
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, find_use, name_span, response
 
@@ -20,21 +20,28 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
     for declaration, automaton, channel in declared(context, SymbolKind.SERVICE_SERVER):
-        clients = [c for c in channel.users if "request" in c.use.sends]
+        clients = [c for c in channel.users if ProtocolPart.REQUEST in c.use.sends]
         if clients and not _may_do_more(context.system, automaton, SymbolKind.SERVICE_SERVER, channel):
             yield from _service(context, declaration, automaton, channel, clients)
     for declaration, automaton, channel in declared(context, SymbolKind.ACTION_SERVER):
-        clients = [c for c in channel.users if "goal" in c.use.sends]
+        clients = [c for c in channel.users if ProtocolPart.GOAL in c.use.sends]
         if clients and not _may_do_more(context.system, automaton, SymbolKind.ACTION_SERVER, channel):
             yield from _action(declaration, automaton, channel, clients)
 
 
 def _may_do_more(system: System, automaton: Automaton, kind: SymbolKind, channel: Channel) -> bool:
     """Whether a server may answer in a part of its machine that cannot be read."""
-    return any(system.may(f"{kind.value} {part}", channel.name, automaton) for part in _PARTS)
+    return any(system.may(f"{kind.value} {part.value}", channel.name, automaton) for part in _PARTS)
 
 
-_PARTS = ("request", "response", "goal", "goal-accepted", "goal-rejected", "result")
+_PARTS = (
+    ProtocolPart.REQUEST,
+    ProtocolPart.RESPONSE,
+    ProtocolPart.GOAL,
+    ProtocolPart.GOAL_ACCEPTED,
+    ProtocolPart.GOAL_REJECTED,
+    ProtocolPart.RESULT,
+)
 
 
 def _service(
@@ -42,10 +49,10 @@ def _service(
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
     what = f"the service `{channel.name}` is called but"
-    if not sends(automaton, declaration, "response"):
+    if not sends(automaton, declaration, ProtocolPart.RESPONSE):
         message = f"{what} never answers: `<ros_service_send_response>` is missing"
         yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
-    elif not receives(automaton, declaration, "request"):
+    elif not receives(automaton, declaration, ProtocolPart.REQUEST):
         message = f"{what} does not handle requests: `<ros_service_handle_request>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
 
@@ -54,16 +61,16 @@ def _action(
     declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
-    if not sends(automaton, declaration, "goal-accepted"):
-        rejects = sends(automaton, declaration, "goal-rejected")
+    if not sends(automaton, declaration, ProtocolPart.GOAL_ACCEPTED):
+        rejects = sends(automaton, declaration, ProtocolPart.GOAL_REJECTED)
         what = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
         message = f"the action `{channel.name}` {what}: `<ros_action_accept_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
-    elif not receives(automaton, declaration, "goal"):
+    elif not receives(automaton, declaration, ProtocolPart.GOAL):
         message = f"the action `{channel.name}` does not handle goals: `<ros_action_handle_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
-    waiting = [c for c in clients if "result" in c.use.receives]
-    if waiting and not sends(automaton, declaration, "result"):
+    waiting = [c for c in clients if ProtocolPart.RESULT in c.use.receives]
+    if waiting and not sends(automaton, declaration, ProtocolPart.RESULT):
         message = (
             f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
         )
@@ -78,7 +85,7 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     places = [
         target.element or handler.element
         for handler in handlers
-        if handler.trigger == "request" and find_handle(context.machine, handler) is declaration
+        if handler.trigger is ProtocolPart.REQUEST and find_handle(context.machine, handler) is declaration
         for target in handler.targets
     ]
     if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
@@ -88,12 +95,12 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
 
 
-def sends(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+def sends(automaton: Automaton, declaration: Declaration, part: ProtocolPart) -> bool:
     use = find_use(automaton, declaration)
     return use is not None and part in use.sends
 
 
-def receives(automaton: Automaton, declaration: Declaration, part: str) -> bool:
+def receives(automaton: Automaton, declaration: Declaration, part: ProtocolPart) -> bool:
     use = find_use(automaton, declaration)
     return use is not None and part in use.receives
 

@@ -11,7 +11,8 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel
-from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
 from roaml.rules.support.interfaces import declared, other_kind
@@ -44,13 +45,15 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
     ):
         return
     interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-    part = SECTIONS.get(handler.trigger, handler.trigger)
-    if not isinstance(interface, InterfaceType) or field not in dict(interface.optional).get(part, frozenset()):
+    part = ProtocolPart.GOAL if handler.trigger is ProtocolPart.THREAD_START else handler.trigger
+    if part is None or not isinstance(interface, InterfaceType):
+        return
+    if field not in dict(interface.optional).get(part.value, frozenset()):
         return
     for found, _, channel in declared(context, declaration.kind):
         if found is not declaration:
             continue
-        unread = context.system.may(f"{other_kind(declaration.kind).value} {part} field", channel.name)
+        unread = context.system.may(f"{other_kind(declaration.kind).value} {part.value} field", channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(
                 node.name_span,
@@ -62,7 +65,7 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
             return
 
 
-def _sent(channel: Channel, part: str) -> Iterator[set[str]]:
+def _sent(channel: Channel, part: ProtocolPart) -> Iterator[set[str]]:
     for endpoint in channel.endpoints:
         yield {field.name for field in dict(endpoint.use.fields).get(part, ())}
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import Scalar, Type, unwrap
-from roaml.jani.infer import Scope
+from roaml.jani.infer import TypeScope
 from roaml.jani.notes import TYPE
 from roaml.jani.typecheck import check_property
 from roaml.jani.types import BOOL, INT, REAL, ArrayType, UnknownType
@@ -18,7 +18,7 @@ from roaml.rules.rule import PropertiesContext, Rule
 def check(context: PropertiesContext) -> Iterator[Finding]:
     if context.variables is None:
         return
-    scope = Scope({variable.name: _jani_type(variable.type) for variable in context.variables.values()})
+    scope = TypeScope({variable.name: _jani_type(variable.type) for variable in context.variables.values()})
     for property_ in context.properties:
         yield from (finding for finding in check_property(property_, scope) if finding.code == TYPE)
 

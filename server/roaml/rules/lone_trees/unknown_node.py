@@ -18,9 +18,14 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
+    undescribed: set[str] = set()
     for _, node in forest.own_nodes():
         if node.plugin is not None and not node.is_subtree and not forest.names_tree(node):
-            yield from _check(forest, node)
+            for finding in _check(forest, node):
+                # What no model describes is told once for each name.
+                if finding.fixes or node.plugin.value not in undescribed:
+                    yield finding
+            undescribed.add(node.plugin.value)
 
 
 def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
@@ -52,7 +57,7 @@ def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
     """A program may register nodes that no model describes; what is nearly the name of a node is told in any case."""
     assert node.plugin is not None
     trees = tuple(forest.trees)
-    near = probably_meant(name, (*forest.names, *trees))
+    near = probably_meant(name, forest.names) or probably_meant(name, trees, most=1)
     if near is not None:
         what = "tree" if near in trees and near not in forest.names else "node"
         known = forest.node(near)
@@ -60,7 +65,7 @@ def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
         message = f"there is no node `{name}`; did you mean the {what} `{near}`{library}?"
         yield RULE.at(node.plugin.span, message, _renaming(node, near))
     elif forest.has_own_models or forest.libraries:
-        severity = Severity.WARNING if forest.has_own_models else Severity.INFORMATION
+        severity = Severity.WARNING if forest.has_all_models else Severity.INFORMATION
         message = f"no model describes the node `{name}`; `<TreeNodesModel>` and the setting `tree-models` can"
         yield RULE.at(node.plugin.span, message, severity=severity)
 

@@ -15,8 +15,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for state in chart.states:
             handlers = [handler for handler in state.handlers if handler.effective]
-            always = next((h for h in handlers if h.trigger == "" and h.cond is None), None)
-            waiting = [handler for handler in handlers if handler.trigger != ""]
+            always = next((h for h in handlers if h.trigger is None and h.cond is None), None)
+            waiting = [handler for handler in handlers if handler.trigger is not None]
             if always is not None and waiting:
                 names = listing(dict.fromkeys(_awaited(handler) for handler in waiting))
                 yield RULE.at(

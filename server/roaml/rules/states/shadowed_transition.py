@@ -12,7 +12,7 @@ from roaml.model.behavior.knowledge import Facts
 from roaml.model.machine import Chart, Handler, State
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.conditions import covered
-from roaml.rules.support.triggers import chooses, conditional, trigger
+from roaml.rules.support.triggers import Trigger, chooses, conditional, trigger
 from roaml.text import Span, TextEdit
 
 
@@ -24,14 +24,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
     machine = context.machine
-    certain: dict[tuple[str, str, int], Handler] = {}
+    certain: dict[Trigger, Handler] = {}
     for handler in state.handlers:
         key = trigger(machine, handler)
         if key is None or not handler.effective:
             continue
         before = certain.get(key)
         if before is not None:
-            what = "without an event" if handler.trigger == "" else "on the same event"
+            what = "without an event" if handler.trigger is None else "on the same event"
             yield RULE.at(
                 handler.element.name_span,
                 (
@@ -57,7 +57,7 @@ def _in_order(context: MachineContext, facts: Facts, handlers: list[Handler]) ->
     for found in covered(facts, [handler.cond for handler in handlers]):
         handler = handlers[found.number]
         earlier = [handlers[n] for n in found.by or range(found.number)]
-        what = "without an event" if handler.trigger == "" else "on the same event"
+        what = "without an event" if handler.trigger is None else "on the same event"
         if found.same:
             why = f"an earlier transition {what} has the same condition"
         elif found.by:

@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.language import HL_SCXML
 from roaml.language.validate import is_foreign
 from roaml.model.machine import Handler
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
@@ -20,7 +21,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
-                if handler.trigger != "goal-response" and handler.effective:
+                if handler.trigger is not ProtocolPart.GOAL_RESPONSE and handler.effective:
                     here = state.id.value if state.id else ""
                     children = [child for child in handler.element.elements if not is_foreign(namespaces, child)]
                     yield from _check(handler, children, here)

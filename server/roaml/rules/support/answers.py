@@ -15,6 +15,7 @@ from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.machine import Communicate, Handler, Machine, State, Statement
 from roaml.model.system import Automaton, System
 from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext
 from roaml.rules.support import misspelled
 from roaml.rules.support.removed_events import uses_removed_events
@@ -22,14 +23,19 @@ from roaml.rules.support.triggers import has_shadowed
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
-SENT = {"tick": "bt-status", "halt": "bt-halted", "request": "response", "result": "result"}
+SENT = {
+    "tick": ProtocolPart.BT_STATUS,
+    "halt": ProtocolPart.BT_HALTED,
+    "request": ProtocolPart.RESPONSE,
+    "result": ProtocolPart.RESULT,
+}
 """The events that answer a duty; a goal is accepted or rejected."""
 ELEMENTS = {
-    "bt-status": ("bt_return_status",),
-    "bt-halted": ("bt_return_halted",),
-    "response": ("ros_service_send_response",),
-    "goal": ("ros_action_accept_goal", "ros_action_reject_goal"),
-    "result": ("ros_action_succeed", "ros_action_aborted", "ros_action_canceled"),
+    ProtocolPart.BT_STATUS: ("bt_return_status",),
+    ProtocolPart.BT_HALTED: ("bt_return_halted",),
+    ProtocolPart.RESPONSE: ("ros_service_send_response",),
+    ProtocolPart.GOAL: ("ros_action_accept_goal", "ros_action_reject_goal"),
+    ProtocolPart.RESULT: ("ros_action_succeed", "ros_action_aborted", "ros_action_canceled"),
 }
 
 
@@ -55,14 +61,14 @@ def plugins(context: MachineContext) -> list[Automaton]:
 
 def is_spelled(context: MachineContext, duty: Duty) -> bool:
     """Whether no element of the machine looks like a misspelled answer to a duty."""
-    names = ELEMENTS[SENT.get(duty.kind, duty.kind)]
+    names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     elements = list(context.machine.element.walk())
     return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
 
 
 def answered_in(machine: Machine, duty: Duty) -> set[str]:
     """The scopes of the charts that send answers to a duty."""
-    names = ELEMENTS[SENT.get(duty.kind, duty.kind)]
+    names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     found = set()
     for chart in machine.charts:
         for statement in chart.executed:
@@ -110,7 +116,7 @@ def target_of(step: Step) -> Iterator[Related]:
     if step.handler.is_probabilistic and not step.ignored:
         element = step.handler.targets[step.choice].element
         if element is not None:
-            yield Related(element.name_span, "for this target")
+            yield Related(element.name_span, "on this way")
 
 
 def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: Step) -> bool:
@@ -231,8 +237,8 @@ def deaf_states(
     """The states in which a tick or halt may arrive and is not handled, with the status of the node there: "" (not yet
     ticked), "running" or "ended"."""
     assert context.system is not None
-    takes, tag = f"bt-{duty.kind}", f"bt_{duty.kind}"
-    deaf = [state for state in behavior.chart.states if not any(h.trigger == takes for h in state.handlers)]
+    takes, tag = ProtocolPart(f"bt-{duty.kind}"), f"bt_{duty.kind}"
+    deaf = [state for state in behavior.chart.states if not any(h.trigger is takes for h in state.handlers)]
     if not deaf:
         return
     may_come = _coming(context.system, automaton, duty)

@@ -9,6 +9,7 @@ from roaml.diagnostics import Fix
 from roaml.edit.elements import after, first_in, last_in
 from roaml.model.machine import Handler, ReturnStatus, State, statements
 from roaml.model.value_types import STATUSES
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, unused
 from roaml.text import Edit, TextEdit, computed
 
@@ -20,7 +21,7 @@ def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
     lead to the same state."""
     chart = context.machine.chart
     states = {state.id.value: state for state in chart.states if state.id}
-    if tick.trigger != "bt-tick" or _answers(tick) or not _is_tidy(tick):
+    if tick.trigger is not ProtocolPart.BT_TICK or _answers(tick) or not _is_tidy(tick):
         return
     region = _region(tick, states)
     if region is None:
@@ -49,7 +50,7 @@ def _edits(
     edits: list[Edit] = [last_in(document, tick.element, RUNNING), _declared(context, variable)]
     edits += (edit for handler in answering for edit in _stored(handler, variable, done))
     for state in region:
-        at_once = any(h.effective and h.trigger == "" and h.cond is None for h in state.handlers)
+        at_once = any(h.effective and h.trigger is None and h.cond is None for h in state.handlers)
         if state.id is not None and not at_once:
             edits.append(last_in(document, state.element, *_asked(state.id.value, RUNNING)))
     answered = _asked(goal, f'<bt_return_status status="{variable}" />')
@@ -70,7 +71,7 @@ def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
             continue
         found.append(state)
         for handler in state.handlers:
-            if handler.trigger in ("bt-tick", "bt-halt"):
+            if handler.trigger in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT):
                 return None
             if handler.effective and not _answers(handler):
                 waiting += [target.state for target in handler.targets]

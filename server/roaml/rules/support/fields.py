@@ -6,7 +6,7 @@ from __future__ import annotations
 from roaml.expr.types import Struct
 from roaml.model.machine import Communicate
 from roaml.model.ros import InterfaceType
-from roaml.model.value_types import INTERFACE_KINDS, SECTIONS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, find_handle, section_of
 from roaml.rules.rule import MachineContext
 
 ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
@@ -25,6 +25,6 @@ def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
     found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
     if not isinstance(found, InterfaceType):
         return None
-    part = dict(found.parts).get(SECTIONS.get(statement.type.sends, statement.type.sends))
+    part = dict(found.parts).get(section_of(statement.part))
     # Some elements send no fields at all: decisions on goals, and results other than success.
     return part if "field" in statement.type.children else Struct(found.name, ())

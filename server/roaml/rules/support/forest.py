@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from roaml.forest.forest import Forest
 from roaml.rules.rule import TreeContext
-from roaml.suggest import close_names, nearest_name
+from roaml.suggest import close_names
 
-NAME_LIMIT = 3
+MAX_WRONG_LETTERS = 3
+"""So many letters of a name may be wrong."""
 
 
 def forest_of(context: TreeContext) -> Forest | None:
@@ -17,33 +20,37 @@ def forest_of(context: TreeContext) -> Forest | None:
     return None if forest is None or forest.is_version_3 else forest
 
 
-def probably_meant(name: str, known: tuple[str, ...]) -> str | None:
-    """The known name that differs from `name` in little more than a few letters.
+def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTERS) -> str | None:
+    """The known name that differs from `name` in a few letters, or only in upper and lower case or underscores.
 
-    Names of nodes are chosen by people, and many are alike: `close_names` finds too much where any name is possible.
+    Names of nodes are chosen by people, and many resemble each other: `IsDoorClosed` is not meant for `DoorClosed`. So
+    a name that only has more letters than another at one end differs in one of them at most.
     """
-    by_lower = {each.lower(): each for each in known}
-    if name.lower() in by_lower:
-        return by_lower[name.lower()]
-    near = nearest_name(name, known)
-    if near is not None:
-        return near
-    plain = {each.lower().replace("_", ""): each for each in known}
-    stem = name.lower().replace("_", "")
-    found = nearest_name(stem, plain)
-    if found is not None:
-        return plain[found]
-    close = close_names(name, known, 1)
-    return close[0] if close and _share_letters(name, close[0]) else None
+    by_plain = {other.lower().replace("_", ""): other for other in known}
+    plain = name.lower().replace("_", "")
+    if plain in by_plain:
+        return by_plain[plain]
+    limit = min(most, len(plain) // 3)
+    for close in close_names(plain, by_plain):
+        key = close.lower()
+        distance = _distance(plain, key)
+        extends = plain.startswith(key) or plain.endswith(key) or key.startswith(plain) or key.endswith(plain)
+        if distance <= (min(limit, 1) if extends else limit):
+            return by_plain[key]
+    return None
 
 
-def _share_letters(name: str, other: str) -> bool:
-    """Whether two names differ in few letters wherever they stand (Levenshtein 1966)."""
-    limit = 1 + len(name) // 5
+def _distance(name: str, other: str) -> int:
+    """How many letters differ: the edit distance with swapped neighbours as one edit (Damerau 1964)."""
+    before: list[int] = []
     row = list(range(len(other) + 1))
     for i, letter in enumerate(name, 1):
-        previous, row[0] = row[0], i
+        above, row_before = row, before
+        row = [i]
         for j, other_letter in enumerate(other, 1):
-            cost = previous + (letter != other_letter)
-            previous, row[j] = row[j], min(cost, row[j] + 1, row[j - 1] + 1)
-    return row[-1] <= min(limit, NAME_LIMIT)
+            cost = min(above[j] + 1, row[-1] + 1, above[j - 1] + (letter != other_letter))
+            if i > 1 and j > 1 and letter == other[j - 2] and name[i - 2] == other_letter:
+                cost = min(cost, row_before[j - 2] + 1)
+            row.append(cost)
+        before = above
+    return row[-1]

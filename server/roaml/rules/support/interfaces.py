@@ -16,7 +16,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, System
 from roaml.model.tree import TreeNode
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.text import Span
@@ -113,7 +113,7 @@ def name_span(declaration: Declaration) -> Span:
 def has_publisher(system: System, topic: Channel) -> bool:
     if topic.name == CLOCK_TOPIC and system.has_timer:
         return True
-    return any("message" in endpoint.use.sends for endpoint in topic.sources)
+    return any(ProtocolPart.MESSAGE in endpoint.use.sends for endpoint in topic.sources)
 
 
 def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:

@@ -4,20 +4,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.support.conditions import covered
 
-TOPIC = "message"
+Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
+"""What is received, the name of it and the result code; comparable within a state."""
 
 
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
     """The handlers of a state with conditions, grouped by trigger."""
-    groups: dict[tuple[str, str, int], list[Handler]] = {}
+    groups: dict[Trigger, list[Handler]] = {}
     for handler in state.handlers:
         key = trigger(machine, handler)
         if key is not None and handler.effective and handler.cond is not None and not chooses(handler):
@@ -36,7 +39,7 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
     )
 
 
-def trigger(machine: Machine, handler: Handler) -> tuple[str, str, int] | None:
+def trigger(machine: Machine, handler: Handler) -> Trigger | None:
     """The trigger of a handler, comparable within its state; `None` if it is not a constant.
 
     Two handles of one topic wait for the same message; results with different codes are different triggers.
@@ -44,10 +47,14 @@ def trigger(machine: Machine, handler: Handler) -> tuple[str, str, int] | None:
     attributes, code = handler.type.attributes, handler.type.code
     if "name" in attributes:
         declaration = find_handle(machine, handler)
-        if handler.trigger == TOPIC and declaration is not None and isinstance(declaration.interface, Name):
+        if (
+            handler.trigger is ProtocolPart.MESSAGE
+            and declaration is not None
+            and isinstance(declaration.interface, Name)
+        ):
             return (handler.trigger, sanitise(declaration.interface.value), code)
         return (handler.trigger, handler.handle.value, code) if handler.handle else None
-    if handler.trigger == "event":
+    if handler.trigger is ProtocolPart.EVENT:
         return (handler.trigger, handler.event.value, code) if handler.event else None
     if "id" in attributes:
         return (handler.trigger, handler.child.value, code) if handler.child else None

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import VARIABLE
-from roaml.model.translated import BLACKBOARD_WRITE_PREFIX
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.blackboard import described, places, renamings
+from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

@@ -11,9 +11,9 @@ from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
-from roaml.model.translated import is_generated
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
+from roaml.scxml.names import is_generated
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

@@ -20,7 +20,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     """Report settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
     for node, key, text in _settings(context):
-        number = _number(text)
+        number = _number(text) if key in _COUNTS else None
         problem = _problem(node, key, number) if number is not None else None
         if problem is not None:
             yield _finding(node, key, *problem)
@@ -32,6 +32,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
                     f"`{attribute.name}` is read once, at the start; it must be a constant, not a blackboard variable"
                 )
                 yield _finding(node, attribute.name, reason)
+
+
+_COUNTS = ("success_count", "failure_count", "max_failures", "num_cycles", "num_attempts", "return_on_mismatch")
+"""The ports that `_problem` looks at."""
 
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of automata, events and actions of a translated system that have a meaning.
+"""What the automata, events and actions of a translated system are called, for those who write or read these names
+(docs/spec/plain-scxml.md#events, docs/spec/jani.md#names).
 
-Plain SCXML and JANI do not represent ROS or trees: only the name shows that an automaton is the clock, or that an event
-waits for its receivers (docs/spec/plain-scxml.md#events, docs/spec/jani.md#names). The translation writes these names,
-and the display of a translation reads them.
+`roaml.lower` says with each event what it is for (`EventRole`). Where only a name is known, as in a trace or for an
+event that the user has named, `role_of` is the one function that derives the role from it.
 """
 
 from __future__ import annotations
 
 import re
+
+from roaml.scxml.model import EventRole, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
 
@@ -43,27 +45,39 @@ BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 
 
+def role_of(event: str) -> EventRole:
+    """What the name of an event says that the event is for."""
+    if event == CLOCK_STEP:
+        return EventRole.CLOCK_STEP
+    if event == BLACKBOARD_REQUEST:
+        return EventRole.BLACKBOARD_READ
+    if event.startswith(TIMER_PREFIX):
+        return EventRole.TIMER_TICK
+    if event.startswith(BLACKBOARD_WRITE_PREFIX):
+        return EventRole.BLACKBOARD_WRITE
+    return EventRole.BLOCKING if _BLOCKING.match(event) else EventRole.PLAIN
+
+
+def named(event: str) -> ScxmlEvent:
+    """The event of this name. The name decides on the role where the user gives it or a part of it."""
+    return ScxmlEvent(event, role_of(event))
+
+
 def is_timer(event: str) -> bool:
-    return event.startswith(TIMER_PREFIX)
-
-
-def is_internal(event: str) -> bool:
-    """Whether the event has neither buffer nor variables: the ticks of timers and the step of the clock."""
-    return is_timer(event) or event == CLOCK_STEP
+    return role_of(event) is EventRole.TIMER_TICK
 
 
 def is_synchronising(event: str) -> bool:
     """Whether the event waits for its receivers instead of being discarded (docs/spec/jani.md#synchronising-names)."""
-    return _SYNCHRONISING.match(event) is not None
+    return role_of(event).is_synchronising
 
 
-_SYNCHRONISING = re.compile(
+_BLOCKING = re.compile(
     r"bt_[0-9]+_(?:tick|halt|response|halt_response)\Z"
     r"|action_.+_goal_.+\Z"
     r"|action_.+_result"
     r"|action_.+_thread_(?:start|free)\Z"
     r"|srv_.+_(?:response|request|req_client)"
-    r"|global_timer_tick_event\Z"
 )
 
 # ----------------------------------------------------------------------- actions
@@ -71,14 +85,14 @@ _SYNCHRONISING = re.compile(
 CLOCK_ACTION = "global_timer_tick_action"
 
 
-def on_send(event: str) -> str:
+def on_send(event: ScxmlEvent) -> str:
     """The action of sending an event. The clock's step to itself is not a communication
     (docs/spec/jani.md#clock-actions)."""
-    return event if event == CLOCK_STEP else f"{event}{_ON_SEND}"
+    return event.name if event.role is EventRole.CLOCK_STEP else f"{event.name}{_ON_SEND}"
 
 
-def on_receive(event: str) -> str:
-    return CLOCK_ACTION if event == CLOCK_STEP else f"{event}{_ON_RECEIVE}"
+def on_receive(event: ScxmlEvent) -> str:
+    return CLOCK_ACTION if event.role is EventRole.CLOCK_STEP else f"{event.name}{_ON_RECEIVE}"
 
 
 def sent_by(action: str) -> str:

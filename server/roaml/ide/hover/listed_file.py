@@ -1,34 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hover texts for the values in a system file: files, and parameters in readable units."""
+"""What is known of the files that a system or tree names."""
 
 from __future__ import annotations
 
 from roaml.diagnostics import Symbol
 from roaml.ide.describe import describe
-from roaml.ide.describe.language import number
-from roaml.ide.describe.machine import duration, rate
-from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
+from roaml.ide.describe.markdown import code, file, lines, names, paragraphs
 from roaml.ide.describe.property_file import formula
+from roaml.ide.hover.place import Place
 from roaml.ide.json_tree import members
 from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
-from roaml.model.system_file import NANOSECONDS
 from roaml.project.analysis import Analysis
 from roaml.project.paths import resolve
 from roaml.roles import SymbolKind
 from roaml.text import Span
-from roaml.xml_syntax import Attribute, Element
 
 
-def listed_file(analysis: Analysis, path: str, offset: int) -> tuple[Span, str] | None:
-    """The file of a path at a place: its kind and its content."""
+def listed_file(place: Place) -> tuple[Span, str] | None:
+    """The file that a path at a place names: what it is and what is in it. None if it cannot be read."""
+    analysis, path, offset = place.analysis, place.path, place.offset
     system, tree = analysis.system_file(path), analysis.tree(path)
     written = [entry.src for entry in system.inputs] if system else []
     written += [include.path for include in tree.includes] if tree else []
     named = next((each for each in written if each and each.span.contains(offset)), None)
     if named is None:
         return None
-    return named.span, content(analysis, path, resolve(path, named.value))
+    text = content(analysis, path, resolve(path, named.value))
+    return (named.span, text) if text else None
 
 
 def content(analysis: Analysis, system: str, path: str) -> str:
@@ -62,21 +61,3 @@ def _properties(analysis: Analysis, path: str) -> str:
         if isinstance(called, JsonString) and expression is not None:
             rows.append(f"{called.value}: {formula(expression)}")
     return code("\n".join(rows)) if rows else "No properties"
-
-
-def parameter(element: Element, attribute: Attribute) -> str:
-    """The meaning of a parameter of the translation; "" if it is obvious."""
-    if attribute.name not in ("value", "unit"):
-        return ""
-    written = element.get("value")
-    text = written.value.strip() if written else ""
-    unit = element.get("unit")
-    match element.name:
-        case "max_time" if text.isascii() and text.isdigit() and unit and unit.value in NANOSECONDS:
-            nanoseconds = int(text[:18]) * NANOSECONDS[unit.value]
-            return f"{duration(nanoseconds / 1e9)}: {number(nanoseconds)} ns of the clock"
-        case "bt_tick_rate":
-            return rate(text)
-        case "max_array_size" if text:
-            return f"Arrays without a bound have at most {name(text)} elements"
-    return ""

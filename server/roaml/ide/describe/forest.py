@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes and ports of trees that belong to no system, as libraries and models describe them."""
+
+from __future__ import annotations
+
+from roaml.ide.describe.markdown import code, lines, name, paragraphs, prose
+from roaml.libraries import Node, Port
+
+
+def node(known: Node) -> str:
+    """A node: its ports, what it does, and where it is known from."""
+    ports = "".join(f"\n  {_line(port)}" for port in known.ports if not port.alias_of)
+    kind = known.kind.value if known.kind.value in ("action", "condition", "decorator") else f"{known.kind.value} node"
+    since = f" since {known.since}" if known.since else ""
+    return paragraphs(
+        code(f"{kind} {known.name}{ports}"),
+        _text(known.text, known.library),
+        f"*{known.library}{since}*" if known.library else "*`<TreeNodesModel>`*",
+    )
+
+
+def port(known: Node, described: Port) -> str:
+    """A port: type, default and meaning."""
+    must = "must be set" if described.required else ""
+    default = f"{name(described.default)} if not set" if described.default is not None else ""
+    return paragraphs(code(_line(described)), lines(_text(described.text, known.library), must, default))
+
+
+def _line(described: Port) -> str:
+    default = f" = {described.default}" if described.default else ""
+    type_ = f" : {described.type}" if described.type else ""
+    return f"{described.direction.value} {described.name}{type_}{default}"
+
+
+def _text(text: str, library: str) -> str:
+    """The words of libraries are Markdown, those of a user's model are not."""
+    return text if library else prose(text)

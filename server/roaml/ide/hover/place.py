@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is at a place in a file, looked up once for all that describe it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roaml.ide.names.lookup import occurrences_at
+from roaml.ide.names.occurrence import Occurrence
+from roaml.ide.syntax import Typed, expression_in, path_at, xml_file
+from roaml.model.kinds import FileKind
+from roaml.model.syntax import Expression
+from roaml.project.analysis import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """
+    Attributes:
+        kind: of the file.
+        systems: in which the file is looked at; (None) if it is in none.
+        names: what the text there denotes, in each system.
+        elements: the XML elements around, outermost first.
+        expression: the expression around.
+    """
+
+    analysis: Analysis
+    path: str
+    offset: int
+    text: str
+    kind: FileKind
+    systems: tuple[str | None, ...]
+    names: tuple[Occurrence, ...]
+    elements: tuple[Typed, ...] = ()
+    expression: Expression | None = None
+
+
+def place_at(analysis: Analysis, path: str, offset: int) -> Place | None:
+    """The place in a file; None if the file cannot be read."""
+    source = analysis.source(path)
+    if source is None:
+        return None
+    kind, systems = analysis.kind(path), analysis.systems_of(path)
+    names = occurrences_at(analysis, path, offset)
+    file = xml_file(analysis, path)
+    if file is None:
+        return Place(analysis, path, offset, source.text, kind, systems, names)
+    elements = tuple(path_at(file, offset))
+    expression = expression_in(file.document, elements[-1], offset) if elements else None
+    return Place(analysis, path, offset, source.text, kind, systems, names, elements, expression)

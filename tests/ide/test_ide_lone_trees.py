@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trees that belong to no system: completion, hover, definition and rename, with libraries and models."""
+
+from __future__ import annotations
+
+from ide_case import FOLDER, path_of
+
+from roaml.ide.completion import complete, document
+from roaml.ide.hover import hover
+from roaml.ide.names.lookup import thing_at
+from roaml.ide.rename import Renaming, rename
+from roaml.project.settings import Settings
+from roaml.project.workspace import Snapshot, Workspace
+from roaml.text import apply_edits
+
+NAV2 = """<root BTCPP_format="4">
+  <BehaviorTree ID="A">
+    <PipelineSequence>
+      <RateController hz="1.0"><ComputePathToPose goal="{goal}" path="{path}"/></RateController>
+      <Sub‸
+    </PipelineSequence>
+  </BehaviorTree>
+</root>
+"""
+
+MODELS = """<root BTCPP_format="4">
+  <BehaviorTree ID="A">
+    <Sequence>
+      <Grasp force="3"/><Repeat num_cycles="2"><Grasp ‸/></Repeat>
+      <Precondition if="true" else="|"><AlwaysSuccess/></Precondition>
+    </Sequence>
+  </BehaviorTree>
+  <TreeNodesModel>
+    <Action ID="Grasp"><input_port name="force" type="int" default="5">How hard, in N.</input_port>
+    <output_port name="width" type="double"/></Action>
+  </TreeNodesModel>
+</root>
+"""
+
+
+def snapshot_of(**texts: str) -> Snapshot:
+    workspace = Workspace((FOLDER,), Settings())
+    for name, text in texts.items():
+        workspace.open(path_of(f"{name}.xml"), text)
+    return workspace.snapshot()
+
+
+def offered(text: str, mark: str = "‸") -> dict[str, str]:
+    """The labels that are offered at a mark, with their details."""
+    before, _, after = text.partition(mark)
+    snapshot = snapshot_of(tree=before + after)
+    completions = complete(snapshot, path_of("tree.xml"), len(before))
+    return {item.label: item.detail for item in completions.items} if completions else {}
+
+
+def told(text: str, piece: str) -> str:
+    """What is told at a caret `|` in a piece of a text."""
+    before, _, after = piece.partition("|")
+    clean = text.replace("‸", "").replace('"|"', '""')
+    found = hover(snapshot_of(tree=clean).analysis, path_of("tree.xml"), clean.index(before + after) + len(before))
+    return found.text if found else ""
+
+
+def test_nodes_of_libraries_are_offered() -> None:
+    items = offered(NAV2.replace("<Sub‸", "<‸"))
+    assert items["ComputePathToPose"] == "action, Nav2"
+    assert items["TryCatch"] == "control, BehaviorTree.CPP"
+    assert "SequenceStar" not in items
+    assert "TestNode" not in items
+    without = offered('<root BTCPP_format="4"><BehaviorTree ID="A"><‸</BehaviorTree></root>')
+    assert "ComputePathToPose" not in without
+    assert "Sleep" in without
+
+
+def test_nodes_and_ports_of_models_are_offered() -> None:
+    items = offered(MODELS)
+    assert items["force"] == "in int = 5"
+    assert items["width"] == "out double"
+    assert offered(MODELS.replace("‸", ""), "|").keys() >= {"SUCCESS", "FAILURE", "RUNNING", "SKIPPED"}
+    inside = MODELS.replace("‸", "").replace("|", "").replace("<Sequence>", "<Sequence><‸")
+    assert offered(inside)["Grasp"] == "action"
+
+
+def test_documentation_of_an_item() -> None:
+    text = MODELS.replace("|", "")
+    before, _, after = text.partition("‸")
+    snapshot = snapshot_of(tree=before + after)
+    completions = complete(snapshot, path_of("tree.xml"), len(before))
+    assert completions is not None
+    item = next(item for item in completions.items if item.label == "force")
+    assert item.about is not None
+    assert "How hard, in N." in document(snapshot.analysis, item.about)
+
+
+def test_hover_tells_ports_and_defaults() -> None:
+    assert "How hard, in N." in told(MODELS, 'for|ce="3"')
+    assert "`5` if not set" in told(MODELS, 'for|ce="3"')
+    assert "in force : int = 5" in told(MODELS, '<Gra|sp force="3"')
+    assert "Plans a path to a pose." in told(NAV2, "<Compute|PathToPose")
+    assert "*Nav2*" in told(NAV2, "<Compute|PathToPose")
+    assert "must be set" in told(NAV2, 'go|al="{goal}"')
+    assert "10.0" in told(NAV2, 'h|z="1.0"')
+    assert "translated" not in told(MODELS, "<Pre|condition")
+
+
+MAIN = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <include path="inner.xml"/>
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Script code="count := 1; @total := count"/>
+      <SetBlackboard value="3" output_key="count"/>
+      <SubTree ID="Inner" number="{count}" _autoremap="true"/>
+      <Grasp force="{count}" _skipIf="count &lt; 2 &amp;&amp; total == 1"/>
+    </Sequence>
+  </BehaviorTree>
+  <TreeNodesModel><Action ID="Grasp"><input_port name="force" type="int"/></Action></TreeNodesModel>
+</root>
+"""
+INNER = """<root BTCPP_format="4">
+  <BehaviorTree ID="Inner">
+    <Sequence><Repeat num_cycles="{number}"><AlwaysSuccess/></Repeat><Script code="total += number"/></Sequence>
+  </BehaviorTree>
+</root>
+"""
+OTHER = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <include path="inner.xml"/>
+  <BehaviorTree ID="Main"><SubTree ID="Inner" number="4"/></BehaviorTree>
+</root>
+"""
+FILES = {"main": MAIN, "inner": INNER, "other": OTHER}
+
+
+def renamed(name: str, piece: str, new: str) -> dict[str, str]:
+    """The texts after a rename at the caret `|` in a piece of a file."""
+    before, _, after = piece.partition("|")
+    analysis = snapshot_of(**FILES).analysis
+    at = FILES[name].index(before + after) + len(before)
+    result = rename(analysis, path_of(f"{name}.xml"), at, new)
+    assert isinstance(result, Renaming), result
+    return {each: apply_edits(text, result.edits.get(path_of(f"{each}.xml"), ())) for each, text in FILES.items()}
+
+
+def test_a_subtree_is_renamed_in_all_files() -> None:
+    texts = renamed("inner", 'ID="In|ner"', "Core")
+    assert texts == {each: text.replace('ID="Inner"', 'ID="Core"') for each, text in FILES.items()}
+    assert renamed("main", 'SubTree ID="In|ner"', "Core") == texts
+
+
+def test_trees_of_one_name_in_separate_files_are_two() -> None:
+    texts = renamed("other", 'BehaviorTree ID="Ma|in"', "Other")
+    assert texts["main"] == MAIN
+    assert texts["other"] == OTHER.replace('"Main"', '"Other"')
+
+
+def test_an_entry_is_renamed_in_scripts_and_ports() -> None:
+    texts = renamed("main", '<Grasp force="{cou|nt}"', "tries")
+    assert texts["main"] == MAIN.replace("count", "tries")
+    assert texts["inner"] == INNER
+    assert renamed("main", 'code="cou|nt :=', "tries") == texts
+
+
+def test_an_entry_that_is_remapped_is_renamed_inside() -> None:
+    texts = renamed("inner", "total += num|ber", "amount")
+    assert texts["inner"] == INNER.replace("number", "amount")
+    assert texts["main"] == MAIN.replace("number=", "amount=")
+    assert texts["other"] == OTHER.replace("number=", "amount=")
+
+
+def test_an_automatically_remapped_entry_is_one() -> None:
+    texts = renamed("inner", "to|tal +=", "sum")
+    assert texts["inner"] == INNER.replace("total", "sum")
+    assert texts["main"] == MAIN.replace("total", "sum")
+
+
+def test_the_definition_of_a_node_is_its_model() -> None:
+    analysis = snapshot_of(**FILES).analysis
+    thing = thing_at(analysis, path_of("main.xml"), MAIN.index("<Grasp") + 2)
+    assert thing is not None
+    assert [(place.path, MAIN[place.span.start - 4 : place.span.end]) for place in thing.definitions] == [
+        (path_of("main.xml"), 'ID="Grasp')
+    ]
+
+
+def test_the_definition_of_a_subtree_is_in_its_file() -> None:
+    analysis = snapshot_of(**FILES).analysis
+    thing = thing_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
+    assert thing is not None
+    assert [place.path for place in thing.definitions] == [path_of("inner.xml")]
+
+
+def test_a_subtree_without_a_name_is_no_tree_without_a_name() -> None:
+    text = """<root main_tree_to_execute="A"><BehaviorTree ID="A"><Sequence><SubTree/><Grasp force="{x}"/></Sequence>
+        </BehaviorTree><BehaviorTree><AlwaysSuccess/></BehaviorTree></root>"""
+    thing = thing_at(snapshot_of(tree=text).analysis, path_of("tree.xml"), text.index("{x}") + 1)
+    assert thing is not None
+    assert len(thing.uses) == 1
