@@ -63,7 +63,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     stdin = options.stdin_filename
     if not options.paths and stdin is None:
-        return _usage(f"{name} needs a PATH")
+        return _usage(f"{name} needs at least one PATH")
     if stdin is not None and os.path.isdir(stdin):
         return _usage(f"{stdin}: --stdin-filename needs the name of a file")
     if options.fix and stdin is not None:
