@@ -18,8 +18,8 @@ from pathlib import Path
 
 import node_schema
 
+from as2fm_lsp.cli import explain, init, migrate, simulate, translate, verify
 from as2fm_lsp.cli import format as layout
-from as2fm_lsp.cli import init, migrate, simulate, translate, verify
 from as2fm_lsp.cli.main import COMMANDS, EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
@@ -236,7 +236,7 @@ def command_line() -> str:
     for group in parser()._action_groups:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)
-    for command in (init, layout, migrate, simulate, translate, verify):
+    for command in (explain, init, layout, migrate, simulate, translate, verify):
         each = command.parser()
         lines += options(f"`{each.prog}`", each._actions, f"{each.description}\n")
     return "\n".join(lines)

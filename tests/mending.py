@@ -11,7 +11,7 @@ from pathlib import Path
 
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.ide.code_actions import quick_fixes
-from roaml.ide.code_actions.action import Action, Change
+from roaml.ide.code_actions.action import CodeAction, WorkspaceEdit
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import apply_edits
@@ -21,7 +21,7 @@ def workspace_of(folder: Path) -> Workspace:
     return Workspace((str(folder),), Settings())
 
 
-def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
+def applied(snapshot: Snapshot, change: WorkspaceEdit) -> dict[str, str]:
     """Path -> text of the files that a change makes or changes."""
     texts = dict(change.created)
     for path, edits in change.edits.items():
@@ -37,7 +37,7 @@ def applied(snapshot: Snapshot, change: Change) -> dict[str, str]:
     return texts
 
 
-def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagnostic, Action]]:
+def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagnostic, CodeAction]]:
     """The fixes of all that is reported in a folder, or of what one rule reports."""
     for diagnostic in found(snapshot):
         if code in (None, diagnostic.code):
@@ -64,7 +64,7 @@ def broken_promises(workspace: Workspace, code: str | None = None, *, may_add: C
 
 
 def _reason(
-    snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: Action, may_add: Collection[str]
+    snapshot: Snapshot, before: list[Diagnostic], diagnostic: Diagnostic, action: CodeAction, may_add: Collection[str]
 ) -> str:
     texts = applied(snapshot, action.make())
     if not texts:

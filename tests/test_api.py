@@ -27,7 +27,7 @@ ANSWERS = [
     api.Refusal,
     api.Result,
     api.SampledResult,
-    api.Target,
+    api.VerificationTarget,
     api.Traces,
     api.Verdict,
     api.Verifier,

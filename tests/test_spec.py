@@ -23,7 +23,7 @@ from roaml.expr.types import BASE_TYPES
 from roaml.jani.writer import write
 from roaml.language import BEHAVIOR_TREE, HL_SCXML
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
-from roaml.model.system import Automaton
+from roaml.model.system import SystemAutomaton
 from roaml.model.system_file import Parameters
 from roaml.model.value_types import STATUSES
 from roaml.scxml.names import is_synchronising
@@ -241,7 +241,7 @@ EVENTS = {word for _, event, *_ in rows("plain-scxml", "events") for word in wor
 
 
 def test_events_of_interfaces() -> None:
-    client = cast("Automaton", SimpleNamespace(name="C"))
+    client = cast("SystemAutomaton", SimpleNamespace(name="C"))
     service, action = ServiceEvents("X"), ActionEvents("X")
     expected = {topic_event("X"), service.request_of(client), service.request, service.response}
     expected |= {service.response_to(client), action.goal_of(client), action.goal, action.accepted, action.rejected}

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from roaml.xml_syntax.escapes import replace_forbidden
 
 
-class Outcome(enum.Enum):
+class CaseOutcome(enum.Enum):
     """The outcome of a test; the values are the names of elements."""
 
     PASSED = "system-out"
@@ -33,7 +33,7 @@ class Case:
 
     class_name: str
     name: str
-    outcome: Outcome = Outcome.PASSED
+    outcome: CaseOutcome = CaseOutcome.PASSED
     text: str = ""
     message: str = ""
     type: str = ""
@@ -43,8 +43,8 @@ class Case:
 
 def render(suite: str, cases: Sequence[Case]) -> str:
     """A report with one suite of tests. Characters that XML does not allow are replaced."""
-    failures = sum(case.outcome is Outcome.FAILED for case in cases)
-    errors = sum(case.outcome is Outcome.ERROR for case in cases)
+    failures = sum(case.outcome is CaseOutcome.FAILED for case in cases)
+    errors = sum(case.outcome is CaseOutcome.ERROR for case in cases)
     counts = {"tests": str(len(cases)), "failures": str(failures), "errors": str(errors)}
     root = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     parent = _child(root, "testsuite", {"name": suite, **counts})
@@ -61,7 +61,7 @@ def _add(suite: ET.Element, case: Case) -> None:
         properties = _child(element, "properties", {})
         for name, value in case.properties:
             _child(properties, "property", {"name": name, "value": value})
-    if case.text or case.outcome is not Outcome.PASSED:
+    if case.text or case.outcome is not CaseOutcome.PASSED:
         details = {"type": case.type, "message": case.message}
         attributes = {name: value for name, value in details.items() if value}
         _child(element, case.outcome.value, attributes).text = replace_forbidden(case.text)

@@ -20,7 +20,7 @@ MAX_DATA = 512 * MEGABYTE
 """The maximum size of generated files, in bytes: a translated model, a baseline, the state of a verification."""
 
 
-class Problem(enum.Enum):
+class UnreadableReason(enum.Enum):
     """Why a path has no readable text."""
 
     MISSING = "there is no such file"
@@ -39,8 +39,8 @@ class Problem(enum.Enum):
 class NotReadableError(OSError):
     """A required file does not exist, is of the wrong kind, or is too large. `problem` is the reason."""
 
-    def __init__(self, path: str, problem: Problem, most: int) -> None:
-        words = f"it is larger than {most // MEGABYTE} MB" if problem is Problem.TOO_LARGE else problem.value
+    def __init__(self, path: str, problem: UnreadableReason, most: int) -> None:
+        words = f"it is larger than {most // MEGABYTE} MB" if problem is UnreadableReason.TOO_LARGE else problem.value
         super().__init__(None, words, path)
         self.problem = problem
 
@@ -48,18 +48,18 @@ class NotReadableError(OSError):
         return f"{self.filename}: {self.strerror}"
 
 
-def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | Problem:
+def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | UnreadableReason:
     """The status of a regular file of at most `most` bytes; links are followed."""
     try:
         status = os.stat(path)
     except (FileNotFoundError, NotADirectoryError):
-        return Problem.MISSING
+        return UnreadableReason.MISSING
     except (OSError, ValueError):
-        return Problem.UNREADABLE
+        return UnreadableReason.UNREADABLE
     return _judged(status, most) or status
 
 
-def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | Problem:
+def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | UnreadableReason:
     """The content of a regular file.
 
     Args:
@@ -67,7 +67,7 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | P
         head: the maximum number of bytes to read, however large the file is.
     """
     status = status_of(path, most) if head is None else status_of(path, _ANY)
-    if isinstance(status, Problem):
+    if isinstance(status, UnreadableReason):
         return status
     try:
         # If the path has become a pipe in the meantime, opening it must not block.
@@ -76,9 +76,9 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | P
             problem = _judged(os.fstat(handle), _ANY if head is not None else most)
             return problem or file.read(most if head is None else head)
     except FileNotFoundError:
-        return Problem.MISSING
+        return UnreadableReason.MISSING
     except (OSError, ValueError):
-        return Problem.UNREADABLE
+        return UnreadableReason.UNREADABLE
 
 
 def required(path: str, most: int = MAX_BYTES) -> bytes:
@@ -88,7 +88,7 @@ def required(path: str, most: int = MAX_BYTES) -> bytes:
         NotReadableError: the file cannot be read.
     """
     found = read(path, most)
-    if isinstance(found, Problem):
+    if isinstance(found, UnreadableReason):
         raise NotReadableError(path, found, most)
     return found
 
@@ -96,12 +96,12 @@ def required(path: str, most: int = MAX_BYTES) -> bytes:
 _ANY = 1 << 62
 
 
-def _judged(status: os.stat_result, most: int) -> Problem | None:
+def _judged(status: os.stat_result, most: int) -> UnreadableReason | None:
     if stat.S_ISDIR(status.st_mode):
-        return Problem.FOLDER
+        return UnreadableReason.FOLDER
     if not stat.S_ISREG(status.st_mode):
-        return Problem.SPECIAL
-    return Problem.TOO_LARGE if status.st_size > most else None
+        return UnreadableReason.SPECIAL
+    return UnreadableReason.TOO_LARGE if status.st_size > most else None
 
 
 class Roots:

@@ -210,7 +210,7 @@ _BOMS = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _DECLARED = re.compile(r"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""", re.ASCII)
-_LONGEST_DECLARATION = 400
+_MAX_DECLARATION_BYTES = 400
 
 
 def decode(path: str, data: bytes) -> SourceFile:
@@ -219,12 +219,12 @@ def decode(path: str, data: bytes) -> SourceFile:
     Only text encodings that Python supports are used; invalid bytes become U+FFFD.
     """
     encoding, mark = "utf-8", b""
-    for each, name in _BOMS:
-        if data.startswith(each):
-            data, encoding, mark = data[len(each) :], name, each
+    for mark_bytes, name in _BOMS:
+        if data.startswith(mark_bytes):
+            data, encoding, mark = data[len(mark_bytes) :], name, mark_bytes
             break
     else:
-        if declared := _DECLARED.match(data[:_LONGEST_DECLARATION].decode("latin-1")):
+        if declared := _DECLARED.match(data[:_MAX_DECLARATION_BYTES].decode("latin-1")):
             encoding = _known_encoding(declared[1])
     undecodable = None
     try:
@@ -241,7 +241,7 @@ def _ignored_encoding(text: str, encoding: str) -> Span | None:
 
     Names that Python does not know are reported by the XML parser.
     """
-    declared = _DECLARED.match(text[:_LONGEST_DECLARATION])
+    declared = _DECLARED.match(text[:_MAX_DECLARATION_BYTES])
     if declared is None:
         return None
     try:

@@ -11,10 +11,10 @@ import pytest
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.parse import parse
 from roaml.expr.tree import Binary, Boolean, Expr, Name, Number, Unary
-from roaml.model.behavior.knowledge import NOTHING, Facts, Knowledge
+from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Knowledge
 from roaml.text import Decoded
 
-FACTS = Facts(frozenset(("n", "m")), frozenset(("b", "c")))
+FACTS = ConditionFacts(frozenset(("n", "m")), frozenset(("b", "c")))
 NUMBERS, TRUTHS = range(-1, 4), (False, True)
 
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from as2fm_lsp.junit import Case, Outcome, render
+from as2fm_lsp.junit import Case, CaseOutcome, render
 
 
 def test_counts_and_outcomes() -> None:
     cases = [
         Case("file", "good"),
         Case("file", "said", text="words", seconds=0.25),
-        Case("file", "bad", Outcome.FAILED, "words", "why", "error"),
-        Case("file", "broken", Outcome.ERROR, "words", "why", properties=(("a", "b"),)),
+        Case("file", "bad", CaseOutcome.FAILED, "words", "why", "error"),
+        Case("file", "broken", CaseOutcome.ERROR, "words", "why", properties=(("a", "b"),)),
     ]
     suites = ET.fromstring(render("check", cases))
     (suite,) = suites
@@ -32,7 +32,7 @@ def test_counts_and_outcomes() -> None:
 def test_any_text_is_valid_xml() -> None:
     """Names and messages come from models, which may contain any character."""
     evil = "a\x00b\x1b\ud800\uffff<&>\"'"
-    case = Case(evil, evil, Outcome.FAILED, evil, evil, evil, properties=((evil, evil),))
+    case = Case(evil, evil, CaseOutcome.FAILED, evil, evil, evil, properties=((evil, evil),))
     written = render(evil, [case]).encode("utf-8")
     element = next(ET.fromstring(written).iter("testcase"))
     clean = "a\ufffdb\ufffd\ufffd\ufffd<&>\"'"

@@ -13,9 +13,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml import api
-from roaml.ide.names.lookup import Thing, thing
+from roaml.ide.names.lookup import SymbolGroup, thing
 from roaml.ide.names.occurrences import uses
-from roaml.ide.rename import Refusal, Renaming, prepare, rename
+from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
 from roaml.model.system import safe_name, sanitise
 from roaml.project.settings import Settings
@@ -29,7 +29,7 @@ FRESH = "zqfresh"
 class Case:
     """A thing of a system, and a place at which it can be renamed."""
 
-    thing: Thing
+    thing: SymbolGroup
     path: str
     offset: int
 
@@ -72,7 +72,7 @@ class System:
                         continue
                     found = thing(analysis, (each.symbol,))
                     done.update(found.symbols)
-                    if not isinstance(prepare(analysis, path, each.span.start), Refusal):
+                    if not isinstance(prepare(analysis, path, each.span.start), RenameRefusal):
                         yield Case(found, path, each.span.start)
 
     def failures(self, case: Case) -> Iterator[str]:

@@ -16,7 +16,7 @@ from fixture import split_files
 from mending import applied, found
 from roaml.diagnostics import Severity
 from roaml.ide.code_actions import actions
-from roaml.ide.code_actions.action import FIX_ALL, QUICK_FIX, Action
+from roaml.ide.code_actions.action import FIX_ALL, QUICK_FIX, CodeAction
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import Span
@@ -34,7 +34,7 @@ def opened(written: str) -> tuple[Snapshot, str, Span]:
     return workspace.snapshot(), *where
 
 
-def offered(written: str, kind: str = "") -> list[Action]:
+def offered(written: str, kind: str = "") -> list[CodeAction]:
     snapshot, path, place = opened(written)
     return list(actions(snapshot, path, place, lambda each: each.startswith(kind)))
 

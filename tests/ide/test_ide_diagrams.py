@@ -12,7 +12,7 @@ import pytest
 from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
-from roaml.ide.diagrams import EdgeKind, NodeKind, Picture, machine_picture, ros_picture, tree_picture
+from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, machine_picture, ros_picture, tree_picture
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -197,8 +197,8 @@ def _is_sound(analysis: Analysis, picture: Picture) -> bool:
     return len(set(ids)) == len(ids) and {*ends, *(n.parent for n in picture.nodes if n.parent)} <= set(ids) and texts
 
 
-@pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", NodeKind), ("EDGE_KINDS", EdgeKind)])
-def test_contract(name: str, kinds: type[NodeKind] | type[EdgeKind]) -> None:
+@pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind)])
+def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind]) -> None:
     """Who draws knows the same words."""
     found = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
     assert found is not None

@@ -9,13 +9,13 @@ import pytest
 from ide_case import analysis_of, marked, one_file, path_of
 
 from roaml.ide.formatting import can_format, format_edits
-from roaml.ide.formatting.layout import Layout
+from roaml.ide.formatting.layout import FileLayout
 from roaml.text import apply_edits
 
 
-def formatted(text: str, layout: Layout | None = None) -> str:
+def formatted(text: str, layout: FileLayout | None = None) -> str:
     analysis, path = one_file(text)
-    edits = format_edits(analysis, path, layout or Layout())
+    edits = format_edits(analysis, path, layout or FileLayout())
     assert all(text[edit.span.start : edit.span.end] != edit.new_text for edit in edits)
     return apply_edits(text, edits)
 
@@ -300,9 +300,9 @@ def test_edits_are_small() -> None:
 
 def test_layouts() -> None:
     text = '<ascxml>\n  <state id="a"\n  b="c"/></ascxml>'
-    assert formatted(text, Layout(width=2)) == '<ascxml>\n  <state id="a"\n         b="c" />\n</ascxml>\n'
-    assert formatted(text, Layout(tabs=True)) == '<ascxml>\n\t<state id="a"\n\t       b="c" />\n</ascxml>\n'
-    assert formatted('{"a": [\n]}', Layout(width=3)) == '{\n   "a": []\n}\n'
+    assert formatted(text, FileLayout(width=2)) == '<ascxml>\n  <state id="a"\n         b="c" />\n</ascxml>\n'
+    assert formatted(text, FileLayout(tabs=True)) == '<ascxml>\n\t<state id="a"\n\t       b="c" />\n</ascxml>\n'
+    assert formatted('{"a": [\n]}', FileLayout(width=3)) == '{\n   "a": []\n}\n'
 
 
 def test_range() -> None:

@@ -15,14 +15,14 @@ from examples import examples
 from fuzz.corpus import Model, snippets, systems
 from roaml import api
 from roaml.ide.formatting import can_format, format_edits
-from roaml.ide.formatting.layout import Layout
+from roaml.ide.formatting.layout import FileLayout
 from roaml.project.settings import Settings
 from roaml.text import apply_edits
 from roaml.xml_syntax import Element, Instruction, Node, Text, parse
 
 SPACES = ["", " ", "  ", "\n", "\n\n", "\n \n\n", "\t", "\r\n", " \r\n\r\n ", "\n      ", "\n" + " " * 40]
 LAYOUTS = st.builds(
-    Layout, width=st.sampled_from([2, 4, 8]), tabs=st.booleans(), line_length=st.sampled_from([40, 100])
+    FileLayout, width=st.sampled_from([2, 4, 8]), tabs=st.booleans(), line_length=st.sampled_from([40, 100])
 )
 MODELS = st.sampled_from(range(10_000))
 
@@ -34,7 +34,7 @@ def model(number: int) -> Model:
 
 @given(MODELS, st.integers(), LAYOUTS)
 @settings(max_examples=examples(150))
-def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: Layout) -> None:
+def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: FileLayout) -> None:
     chance = random.Random(seed)
     each = model(number)
     # What a comment keeps quiet depends on its line, which formatting may change: such comments are made plain ones.

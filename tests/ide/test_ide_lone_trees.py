@@ -194,3 +194,13 @@ def test_a_subtree_without_a_name_is_no_tree_without_a_name() -> None:
     thing = thing_at(snapshot_of(tree=text).analysis, path_of("tree.xml"), text.index("{x}") + 1)
     assert thing is not None
     assert len(thing.uses) == 1
+
+
+def test_entries_are_offered_in_scripts() -> None:
+    tree = """<root BTCPP_format="4"><BehaviorTree ID="A"><Sequence>
+        <Script code="count := 1"/><Grasp force="{strength}"/><AlwaysSuccess _skipIf="co‸"/>
+        <Script code="total := str‸"/><Grasp text="co^"/>
+    </Sequence></BehaviorTree></root>"""
+    assert offered(tree.replace("str‸", "str").replace("^", "")).keys() >= {"count"}
+    assert "strength" in offered(tree.replace("co‸", "co").replace("^", ""))
+    assert "count" not in offered(tree.replace("‸", ""), "^")

@@ -127,7 +127,7 @@ tree.xml ID="|Sub" t tree Sub < tree Main > machine Walk
 """
 
 
-def names(found: Iterable[calls.Call]) -> list[str]:
+def names(found: Iterable[calls.HierarchyCall]) -> list[str]:
     return sorted(f"{call.item.symbol.kind.value} {call.item.symbol.name}" for call in found)
 
 

@@ -11,7 +11,7 @@ from ide_sweep import System
 from test_ide_navigate import caret
 
 from fixture import split_files
-from roaml.ide.rename import Prepared, Refusal, Renaming, prepare, rename
+from roaml.ide.rename import Prepared, RenameRefusal, Renaming, prepare, rename
 from roaml.text import apply_edits
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -80,7 +80,7 @@ def test_refusals(row: str, tmp_path: Path) -> None:
     file, piece, new, reason = (row[:17].strip(), row[17:41].strip(), row[41:51].strip(), row[51:])
     analysis = load(tmp_path, split_files(ROBOT))
     found = rename(analysis, *caret(tmp_path, file, piece), new)
-    assert isinstance(found, Refusal)
+    assert isinstance(found, RenameRefusal)
     assert reason in found.reason
 
 
@@ -113,7 +113,7 @@ def test_a_file_of_two_systems(tmp_path: Path) -> None:
         "b.ascxml": 1,
         "shared.ascxml": 2,
     }
-    assert isinstance(rename(analysis, *place, "taken"), Refusal)
+    assert isinstance(rename(analysis, *place, "taken"), RenameRefusal)
 
 
 def test_an_interface_that_is_its_own_handle(tmp_path: Path) -> None:
@@ -126,9 +126,9 @@ def test_an_interface_that_is_its_own_handle(tmp_path: Path) -> None:
     found = rename(analysis, *place, "w")
     assert isinstance(found, Renaming)
     assert apply_edits(text, found.edits[place[0]]) == text.replace("/x", "/w")
-    assert isinstance(rename(analysis, *place, "y"), Refusal)
-    assert isinstance(rename(analysis, *place, "z"), Refusal)
-    assert isinstance(rename(analysis, *caret(tmp_path, "a.ascxml", 'publish name="|y"'), "/x"), Refusal)
+    assert isinstance(rename(analysis, *place, "y"), RenameRefusal)
+    assert isinstance(rename(analysis, *place, "z"), RenameRefusal)
+    assert isinstance(rename(analysis, *caret(tmp_path, "a.ascxml", 'publish name="|y"'), "/x"), RenameRefusal)
 
 
 @pytest.mark.parametrize("main", sorted((ROOT / "examples").glob("*/main.xml")), ids=lambda main: main.parent.name)

@@ -13,7 +13,7 @@ from fuzz.strategies.files import make
 from roaml import api
 from roaml.diagnostics import Severity
 from roaml.ide.code_actions import actions
-from roaml.ide.code_actions.action import FIX_ALL, Change
+from roaml.ide.code_actions.action import FIX_ALL, WorkspaceEdit
 from roaml.ide.folding_range import folds
 from roaml.ide.formatting import format_edits
 from roaml.ide.linked_editing import linked_names
@@ -83,7 +83,7 @@ def test_safe_fixes_of_damaged_models(seed: int) -> None:
     assert api.fix(again) == {}
 
 
-def check_change(result: api.CheckResult, change: Change) -> None:
+def check_change(result: api.CheckResult, change: WorkspaceEdit) -> None:
     for path, edits in change.edits.items():
         source = result.snapshot.analysis.source(path)
         assert source is not None

@@ -14,7 +14,7 @@ from ide_case import analysis_of, marked, one_file, path_of
 
 from fuzz.corpus import snippets, systems
 from roaml import api
-from roaml.ide.semantic_tokens import Modifier, Token, semantic_tokens
+from roaml.ide.semantic_tokens import Modifier, SemanticToken, semantic_tokens
 from roaml.project.settings import Settings
 from roaml.text import SourceFile
 
@@ -104,7 +104,7 @@ def test_tokens(name: str) -> None:
     assert shown(text, semantic_tokens(analysis, path)) == re.sub("\n +", " ", expected)
 
 
-def shown(text: str, tokens: tuple[Token, ...]) -> str:
+def shown(text: str, tokens: tuple[SemanticToken, ...]) -> str:
     source = SourceFile("", text)
     lines: dict[int, list[str]] = {}
     for span, kind, modifiers in tokens:

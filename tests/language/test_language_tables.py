@@ -12,7 +12,7 @@ import xmlschema
 from lxml import etree
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM
-from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
 from roaml.roles import SymbolKind
@@ -114,24 +114,24 @@ def test_content(grammar: Grammar) -> None:
         assert ours.any_child == wildcard_of(theirs), path
 
 
-def occurrence(particle: Any, name: str | None) -> Occurrence:
+def occurrence(particle: Any, name: str | None) -> Multiplicity:
     """How often `name` may stand in a particle; None stands for elements of any name."""
     least, most = particle.min_occurs, UNBOUNDED if particle.max_occurs is None else particle.max_occurs
     if is_wildcard(particle):
-        return Occurrence(least, most) if name is None else Occurrence(0, 0)
+        return Multiplicity(least, most) if name is None else Multiplicity(0, 0)
     if not hasattr(particle, "model"):
-        return Occurrence(least, most) if particle.name == name else Occurrence(0, 0)
-    inner = [occurrence(child, name) for child in particle] or [Occurrence(0, 0)]
+        return Multiplicity(least, most) if particle.name == name else Multiplicity(0, 0)
+    inner = [occurrence(child, name) for child in particle] or [Multiplicity(0, 0)]
     together = max if particle.model == "choice" else sum
     fewest = min(o.least for o in inner) if particle.model == "choice" else sum(o.least for o in inner)
-    return Occurrence(fewest * least, min(UNBOUNDED, together(o.most for o in inner) * most))
+    return Multiplicity(fewest * least, min(UNBOUNDED, together(o.most for o in inner) * most))
 
 
 def is_wildcard(particle: Any) -> bool:
     return bool(particle.elem.tag == f"{XS}any")
 
 
-def wildcard_of(element: Any) -> Occurrence | None:
+def wildcard_of(element: Any) -> Multiplicity | None:
     content = element.type.content
     if not hasattr(content, "iter_elements"):
         return None

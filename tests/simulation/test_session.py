@@ -20,7 +20,7 @@ TRACES = 20
 
 
 @pytest.fixture(scope="module")
-def robot() -> api.Target:
+def robot() -> api.VerificationTarget:
     return api.as_target(api.load(str(ROBOT)))
 
 
@@ -52,7 +52,7 @@ def test_traces_of_verify_are_replayed_forwards_and_backwards(path: Path) -> Non
             assert session.state() == states[position]
 
 
-def test_state_in_the_terms_of_the_user(robot: api.Target) -> None:
+def test_state_in_the_terms_of_the_user(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     assert session.until_time(4)
     state = session.state()
@@ -68,21 +68,21 @@ def test_state_in_the_terms_of_the_user(robot: api.Target) -> None:
     )
 
 
-def test_a_turn_ends_where_a_machine_waits_again(robot: api.Target) -> None:
+def test_a_turn_ends_where_a_machine_waits_again(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     while session.turn():
         assert any(not machine.handles for machine in session.state().machines)
     assert session.end is not None
 
 
-def test_a_tick_ends_with_the_answer_of_the_root(robot: api.Target) -> None:
+def test_a_tick_ends_with_the_answer_of_the_root(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     assert session.tick()
     assert session.state().nodes[0].status is api.NodeStatus.RUNNING
     assert session.steps[session.position - 1].action == "bt_1000_response_on_receive"
 
 
-def test_the_other_outcome_of_a_chance(robot: api.Target) -> None:
+def test_the_other_outcome_of_a_chance(robot: api.VerificationTarget) -> None:
     """Back to where the block was dropped by chance; with the other outcome the arm still holds it."""
     session = next(
         session
@@ -104,7 +104,7 @@ def test_the_other_outcome_of_a_chance(robot: api.Target) -> None:
     assert session.state().machines[0].variables["holding"] is True
 
 
-def test_choices_name_who_and_what(robot: api.Target) -> None:
+def test_choices_name_who_and_what(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     assert session.until_sent("/arm/command")
     texts = [choice.text for choice in session.choices()]
@@ -112,7 +112,7 @@ def test_choices_name_who_and_what(robot: api.Target) -> None:
     assert sum(choice.probability for choice in session.choices()) == pytest.approx(1)
 
 
-def test_a_different_step_forgets_what_came_after(robot: api.Target) -> None:
+def test_a_different_step_forgets_what_came_after(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     session.until_decided()
     length = len(session.steps)
@@ -124,7 +124,7 @@ def test_a_different_step_forgets_what_came_after(robot: api.Target) -> None:
     assert session.is_by_hand, "a step that was taken by hand is taken again"
 
 
-def test_a_fork_goes_its_own_way(robot: api.Target) -> None:
+def test_a_fork_goes_its_own_way(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     session.jump(100)
     fork = session.fork()
@@ -137,7 +137,7 @@ def test_a_fork_goes_its_own_way(robot: api.Target) -> None:
 
 @settings(max_examples=20, deadline=None)
 @given(st.lists(st.integers(0, 30), max_size=30), st.integers(0, 50))
-def test_a_saved_session_is_the_same_run(robot: api.Target, picks: list[int], position: int) -> None:
+def test_a_saved_session_is_the_same_run(robot: api.VerificationTarget, picks: list[int], position: int) -> None:
     session = api.session(robot, "block_placed", seed=5, trace=2)
     for pick in picks:
         choices = session.choices()
@@ -167,7 +167,7 @@ def test_what_is_not_a_saved_session(text: str) -> None:
         api.SavedSession.from_json(text)
 
 
-def test_decisions_that_are_not_possible(robot: api.Target) -> None:
+def test_decisions_that_are_not_possible(robot: api.VerificationTarget) -> None:
     impossible = api.SavedSession("block_placed", 0, 0, 1, (api.Decision(10**6, (), ()),))
     with pytest.raises(api.RunError, match="step 1 is not possible"):
         api.session(robot, saved=impossible)

@@ -15,7 +15,7 @@ from typing import TextIO
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
-from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
 from as2fm_lsp.cli.output import complain, print_text
@@ -108,7 +108,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
             return _usage(str(error))
     strict = options.warnings_as_errors or settings.warnings_as_errors
     color = options.output is None and takes_color(sys.stdout)
-    report = Report(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
+    report = CheckReport(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
     try:
         _write(options, report)
     except OSError as error:
@@ -133,7 +133,7 @@ def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
     return f"{total} more {have} not safe to apply without a review; an editor offers them: {names}"
 
 
-def _write(options: argparse.Namespace, report: Report) -> None:
+def _write(options: argparse.Namespace, report: CheckReport) -> None:
     text = _statistics(report.entries) if options.statistics else FORMATS[options.format](report)
     if options.output is not None:
         write_file(options.output, text)

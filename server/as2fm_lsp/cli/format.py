@@ -13,7 +13,7 @@ from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.diff import unified
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.ide.formatting import can_format, format_edits, is_ours
 from roaml.language import HL_SCXML
 from roaml.model.dialect import dialect_of
@@ -93,7 +93,7 @@ def parser() -> ArgumentParser:
 def _problem(analysis: Analysis, path: str) -> str:
     """Why a given file cannot be formatted."""
     source = analysis.files.read(path)
-    if isinstance(source, Problem):
+    if isinstance(source, UnreadableReason):
         return source.value
     return "" if is_ours(analysis, path) else "it is neither a model nor a property file"
 

@@ -11,7 +11,7 @@ from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import flush, print_text
 from roaml.model.system_file import duration
 from roaml.simulation import Choice, Outcome, Session
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.views.values import shown_value
 
 HELP = """\
@@ -28,7 +28,7 @@ HELP = """\
 class Terminal:
     """Shows a session, and moves it as the input says."""
 
-    def __init__(self, session: Session, target: Target) -> None:
+    def __init__(self, session: Session, target: VerificationTarget) -> None:
         self._session = session
         self._target = target
 

@@ -17,7 +17,7 @@ from typing import Any
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
@@ -29,7 +29,7 @@ from roaml.project.settings import ament_prefixes
 from roaml.simulation import RunError, SavedSession, Session, SystemState
 from roaml.smc.fault import FaultError
 from roaml.text import Location
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 
 EXAMPLES = """\
 examples:
@@ -87,7 +87,7 @@ def _run(options: argparse.Namespace) -> int:
     except api.ModelError as error:
         result = error.result
         entries = [entry(diagnostic, result.source, shown_path) for diagnostic in result.diagnostics]
-        report = Report(entries, len(result.files), color=takes_color(sys.stderr))
+        report = CheckReport(entries, len(result.files), color=takes_color(sys.stderr))
         print_text(FORMATS["text"](report), stream=sys.stderr)
         return FOUND
     except api.JaniError as error:
@@ -102,7 +102,7 @@ def _run(options: argparse.Namespace) -> int:
     return CLEAN
 
 
-def _session(options: argparse.Namespace, target: Target) -> Session:
+def _session(options: argparse.Namespace, target: VerificationTarget) -> Session:
     saved = None
     if options.script is not None:
         try:
@@ -113,7 +113,7 @@ def _session(options: argparse.Namespace, target: Target) -> Session:
     return api.session(target, name, options.seed, options.trace, saved)
 
 
-def _advance(options: argparse.Namespace, session: Session, target: Target) -> None:
+def _advance(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
     """Go as far as the options say."""
     if options.script is not None and options.until is None and options.for_ is None:
         return
@@ -133,7 +133,7 @@ def _advance(options: argparse.Namespace, session: Session, target: Target) -> N
         session.until_decided(options.max_steps)
 
 
-def _write(options: argparse.Namespace, session: Session, target: Target) -> None:
+def _write(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
     from roaml.views.story import as_html, as_mermaid, as_text  # noqa: PLC0415
 
     def place_of(origin: Location) -> str:
@@ -197,7 +197,7 @@ def _values(state: SystemState) -> dict[str, Any]:
     return {name: str(value).lower() if isinstance(value, bool) else value for name, value in values.items()}
 
 
-def _as_json(session: Session, target: Target) -> dict[str, Any]:
+def _as_json(session: Session, target: VerificationTarget) -> dict[str, Any]:
     rows = []
     for number, step in enumerate(session.steps[: session.position]):
         place = target.place(step.parts[0].edge.origin) if step.parts else None

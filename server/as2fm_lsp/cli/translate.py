@@ -13,7 +13,7 @@ from dataclasses import replace
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.status_line import StatusLine
@@ -190,12 +190,12 @@ def _source(system: api.LoadedSystem, path: str) -> SourceFile:
 
 def _reported(
     diagnostics: Sequence[Diagnostic], source_of: Callable[[str], SourceFile], files: Sequence[str]
-) -> Report:
+) -> CheckReport:
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
-    return Report(entries, len(files), color=takes_color(sys.stderr))
+    return CheckReport(entries, len(files), color=takes_color(sys.stderr))
 
 
-def _report(options: argparse.Namespace, report: Report) -> None:
+def _report(options: argparse.Namespace, report: CheckReport) -> None:
     """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
     if options.format == "json":
         print_text(FORMATS["json"](report), "utf-8")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, Report
+from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
@@ -47,7 +47,7 @@ from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Result
 from roaml.verification.storm import ExactError
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
 if TYPE_CHECKING:
@@ -285,7 +285,7 @@ class _Verification:
         """Report the same to users, on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
-            report = Report(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
+            report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
                 print_text(FORMATS["text"](report), stream=sys.stderr)
 
@@ -488,7 +488,7 @@ def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | 
     return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed))
 
 
-def _source_of(target: Target) -> Callable[[str], SourceFile]:
+def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:
     """The texts of the files that a target was read from."""
 
     def source_of(path: str) -> SourceFile:
@@ -499,7 +499,7 @@ def _source_of(target: Target) -> Callable[[str], SourceFile]:
     return source_of
 
 
-def _fault(options: argparse.Namespace, target: Target, fault: FaultError) -> int:
+def _fault(options: argparse.Namespace, target: VerificationTarget, fault: FaultError) -> int:
     """The whole model cannot be run."""
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
@@ -517,7 +517,7 @@ def _errors(
     files: Sequence[str],
 ) -> int:
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
-    report = Report(entries, len(files), color=takes_color(sys.stderr))
+    report = CheckReport(entries, len(files), color=takes_color(sys.stderr))
     if options.format == "json":
         print_text(as_json((), [_row(finding) for finding in entries]), "utf-8")
     elif options.format == "junit":

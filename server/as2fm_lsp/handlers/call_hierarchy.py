@@ -15,13 +15,13 @@ from roaml.ide.hierarchy import calls
 from roaml.project.analysis import Analysis
 from roaml.text import Span
 
-Ask = Callable[[Analysis, Symbol], tuple[calls.Call, ...]]
+Ask = Callable[[Analysis, Symbol], tuple[calls.HierarchyCall, ...]]
 
 
 def register(context: Context) -> None:
     session = context.session
 
-    def convert(analysis: Analysis, item: calls.Item) -> types.CallHierarchyItem:
+    def convert(analysis: Analysis, item: calls.CallHierarchyItem) -> types.CallHierarchyItem:
         source, symbol = analysis.source(item.path), item.symbol
         assert source is not None
         return types.CallHierarchyItem(
@@ -38,7 +38,7 @@ def register(context: Context) -> None:
         source = analysis.source(path)
         return [session.convert.range(source, span) for span in spans] if source else []
 
-    def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.Call, ...]]:
+    def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.HierarchyCall, ...]]:
         """The calls of an item that the client received before."""
         analysis = session.moment().snapshot(session.convert.path(item.uri)).analysis
         symbol = unpack(item.data)

@@ -18,7 +18,7 @@ from as2fm_lsp.handlers import translate
 from roaml.diagnostics import Diagnostic
 from roaml.facts import Facts, facts_from_json, facts_to_json
 from roaml.ide.code_actions import actions
-from roaml.ide.code_actions.action import FIX_ALL, KINDS, Action, Change
+from roaml.ide.code_actions.action import FIX_ALL, KINDS, CodeAction, WorkspaceEdit
 from roaml.project.workspace import Snapshot
 from roaml.rules import BY_CODE
 from roaml.text import SourceFile, Span
@@ -69,7 +69,7 @@ def register(context: Context) -> None:
 
 
 def _converted(
-    context: Context, snapshot: Snapshot, path: str, place: Span, shown: _ClientDiagnostics, action: Action
+    context: Context, snapshot: Snapshot, path: str, place: Span, shown: _ClientDiagnostics, action: CodeAction
 ) -> types.CodeAction:
     converted = types.CodeAction(
         action.title,
@@ -85,7 +85,7 @@ def _converted(
     return converted
 
 
-def _identity(action: Action) -> dict[str, Any] | None:
+def _identity(action: CodeAction) -> dict[str, Any] | None:
     """The key that distinguishes actions with equal titles: the diagnostic that they fix."""
     mended = action.mends
     if mended is None:
@@ -123,7 +123,7 @@ class _ClientDiagnostics:
         return self._context.diagnostics.converted(self._snapshot, self._source, [diagnostic])
 
 
-def _edit(context: Context, snapshot: Snapshot, change: Change) -> types.WorkspaceEdit:
+def _edit(context: Context, snapshot: Snapshot, change: WorkspaceEdit) -> types.WorkspaceEdit:
     convert, analysis = context.session.convert, snapshot.analysis
     edits = {
         path: [convert.edit(source, edit) for edit in sorted(change.edits[path])]
@@ -155,7 +155,7 @@ def _resolves(context: Context) -> bool:
     return bool(action and action.data_support and support and "edit" in support.properties)
 
 
-def _can(context: Context, action: Action) -> bool:
+def _can(context: Context, action: CodeAction) -> bool:
     """Whether the client can create and rename files, if an action does so."""
     workspace = context.client.capabilities.workspace
     edit = workspace.workspace_edit if workspace else None

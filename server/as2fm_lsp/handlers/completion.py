@@ -15,7 +15,7 @@ from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import documentation
-from roaml.ide.completion import TRIGGERS, Item, ItemKind, complete, document, plain
+from roaml.ide.completion import TRIGGERS, CompletionItem, ItemKind, complete, document, plain
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -81,7 +81,7 @@ class _ItemWriter:
         self.label_details = bool(asks and asks.label_details_support)
         self.trigger_suggest = context.client.trigger_suggest
 
-    def item(self, item: Item, range_: types.Range, rank: int, path: str) -> types.CompletionItem:
+    def item(self, item: CompletionItem, range_: types.Range, rank: int, path: str) -> types.CompletionItem:
         new = item.snippet if self.snippets else plain(item.snippet)
         made = types.CompletionItem(
             label=item.label,

@@ -8,7 +8,7 @@ from lsprotocol import types
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.requested_document import requested_document
 from roaml.ide.formatting import format_edits
-from roaml.ide.formatting.layout import Layout
+from roaml.ide.formatting.layout import FileLayout
 
 _MAX_INDENT_WIDTH = 16
 
@@ -23,9 +23,9 @@ def register(context: Context) -> None:
         return _edits(context, params.text_document, params.options, params.range)
 
 
-def layout_of(options: types.FormattingOptions) -> Layout:
+def layout_of(options: types.FormattingOptions) -> FileLayout:
     """The layout that a client requests; invalid values are replaced by the nearest valid ones."""
-    return Layout(width=min(max(options.tab_size, 1), _MAX_INDENT_WIDTH), tabs=not options.insert_spaces)
+    return FileLayout(width=min(max(options.tab_size, 1), _MAX_INDENT_WIDTH), tabs=not options.insert_spaces)
 
 
 def _edits(

@@ -11,7 +11,7 @@ from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri
 from as2fm_lsp.handlers.structure import nested
 from as2fm_lsp.verification import background
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.ide.jani_view import JaniView, jani_view
 from roaml.text import SourceFile
 
@@ -35,7 +35,7 @@ def register(context: Context) -> None:
     async def view(params: Any) -> JaniText:
         path = session.convert.path(document_uri(params))
         source = session.moment().snapshot(path).analysis.files.read(path)
-        if isinstance(source, Problem):
+        if isinstance(source, UnreadableReason):
             return _problem(f"This file cannot be shown: {source.value}.")
         if len(source.text) > MAX_CHARACTERS:
             return _problem(f"This file is too large to be formatted ({len(source.text) / 1e6:.0f} MB).")

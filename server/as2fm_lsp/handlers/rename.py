@@ -8,7 +8,7 @@ from pygls.exceptions import JsonRpcException
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.requested_document import requested_document
-from roaml.ide.rename import Refusal, prepare, rename
+from roaml.ide.rename import RenameRefusal, prepare, rename
 
 _REQUEST_FAILED = types.LSPErrorCodes.RequestFailed.value
 
@@ -20,7 +20,7 @@ def register(context: Context) -> None:
         if on is None:
             return None
         prepared = prepare(on.analysis, on.path, on.offset(params.position))
-        if isinstance(prepared, Refusal):
+        if isinstance(prepared, RenameRefusal):
             raise _refused(prepared)
         return types.PrepareRenamePlaceholder(on.range(prepared.span), prepared.name)
 
@@ -30,7 +30,7 @@ def register(context: Context) -> None:
         if on is None:
             return None
         renaming = rename(on.analysis, on.path, on.offset(params.position), params.new_name)
-        if isinstance(renaming, Refusal):
+        if isinstance(renaming, RenameRefusal):
             raise _refused(renaming)
         changes = {}
         for path, edits in renaming.edits.items():
@@ -40,7 +40,7 @@ def register(context: Context) -> None:
         return types.WorkspaceEdit(changes=changes)
 
 
-def _refused(refusal: Refusal) -> JsonRpcException:
+def _refused(refusal: RenameRefusal) -> JsonRpcException:
     """The reason as a sentence, which the client shows."""
     reason = refusal.reason
     return JsonRpcException(f"{reason[0].upper()}{reason[1:]}.", _REQUEST_FAILED)

@@ -11,7 +11,7 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.requested_document import RequestedDocument, requested_document
-from roaml.ide.semantic_tokens import Modifier, Token, TokenKind, semantic_tokens
+from roaml.ide.semantic_tokens import Modifier, SemanticToken, TokenKind, semantic_tokens
 
 _TYPES = {
     TokenKind.STRUCTURE_TAG: types.SemanticTokenTypes.Keyword,
@@ -95,7 +95,7 @@ def register(context: Context) -> None:
         return types.SemanticTokens(encoded(file, semantic_tokens(file.analysis, file.path, file.span(params.range))))
 
 
-def encoded(file: RequestedDocument, tokens: Sequence[Token]) -> list[int]:
+def encoded(file: RequestedDocument, tokens: Sequence[SemanticToken]) -> list[int]:
     """Five numbers for each token, its position relative to the previous one."""
     data: list[int] = []
     line = character = 0

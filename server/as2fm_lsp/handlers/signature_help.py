@@ -8,7 +8,7 @@ from lsprotocol import types
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.markup import documentation
-from roaml.ide.signature_help import TRIGGERS, Signature, signature_help
+from roaml.ide.signature_help import TRIGGERS, SignatureHelp, signature_help
 
 
 def register(context: Context) -> None:
@@ -21,7 +21,7 @@ def register(context: Context) -> None:
         )
 
 
-def _information(context: Context, signature: Signature) -> types.SignatureInformation:
+def _information(context: Context, signature: SignatureHelp) -> types.SignatureInformation:
     document = context.client.capabilities.text_document
     asks = document.signature_help.signature_information if document and document.signature_help else None
     takes_places = bool(asks and asks.parameter_information and asks.parameter_information.label_offset_support)

@@ -46,7 +46,7 @@ from roaml.verification import stuck
 from roaml.verification.counterexample import counterexample, unwanted_trace
 from roaml.verification.expectations import RangeError, check_range
 from roaml.verification.results import Result, Traces
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import Verifier, checker_of
 from roaml.views.story import StoryLine
 
@@ -261,12 +261,12 @@ class _VerifyCommand:
         look = None if verifier is None else await self.look(verifier, system.analysis, results, texts)
         return {"results": rows, "errors": [], "stuck": look}
 
-    def text(self, result: Result, target: Target) -> str:
+    def text(self, result: Result, target: VerificationTarget) -> str:
         """A result as a message; another message shows the waiting automata."""
         shown = "in a separate message"
         return one_as_text(result, partial(_place_in_words, target), self.settings.stuck, shown)
 
-    def asked(self, target: Target, name: str) -> tuple[Verifier, CompiledProperty]:
+    def asked(self, target: VerificationTarget, name: str) -> tuple[Verifier, CompiledProperty]:
         """A property, ready to be verified.
 
         Raises:
@@ -362,7 +362,7 @@ def _step(context: Context, known: KnownResult, system: str, line: StoryLine) ->
     }
 
 
-def _place_in_words(target: Target | None, origin: Location) -> str:
+def _place_in_words(target: VerificationTarget | None, origin: Location) -> str:
     place = target.place(origin) if target else None
     return f"{os.path.basename(place[0])}:{place[1]}" if place else ""
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from roaml.ide.verifiable import Texts, fingerprint
 from roaml.project.analysis import Analysis
 from roaml.verification.results import Result
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class KnownResults:
 
     changes: int = 0
     _known: dict[str, dict[str, KnownResult]] = field(default_factory=dict)
-    _target: tuple[Texts, Target] | None = None
+    _target: tuple[Texts, VerificationTarget] | None = None
 
     def put(self, system: str, known: KnownResult) -> None:
         self._known.setdefault(system, {})[known.result.name] = known
@@ -55,11 +55,11 @@ class KnownResults:
 
     # A user verifies one property after the other: they share the translation.
 
-    def target(self, texts: Texts) -> Target | None:
+    def target(self, texts: Texts) -> VerificationTarget | None:
         """The last translation, if it was made from these texts."""
         return self._target[1] if self._target and self._target[0] == texts else None
 
-    def keep_target(self, texts: Texts, target: Target) -> None:
+    def keep_target(self, texts: Texts, target: VerificationTarget) -> None:
         self._target = (texts, target)
 
 

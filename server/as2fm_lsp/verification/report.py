@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from as2fm_lsp import junit
-from as2fm_lsp.junit import Case, Outcome
+from as2fm_lsp.junit import Case, CaseOutcome
 from as2fm_lsp.verification import ends, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.run import Answer, ratio_of
@@ -231,7 +231,7 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Loo
     level = WARNING if look is None else look.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if look is not None:
-        outcome = Outcome.PASSED if look.is_met else Outcome.FAILED
+        outcome = CaseOutcome.PASSED if look.is_met else CaseOutcome.FAILED
         cases.append(
             Case(title, NOT_STUCK, outcome, stuck_report.as_text(look, place_of), "" if look.is_met else "stuck")
         )
@@ -242,10 +242,10 @@ def _case(result: Result, title: str, text: str) -> Case:
     properties = [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
     if about := warning(result):
         properties.append(("warning", about))
-    case = Case(title, result.name, Outcome.PASSED, text, "", "", result.seconds, tuple(properties))
+    case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
     if result.refusal is not None:
-        return replace(case, outcome=Outcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+        return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
     if result.is_met:
         return case
     missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]
-    return replace(case, outcome=Outcome.FAILED, message=f"expected {' and '.join(missed)}")
+    return replace(case, outcome=CaseOutcome.FAILED, message=f"expected {' and '.join(missed)}")

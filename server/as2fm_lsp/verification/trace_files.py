@@ -21,7 +21,7 @@ from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Seen
 from roaml.verification.stuck import time_of
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.views.waiting import waits
 
 DEFAULT_LIMIT = 10
@@ -30,7 +30,7 @@ _UNSAFE = re.compile(r"[^\w.-]")
 
 
 def write_traces(
-    folder: str, target: Target, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
+    folder: str, target: VerificationTarget, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
 ) -> list[str]:
     """Write the first traces of each verdict, and the shortest; return the names of the files.
 
@@ -82,7 +82,7 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
     yield row(number, values, end_of(recording))
 
 
-def json_lines(target: Target, recorder: Recorder, trace: int) -> Iterator[str]:
+def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> Iterator[str]:
     """The text of a trace: one line for each step."""
     recording = Recording(trace)
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
@@ -109,7 +109,7 @@ def end_of(recording: Recording) -> str:
     return "fault" if recording.problem is not None else recording.end.key
 
 
-def step_row(target: Target, recorder: Recorder, step: TraceStep) -> dict[str, object]:
+def step_row(target: VerificationTarget, recorder: Recorder, step: TraceStep) -> dict[str, object]:
     """A step as a value for JSON."""
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     return {
@@ -136,7 +136,7 @@ def step_row(target: Target, recorder: Recorder, step: TraceStep) -> dict[str, o
     }
 
 
-def _place(target: Target, origin: Origin | None) -> dict[str, object]:
+def _place(target: VerificationTarget, origin: Origin | None) -> dict[str, object]:
     place = target.place(origin)
     if place is None:
         return {}

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from roaml.verification.results import Exact, Result, SampledResult, Traces
     from roaml.verification.storm import ExactError
     from roaml.verification.stuck import Look, Stuck
-    from roaml.verification.target import LineColumn, Target
+    from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
     from roaml.views.story import StoryLine
     from roaml.views.waiting import Wait
@@ -92,7 +92,7 @@ else:
         "roaml.verification.results": ("Exact", "Result", "SampledResult", "Traces"),
         "roaml.verification.storm": ("ExactError",),
         "roaml.verification.stuck": ("Look", "Stuck"),
-        "roaml.verification.target": ("LineColumn", "Target"),
+        "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
         "roaml.views.story": ("StoryLine",),
         "roaml.views.waiting": ("Wait",),
@@ -174,11 +174,11 @@ __all__ = [
     "Stuck",
     "SystemState",
     "Tally",
-    "Target",
     "Threshold",
     "TraceStep",
     "Traces",
     "Verdict",
+    "VerificationTarget",
     "Verifier",
     "Wait",
     "Watch",

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Diagnostic
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.model.kinds import FileKind
 from roaml.project.configuration import find_settings
 from roaml.project.fixing import fix_all, safe_fix
@@ -116,7 +116,7 @@ def _workspace(
     kinds = {path: analysis.kind(path) for path in named if path not in folders}
     for path in kinds:
         problem = analysis.files.read(path)
-        if isinstance(problem, Problem):
+        if isinstance(problem, UnreadableReason):
             raise PathError(f"{path}: {problem.value}")
     systems = [path for path, kind in kinds.items() if kind is FileKind.SYSTEM]
     roots = list(folders)

@@ -11,11 +11,11 @@ from roaml.jani.model import Model
 
 if TYPE_CHECKING:
     from roaml.simulation.session import SavedSession, Session
-    from roaml.verification.target import Target
+    from roaml.verification.target import VerificationTarget
 
 
 def session(
-    subject: Target | LoadedSystem | Model,
+    subject: VerificationTarget | LoadedSystem | Model,
     property: str | None = None,  # noqa: A002 - JANI's word
     seed: int = 0,
     trace: int = 0,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
     from roaml.verification.results import Result
-    from roaml.verification.target import Target
+    from roaml.verification.target import VerificationTarget
     from roaml.verification.verifier import Verifier
 
 
@@ -33,7 +33,7 @@ def target(
     texts: Mapping[str, str | bytes] | None = None,
     overrides: Overrides = NO_OVERRIDES,
     constants: Sequence[str] = (),
-) -> Target:
+) -> VerificationTarget:
     """Read what is to be verified; a file whose name ends in `.jani` is a JANI model, any other one a system.
 
     Args:
@@ -65,7 +65,7 @@ def target(
     return target_of(model, path, (path,), lambda _: source)
 
 
-def as_target(subject: Target | LoadedSystem | Model) -> Target:
+def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
     """A system, which is translated, or a model, as what is verified."""
     from roaml.verification.target import target_of  # noqa: PLC0415
 
@@ -92,7 +92,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> ModelCheck
 
 
 def verifier(
-    subject: Target | LoadedSystem | Model,
+    subject: VerificationTarget | LoadedSystem | Model,
     properties: Sequence[str] | None = None,
     options: Options | None = None,
     expectations: Iterable[str | Expectation] = (),
@@ -115,7 +115,7 @@ def verifier(
 
 
 def verify(
-    subject: Target | LoadedSystem | Model,
+    subject: VerificationTarget | LoadedSystem | Model,
     properties: Sequence[str] | None = None,
     options: Options | None = None,
     jobs: int = 1,

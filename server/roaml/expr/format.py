@@ -93,7 +93,7 @@ def _owner(expr: Expr) -> str:
 
 
 def _list(expressions: tuple[Expr, ...]) -> str:
-    return ", ".join(_text(each, CONDITIONAL_PRECEDENCE) for each in expressions)
+    return ", ".join(_text(expression, CONDITIONAL_PRECEDENCE) for expression in expressions)
 
 
 def _unary(expr: Unary) -> str:

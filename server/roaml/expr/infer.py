@@ -415,17 +415,17 @@ class _Inference:
         for other in expr.elements[1:]:
             element = self.common(element, other)
         if len(self.problems) == known:
-            self.problems += (ElementComputed(each.span) for each in expr.elements if not _is_literal(each))
+            self.problems += (ElementComputed(element.span) for element in expr.elements if not _is_literal(element))
         return Array(element, len(expr.elements))
 
     def common(self, first: Type, other: Expr) -> Type:
         """The common type of values of type `first` and `other`."""
         second = self.type_of(other)
-        found = join(first, second)
-        if found is None:
+        common = join(first, second)
+        if common is None:
             self.problems.append(MixedTypes(other.span, first, second))
             return UNKNOWN
-        return found
+        return common
 
     def operand(self, expr: Expr, operator: str, wanted: Type) -> None:
         type_ = self.type_of(expr)

@@ -49,7 +49,7 @@ SYNTAX = "expression-syntax"
 UNSUPPORTED = "unsupported-expression"
 
 
-class Token(NamedTuple):
+class ExpressionToken(NamedTuple):
     """`kind` is number, string, name, punctuator, template or junk; `start` and `end` index the decoded text."""
 
     kind: str
@@ -76,7 +76,7 @@ _SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
 _ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
 
-_LONGEST_REMEMBERED = 500
+_MAX_REMEMBERED_LENGTH = 500
 """The maximum number of characters of an expression that is cached."""
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -112,20 +112,20 @@ _PRIMARY = (Call, Index, Member, Name, Number)
 _OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
 
 
-def tokens(text: str) -> list[Token]:
+def tokens(text: str) -> list[ExpressionToken]:
     """The tokens of an expression; together with white space they cover the whole text."""
-    found = []
+    text_tokens = []
     for match in _TOKEN.finditer(text, 0, len(text.rstrip())):
         kind = match.lastgroup or "junk"
         start, end = match.span(kind)
-        found.append(Token(kind, match[kind], start, end))
-    return found
+        text_tokens.append(ExpressionToken(kind, match[kind], start, end))
+    return text_tokens
 
 
 def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
     """The expression in `source` and its syntax errors."""
     text = source.text
-    if len(text) <= _LONGEST_REMEMBERED and (sound := _sound(text)) is not None:
+    if len(text) <= _MAX_REMEMBERED_LENGTH and (sound := _sound(text)) is not None:
         return placed(sound, source), ()
     return _parse(source)
 
@@ -199,7 +199,7 @@ class _Parser:
             self.superfluous(rest)
         return expr
 
-    def superfluous(self, token: Token) -> None:
+    def superfluous(self, token: ExpressionToken) -> None:
         """Report text after a complete expression."""
         span = self.span(token)
         remove = Fix("Remove it", (TextEdit(span, ""),), preferred=False)
@@ -242,7 +242,7 @@ class _Parser:
         self.depth = start_depth
         return left
 
-    def foreign(self, left: Expr, first: int, token: Token) -> Expr:
+    def foreign(self, left: Expr, first: int, token: ExpressionToken) -> Expr:
         """Report a binary operator of ECMAScript or of another language that is not supported."""
         span = self.span(token)
         replacement = _REPLACEMENTS.get(token.text)
@@ -258,7 +258,7 @@ class _Parser:
             self.findings[number] = replace(self.findings[number], fixes=(_power(left, right),))
         return ErrorExpr(self.since(first), (left, right))
 
-    def written(self, token: Token, symbol: str) -> None:
+    def written(self, token: ExpressionToken, symbol: str) -> None:
         """Report that an operator must be written as `symbol`."""
         span = self.span(token)
         self.report(span, f"write `{symbol}`", SYNTAX, Fix(f"Write `{symbol}`", (TextEdit(span, _in_xml(symbol)),)))
@@ -299,7 +299,7 @@ class _Parser:
                 expr = ErrorExpr(self.since(first), (expr,))
         return expr
 
-    def member(self, expr: Expr, first: int, dot: Token) -> Expr:
+    def member(self, expr: Expr, first: int, dot: ExpressionToken) -> Expr:
         name = self.peek()
         if name is not None and name.kind == "name":
             self.at += 1
@@ -308,7 +308,7 @@ class _Parser:
         self.report(self.span(dot), "a name is missing after the `.`")
         return Member(self.since(first), expr, "", Span(end, end))
 
-    def primary(self, token: Token) -> Expr:
+    def primary(self, token: ExpressionToken) -> Expr:
         span = self.span(token)
         if token.kind == "name":
             self.at += 1
@@ -333,7 +333,7 @@ class _Parser:
             return self.object(token)
         return self.no_operand(token, span)
 
-    def word(self, token: Token, span: Span) -> Expr:
+    def word(self, token: ExpressionToken, span: Span) -> Expr:
         text, first = token.text, self.at - 1
         if text in _LITERALS:
             return Boolean(span, _LITERALS[text])
@@ -355,7 +355,7 @@ class _Parser:
             return Unary(self.since(first), UnaryOperator.NOT, operand)
         return Name(span, text)
 
-    def no_operand(self, token: Token, span: Span) -> Expr:
+    def no_operand(self, token: ExpressionToken, span: Span) -> Expr:
         self.deeper()
         if token.kind == "template":
             self.at += 1
@@ -387,7 +387,7 @@ class _Parser:
                 return at + 2 if flags and self.tokens[at + 1].kind == "name" else at + 1
         return 0
 
-    def unclosed_string(self, token: Token, span: Span) -> Expr:
+    def unclosed_string(self, token: ExpressionToken, span: Span) -> Expr:
         quote = token.text[0]
         opening = self.source.span(token.start, token.start + 1)
         written = quote if opening.end - opening.start == 1 else _QUOTES[quote]
@@ -395,7 +395,7 @@ class _Parser:
         self.report(span, f"the string has no closing {quote}", SYNTAX, close)
         return String(span, _string_value(token.text[1:]))
 
-    def number(self, token: Token, span: Span) -> Expr:
+    def number(self, token: ExpressionToken, span: Span) -> Expr:
         following = self.peek()
         if following is not None and following.kind == "name" and following.start == token.end:
             self.at += 1
@@ -406,17 +406,17 @@ class _Parser:
             return ErrorExpr(span)
         return Number(span, value, isinstance(value, float))
 
-    def items(self, closer: str, opener: Token) -> tuple[Expr, ...]:
+    def items(self, closer: str, opener: ExpressionToken) -> tuple[Expr, ...]:
         """Comma-separated expressions up to `closer`, which is consumed."""
-        found: list[Expr] = []
+        operands: list[Expr] = []
         while (token := self.peek()) is not None and token.text != closer:
-            found.append(self.expression(0))
+            operands.append(self.expression(0))
             if not self.accept(","):
                 break
         self.closing(closer, opener)
-        return tuple(found)
+        return tuple(operands)
 
-    def object(self, opener: Token) -> Expr:
+    def object(self, opener: ExpressionToken) -> Expr:
         members: list[ObjectMember] = []
         first = self.at
         self.at += 1
@@ -439,7 +439,7 @@ class _Parser:
 
     # --------------------------------------------------------------- helpers
 
-    def peek(self) -> Token | None:
+    def peek(self) -> ExpressionToken | None:
         return self.tokens[self.at] if self.at < len(self.tokens) else None
 
     def accept(self, text: str) -> bool:
@@ -449,7 +449,7 @@ class _Parser:
             return True
         return False
 
-    def closing(self, closer: str, opener: Token) -> None:
+    def closing(self, closer: str, opener: ExpressionToken) -> None:
         """Consume `closer` and superfluous tokens before it, or report that `opener` is never closed."""
         if self.accept(closer):
             return
@@ -496,7 +496,7 @@ class _Parser:
         """The span from token `first` to the last one read, or to the position after it where something is missing."""
         return self.source.span(self.tokens[first].start, max(self.tokens[self.at - 1].end, self.gap))
 
-    def span(self, token: Token) -> Span:
+    def span(self, token: ExpressionToken) -> Span:
         return self.source.span(token.start, token.end)
 
     def report(self, span: Span, message: str, code: str = SYNTAX, *fixes: Fix) -> None:

@@ -173,14 +173,14 @@ def walk(expr: Expr) -> list[Expr]:
     """`expr` and all its subexpressions, outer before inner, left to right."""
     if isinstance(expr, _LEAVES):
         return [expr]  # the common case
-    found: list[Expr] = []
+    nodes: list[Expr] = []
     stack: list[Expr] = [expr]
     while stack:
         node = stack.pop()
-        found.append(node)
+        nodes.append(node)
         if not isinstance(node, _LEAVES):
             stack += children(node)[::-1]
-    return found
+    return nodes
 
 
 def placed(expr: Expr, source: Decoded) -> Expr:

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
-from roaml.ide.names.lookup import Use, thing
+from roaml.ide.names.lookup import SymbolUse, thing
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
-from roaml.ide.system_names import MOST, grouped
+from roaml.ide.system_names import MAX_NAMES, grouped
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import System
@@ -97,9 +97,9 @@ def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
     said = grouped({system: found.title for system, found in by_system.items()})
-    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MOST])
+    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MAX_NAMES])
     places = tuple(sorted({place for found in by_system.values() for place in found.places}))
-    return Counted(f"{title} / …" if len(said) > MOST else title, places)
+    return Counted(f"{title} / …" if len(said) > MAX_NAMES else title, places)
 
 
 def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
@@ -123,13 +123,13 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     return Counted(_count(places, "use"), _locations(places))
 
 
-def _within(analysis: Analysis, found: Iterable[Use], system: str | None) -> list[Use]:
+def _within(analysis: Analysis, found: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
     """The uses in the files of a system; all if there is no system."""
     files = frozenset(analysis.files_of(system)) if system else None
     return [use for use in found if files is None or use.path in files]
 
 
-def _event(analysis: Analysis, found: Iterable[Use]) -> Counted:
+def _event(analysis: Analysis, found: Iterable[SymbolUse]) -> Counted:
     in_machines = [use for use in found if analysis.machine(use.path) is not None]
     sent = [use for use in in_machines if use.occurrence.access is Access.WRITE]
     received = [use for use in in_machines if use.occurrence.access is Access.READ]
@@ -178,5 +178,5 @@ def _times(found: Iterable[object]) -> str:
     return {0: "nowhere", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
-def _locations(found: Iterable[Use]) -> tuple[Location, ...]:
+def _locations(found: Iterable[SymbolUse]) -> tuple[Location, ...]:
     return tuple(sorted(dict.fromkeys(use.location for use in found)))

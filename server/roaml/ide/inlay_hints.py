@@ -23,26 +23,26 @@ from roaml.jani.properties import identifiers
 from roaml.model.kinds import FileKind
 from roaml.model.machine import (
     Chart,
-    Communicate,
     Declaration,
     Handler,
     Machine,
     Param,
+    RosSend,
     Send,
     SetOutput,
     bodies,
     statements,
 )
 from roaml.model.syntax import Name, PortRead
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree import TreeNode, nodes
-from roaml.model.value_types import TypedValue, Use, find_handle, port_type
+from roaml.model.value_types import TypedValue, ValueUse, find_handle, port_type
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
-_MOST = 3
+_MAX_NAMES = 3
 
 
 class HintKind(enum.Enum):
@@ -59,7 +59,7 @@ ALL_HINTS = frozenset(HintKind)
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class InlayHintLabelPart:
     """A piece of a hint; `symbol` is what it names, if anything."""
 
     text: str
@@ -72,7 +72,7 @@ class InlayHint:
 
     offset: int
     kind: HintKind
-    parts: tuple[Part, ...]
+    parts: tuple[InlayHintLabelPart, ...]
 
     @property
     def text(self) -> str:
@@ -122,16 +122,20 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
             at.setdefault((hint.offset, hint.kind), {})[system] = hint
     merged: set[InlayHint] = set()
     for (offset, kind), said in at.items():
-        parts: list[Part] = []
+        parts: list[InlayHintLabelPart] = []
         # A system without a hint there differs as well.
         groups = grouped({system: said[system].text if system in said else "" for system in by_system})
         shown = [(text, names) for text, names in groups if text]
-        for text, names in shown[:_MOST]:
+        for text, names in shown[:_MAX_NAMES]:
             own = next(hint.parts for hint in said.values() if hint.text == text)
             again = bool(parts) and own[0].text.strip() in _LEADS
-            parts += [*([Part("; ")] if parts else []), *own[again:], *([Part(f" in {names}")] if names else [])]
-        if len(shown) > _MOST:
-            parts.append(Part(", …"))
+            parts += [
+                *([InlayHintLabelPart("; ")] if parts else []),
+                *own[again:],
+                *([InlayHintLabelPart(f" in {names}")] if names else []),
+            ]
+        if len(shown) > _MAX_NAMES:
+            parts.append(InlayHintLabelPart(", …"))
         merged.add(InlayHint(offset, kind, tuple(parts)))
     return merged
 
@@ -177,14 +181,14 @@ class _Machine:
         self.owner = system or path
         self.typed = analysis.typed_in(path, system)
         self.values: dict[Element, TypedValue] = {
-            value.element: value for value in self.typed.values if value.use in (Use.PARAMETER, Use.FIELD)
+            value.element: value for value in self.typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)
         }
         self.interfaces: dict[tuple[SymbolKind, str], dict[Symbol, str]] = {}
         if self.linked is not None:
             for automaton in self.linked.automata_of(path):
                 self.take(self.linked, automaton)
 
-    def take(self, system: System, automaton: Automaton) -> None:
+    def take(self, system: System, automaton: SystemAutomaton) -> None:
         for use in automaton.outline.interfaces:
             name = automaton.interface_name(use)
             if name is not None:
@@ -212,11 +216,11 @@ class _Machine:
         """The topics, services or actions of a use."""
         if not found:
             return
-        parts: list[Part] = []
-        for symbol, written in list(found.items())[:_MOST]:
-            parts += [Part(", " if parts else lead), Part(written, symbol)]
-        if len(found) > _MOST:
-            parts.append(Part(", …"))
+        parts: list[InlayHintLabelPart] = []
+        for symbol, written in list(found.items())[:_MAX_NAMES]:
+            parts += [InlayHintLabelPart(", " if parts else lead), InlayHintLabelPart(written, symbol)]
+        if len(found) > _MAX_NAMES:
+            parts.append(InlayHintLabelPart(", …"))
         yield InlayHint(_behind(at), HintKind.TOPICS, tuple(parts))
 
     def chart(self, chart: Chart) -> Iterator[InlayHint]:
@@ -239,7 +243,7 @@ class _Machine:
                     match statement:
                         case Send():
                             yield from self.params(statement.params)
-                        case Communicate():
+                        case RosSend():
                             yield from self.handle(statement)
                             yield from self.params(statement.fields)
                         case SetOutput() if statement.key:
@@ -253,16 +257,16 @@ class _Machine:
         for param in params:
             value = self.values.get(param.element)
             if param.name is not None and value is not None:
-                yield from self.type(param.name, value.type if value.use is Use.PARAMETER else value.wanted)
+                yield from self.type(param.name, value.type if value.use is ValueUse.PARAMETER else value.wanted)
 
     def type(self, name: Name, type_: Type | None) -> Iterator[InlayHint]:
         if type_ is not None and type_ != UNKNOWN:
-            yield InlayHint(_behind(name), HintKind.TYPES, (Part(" : "), self.type_part(type_)))
+            yield InlayHint(_behind(name), HintKind.TYPES, (InlayHintLabelPart(" : "), self.type_part(type_)))
 
-    def type_part(self, type_: Type) -> Part:
+    def type_part(self, type_: Type) -> InlayHintLabelPart:
         inner, _ = unwrap(type_)
         is_ours = isinstance(inner, Struct) and inner.what == "struct"
-        return Part(str(type_), Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_ours else None)
+        return InlayHintLabelPart(str(type_), Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_ours else None)
 
     def port_read(self, read: PortRead) -> Iterator[InlayHint]:
         if read.key is not None:
@@ -274,13 +278,18 @@ class _Machine:
             return
         event = self.linked.events.get(handler.event.value)
         members = event.data.members if event else ()
-        parts: list[Part] = []
+        parts: list[InlayHintLabelPart] = []
         for name, type_ in members:
-            parts += [Part(", " if parts else "("), Part(name), Part(" : "), self.type_part(type_)]
+            parts += [
+                InlayHintLabelPart(", " if parts else "("),
+                InlayHintLabelPart(name),
+                InlayHintLabelPart(" : "),
+                self.type_part(type_),
+            ]
         if parts:
-            yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, Part(")")))
+            yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, InlayHintLabelPart(")")))
 
-    def handle(self, user: Handler | Communicate) -> Iterator[InlayHint]:
+    def handle(self, user: Handler | RosSend) -> Iterator[InlayHint]:
         """The interface of a handle, unless the handle is its name."""
         declaration = find_handle(self.machine, user)
         if user.handle is None or declaration is None or is_implicit(declaration):
@@ -289,7 +298,9 @@ class _Machine:
             if isinstance(declaration.rate, Name):
                 symbol = Symbol(self.path, SymbolKind.TIMER, user.handle.value)
                 text = f"{declaration.rate.value} Hz"
-                yield InlayHint(_behind(user.handle), HintKind.TOPICS, (Part(" "), Part(text, symbol)))
+                yield InlayHint(
+                    _behind(user.handle), HintKind.TOPICS, (InlayHintLabelPart(" "), InlayHintLabelPart(text, symbol))
+                )
             return
         found = self.interfaces.get((declaration.kind, user.handle.value), {})
         if not found and isinstance(declaration.interface, Name):
@@ -314,17 +325,17 @@ def _tree(analysis: Analysis, path: str, within: Span, system: System | None) ->
                 yield from _node(node, node.plugin, found)
 
 
-def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -> Iterator[InlayHint]:
+def _node(node: TreeNode, plugin: Name, found: list[tuple[System, SystemAutomaton]]) -> Iterator[InlayHint]:
     at = plugin.span.end + (0 if node.compact else 1)
-    parts: list[Part] = []
+    parts: list[InlayHintLabelPart] = []
     numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
-    for (system, number), _ in list(numbers.items())[:_MOST]:
+    for (system, number), _ in list(numbers.items())[:_MAX_NAMES]:
         parts += [
-            Part(", " if parts else " "),
-            Part(f"bt_{number}", Symbol(system, SymbolKind.TREE_INSTANCE, str(number))),
+            InlayHintLabelPart(", " if parts else " "),
+            InlayHintLabelPart(f"bt_{number}", Symbol(system, SymbolKind.TREE_INSTANCE, str(number))),
         ]
-    if len(numbers) > _MOST:
-        parts.append(Part(", …"))
+    if len(numbers) > _MAX_NAMES:
+        parts.append(InlayHintLabelPart(", …"))
     if parts:
         yield InlayHint(at, HintKind.NODES, tuple(parts))
     for port in node.ports:
@@ -333,12 +344,16 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, Automaton]]) -
         owners = [a for a in types.values() if a.path]
         if shown and port.attribute.has_value:
             symbol = Symbol(owners[0].path, SymbolKind.PORT, port.key.value) if owners else None
-            yield InlayHint(_behind(port.value), HintKind.PORTS, (Part(" : "), Part(" or ".join(shown), symbol)))
+            yield InlayHint(
+                _behind(port.value),
+                HintKind.PORTS,
+                (InlayHintLabelPart(" : "), InlayHintLabelPart(" or ".join(shown), symbol)),
+            )
 
 
-def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, Automaton]]]:
+def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, SystemAutomaton]]]:
     """The nodes of executed trees by tree and position in a file."""
-    found: dict[tuple[str, int], list[tuple[System, Automaton]]] = {}
+    found: dict[tuple[str, int], list[tuple[System, SystemAutomaton]]] = {}
     for automaton in system.automata:
         source = automaton.instance.source if automaton.instance else None
         if source is not None and source.path == path:
@@ -355,4 +370,8 @@ def _properties(analysis: Analysis, path: str, within: Span, system: System) -> 
             node = node_of(system, identifier)
             if node is not None and node.instance is not None:
                 symbol = Symbol(system.path, SymbolKind.TREE_INSTANCE, str(node.instance.number))
-                yield InlayHint(span.end + 1, HintKind.NODES, (Part(" "), Part(node.instance.name, symbol)))
+                yield InlayHint(
+                    span.end + 1,
+                    HintKind.NODES,
+                    (InlayHintLabelPart(" "), InlayHintLabelPart(node.instance.name, symbol)),
+                )

@@ -7,13 +7,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roaml.ide.formatting.json import gaps
-from roaml.ide.formatting.layout import Layout, edits
+from roaml.ide.formatting.layout import FileLayout, edits
 from roaml.ide.navigation.document_symbol import DocumentSymbol
 from roaml.ide.navigation.jani_symbols import jani_symbols
 from roaml.json_syntax import parse
 from roaml.text import apply_edits
 
-_LAYOUT = Layout(width=2)
+_LAYOUT = FileLayout(width=2)
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,13 +63,13 @@ class Modifier(enum.Enum):
     DEPRECATED = "an older spelling"
 
 
-class Token(NamedTuple):
+class SemanticToken(NamedTuple):
     span: Span
     kind: TokenKind
     modifiers: frozenset[Modifier] = frozenset()
 
 
-def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -> tuple[Token, ...]:
+def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -> tuple[SemanticToken, ...]:
     """The tokens of a file, or those that touch a part of it, in the order of the text."""
     source = analysis.source(path)
     if source is None:
@@ -88,7 +88,7 @@ def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -
 _LINE = re.compile(r"[^\r\n]+")
 
 
-def _on_lines(text: str, tokens: Iterable[Token]) -> Iterator[Token]:
+def _on_lines(text: str, tokens: Iterable[SemanticToken]) -> Iterator[SemanticToken]:
     """Tokens cut at line ends, without those that begin inside others."""
     done = 0
     for token in tokens:
@@ -105,18 +105,20 @@ def _on_lines(text: str, tokens: Iterable[Token]) -> Iterator[Token]:
 # ------------------------------------------------------------------------- XML
 
 
-def _xml(file: XmlFile) -> Iterator[Token]:
+def _xml(file: XmlFile) -> Iterator[SemanticToken]:
     for each in walk(file):
         kind = _tag_kind(file, each)
         element, type_ = each
         if kind is not None:
             modifiers = _modifiers(deprecated=bool(type_ and type_.use))
-            yield Token(element.name_span, kind, modifiers)
+            yield SemanticToken(element.name_span, kind, modifiers)
             if element.close_name_span is not None:
-                yield Token(element.close_name_span, kind, modifiers)
+                yield SemanticToken(element.close_name_span, kind, modifiers)
         for attribute in element.attributes:
             known = type_.attributes.get(attribute.name) if type_ else None
-            yield Token(attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use)))
+            yield SemanticToken(
+                attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use))
+            )
             yield from _value(file, attribute, known)
         for source in expression_sources(file.document, each):
             yield from expression_tokens(source)
@@ -171,18 +173,18 @@ _VALUES = {
 }
 
 
-def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> Iterator[Token]:
+def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> Iterator[SemanticToken]:
     """The token for the whole value of an attribute; none for expressions."""
     name = name_of(attribute)
     if name is None:
         return
     if file.grammar is BEHAVIOR_TREE and blackboard_variable(name.value) is not None:
-        yield Token(name.span, TokenKind.VARIABLE)
+        yield SemanticToken(name.span, TokenKind.VARIABLE)
     elif known is not None:
         symbol = known.defines or next(iter(known.refers), None)
         kind = (_SYMBOLS.get(symbol) if symbol else None) or _VALUES.get(known.value)
         if kind is not None:
-            yield Token(name.span, kind, _modifiers(declaration=bool(known.defines)))
+            yield SemanticToken(name.span, kind, _modifiers(declaration=bool(known.defines)))
 
 
 @cache
@@ -194,10 +196,10 @@ def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozen
 # ----------------------------------------------------------------- expressions
 
 
-def expression_tokens(source: Decoded) -> Iterator[Token]:
+def expression_tokens(source: Decoded) -> Iterator[SemanticToken]:
     """The tokens of an expression, without brackets, dots and commas."""
     for start, end, kind in _words(source.text):
-        yield Token(source.span(start, end), kind)
+        yield SemanticToken(source.span(start, end), kind)
 
 
 @lru_cache(maxsize=5000)  # files repeat the same expressions, and most are unchanged after the next keystroke
@@ -248,21 +250,21 @@ _OPERATOR_KEYS = ("op", "fun")
 _PLAIN_KEYS = ("name", "comment")
 
 
-def _json(value: object) -> Iterator[Token]:
+def _json(value: object) -> Iterator[SemanticToken]:
     """The tokens of one value, without those inside of it; the key determines the type of a string."""
     if isinstance(value, JsonObject):
         for member in value.members:
-            yield Token(member.key_span, TokenKind.ATTRIBUTE)
+            yield SemanticToken(member.key_span, TokenKind.ATTRIBUTE)
             if isinstance(member.value, JsonString):
                 yield _string(member, member.value)
     elif isinstance(value, JsonNumber):
-        yield Token(value.span, TokenKind.NUMBER)
+        yield SemanticToken(value.span, TokenKind.NUMBER)
     elif isinstance(value, JsonBool):
-        yield Token(value.span, TokenKind.LITERAL)
+        yield SemanticToken(value.span, TokenKind.LITERAL)
 
 
-def _string(member: Member, value: JsonString) -> Token:
+def _string(member: Member, value: JsonString) -> SemanticToken:
     """In a property a string is a variable, except for operators and comments."""
     if member.key in _OPERATOR_KEYS:
-        return Token(value.span, TokenKind.OPERATOR)
-    return Token(value.span, TokenKind.STRING if member.key in _PLAIN_KEYS else TokenKind.VARIABLE)
+        return SemanticToken(value.span, TokenKind.OPERATOR)
+    return SemanticToken(value.span, TokenKind.STRING if member.key in _PLAIN_KEYS else TokenKind.VARIABLE)

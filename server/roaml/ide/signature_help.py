@@ -22,7 +22,7 @@ _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
 @dataclass(frozen=True, slots=True)
-class Signature:
+class SignatureHelp:
     """A function of `Math`.
 
     Attributes:
@@ -38,7 +38,7 @@ class Signature:
     documentation: str
 
 
-def signature_help(analysis: Analysis, path: str, offset: int) -> Signature | None:
+def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp | None:
     """The call at a caret; `None` outside of all calls of known functions."""
     file = xml_file(analysis, path)
     if file is None:
@@ -61,7 +61,7 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> Signature | No
         at = start + len(parameter)
         spans.append((start, at))
     active = commas if commas < len(spans) else None
-    return Signature(label, tuple(spans), active, function.documentation)
+    return SignatureHelp(label, tuple(spans), active, function.documentation)
 
 
 def _innermost_call(text: str) -> tuple[str, int]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
-MOST = 3
+MAX_NAMES = 3
 """The maximum number of systems in a list."""
 
 T = TypeVar("T")
@@ -46,5 +46,5 @@ def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
 
 
 def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return ", ".join(names[:MOST]) + more
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + more

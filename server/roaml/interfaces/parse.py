@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, keyword_of, lower_snake, upper_snake
-from roaml.interfaces.report import Report, shorten
+from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.type_syntax import find_type, parse_type
 from roaml.interfaces.types import KIND_NAMES, SECTION_NAMES, Constant, Definition, Field, FieldType, Kind, Section
 from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, value_end
@@ -39,7 +39,7 @@ def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, t
 
     The definition always has all sections of its kind; those missing in the text are empty.
     """
-    report = Report()
+    report = FileFindings()
     sections = _Parser(text, package, kind, report).run()
     return Definition(package, name, kind, sections), report.findings()
 
@@ -81,7 +81,7 @@ class _OpenSection:
 
 
 class _Parser:
-    def __init__(self, text: str, package: str, kind: Kind, report: Report) -> None:
+    def __init__(self, text: str, package: str, kind: Kind, report: FileFindings) -> None:
         self.text = text
         self.package = package
         self.kind = kind

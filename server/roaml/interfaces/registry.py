@@ -22,7 +22,7 @@ from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile
 
 _MAX_CLOSE = 3
-_LONGEST_NAME = 100
+_MAX_NAME_LENGTH = 100
 _WORD_BREAKS = re.compile(r"[^A-Za-z0-9_]+")
 
 
@@ -174,7 +174,7 @@ class Registry:
     def _malformed(self, kind: Kind, wanted: str) -> NotFound:
         """The intended type of a malformed name such as `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare
         `Int32`."""
-        words = [word for word in _WORD_BREAKS.split(wanted[:_LONGEST_NAME]) if word and word not in KINDS]
+        words = [word for word in _WORD_BREAKS.split(wanted[:_MAX_NAME_LENGTH]) if word and word not in KINDS]
         close: tuple[str, ...] = ()
         if words:
             packages = self.search_path.packages()

@@ -14,7 +14,7 @@ MAX_FINDINGS = 100
 further."""
 
 
-class Report:
+class FileFindings:
     """The findings of one file so far."""
 
     def __init__(self) -> None:

@@ -71,28 +71,28 @@ class SearchPath:
         The standard packages are left out: they are for users without their own. Of the ament prefixes only the first
         that has the type is included, because prefixes overlay each other on purpose.
         """
-        found: list[str] = []
+        folders: list[str] = []
         in_prefix = False
         for place in self._places()[:-1]:
             is_prefix = isinstance(place, _Share)
             if not (is_prefix and in_prefix):
                 paths = place.all_files(package, kind, name)
                 in_prefix = in_prefix or (is_prefix and bool(paths))
-                found += paths
-        return tuple(dict.fromkeys(found))
+                folders += paths
+        return tuple(dict.fromkeys(folders))
 
     def packages(self) -> Mapping[str, Mapping[Kind, tuple[str, ...]]]:
         """All that can be located: package -> kind -> names, packages and names sorted; every kind is there."""
         if self._packages is None:
-            found: dict[str, dict[Kind, set[str]]] = {}
+            packages: dict[str, dict[Kind, set[str]]] = {}
             for place in self._places():
                 for package in place.packages():
-                    names = found.setdefault(package, {kind: set() for kind in KINDS})
+                    names = packages.setdefault(package, {kind: set() for kind in KINDS})
                     for kind, files in place.files(package).items():
                         names[kind].update(files)
             self._packages = {
-                package: {kind: tuple(sorted(names)) for kind, names in found[package].items()}
-                for package in sorted(found)
+                package: {kind: tuple(sorted(names)) for kind, names in packages[package].items()}
+                for package in sorted(packages)
             }
         return self._packages
 
@@ -191,7 +191,7 @@ class _Listing(NamedTuple):
 
 def _scan(root: str) -> _Listing:
     """The packages in and below `root`, level by level, so that of two equal types the nearer one is used."""
-    found: dict[str, dict[Kind, dict[str, str]]] = {}
+    packages: dict[str, dict[Kind, dict[str, str]]] = {}
     hidden: dict[tuple[str, Kind, str], tuple[str, ...]] = {}
     entered: set[tuple[int, int]] = set()
     level = [root]
@@ -206,7 +206,7 @@ def _scan(root: str) -> _Listing:
             files = _definitions(folder, subfolders)
             if any(files.values()):
                 package_name = _package_name(folder)
-                package = found.setdefault(package_name, {kind: {} for kind in KINDS})
+                package = packages.setdefault(package_name, {kind: {} for kind in KINDS})
                 for kind in KINDS:
                     for name in files[kind].keys() & package[kind].keys():
                         key = (package_name, kind, name)
@@ -214,7 +214,7 @@ def _scan(root: str) -> _Listing:
                     package[kind] = {**files[kind], **package[kind]}
             below += (os.path.join(folder, name) for name in subfolders if _is_entered(name))
         level = below
-    return _Listing(found, hidden)
+    return _Listing(packages, hidden)
 
 
 def _is_entered(folder_name: str) -> bool:

@@ -10,7 +10,7 @@ import re
 
 from roaml.diagnostics import Severity
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
-from roaml.interfaces.report import Report, shorten
+from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.types import FOREIGN_TYPES, PRIMITIVES, STRINGS, ArrayKind, FieldType
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
@@ -30,7 +30,7 @@ def find_type(text: str, start: int, end: int) -> Span:
     return Span(start, token.end() if token else start)
 
 
-def parse_type(text: str, span: Span, package: str, report: Report) -> FieldType:
+def parse_type(text: str, span: Span, package: str, report: FileFindings) -> FieldType:
     """The type in `text[span]`, of a field in a definition of `package`."""
     written = text[span.start : span.end]
     compact = written.replace(" ", "").replace("\t", "")
@@ -57,7 +57,7 @@ def parse_type(text: str, span: Span, package: str, report: Report) -> FieldType
     return FieldType(name, string_bound, *_array(size_written, span, report))
 
 
-def _array(size: str, span: Span, report: Report) -> tuple[ArrayKind, int | None]:
+def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int | None]:
     """The text between the brackets."""
     if not size:
         return ArrayKind.UNBOUNDED, None
@@ -68,7 +68,7 @@ def _array(size: str, span: Span, report: Report) -> tuple[ArrayKind, int | None
     return (ArrayKind.BOUNDED if is_bounded else ArrayKind.FIXED), limit
 
 
-def _limit(written: str, span: Span, forms: str, report: Report) -> int | None:
+def _limit(written: str, span: Span, forms: str, report: FileFindings) -> int | None:
     """The N of `<=N`; `None` with a finding that explains the valid `forms`."""
     number = written.removeprefix("<=")
     if number != written and _LIMIT.fullmatch(number) and 1 <= int(number) <= _GREATEST_LIMIT:
@@ -77,7 +77,7 @@ def _limit(written: str, span: Span, forms: str, report: Report) -> int | None:
     return None
 
 
-def _type_name(written: str, span: Span, package: str, report: Report) -> str:
+def _type_name(written: str, span: Span, package: str, report: FileFindings) -> str:
     if written in PRIMITIVES:
         return written
     if right := _ROS_1_TYPES.get(written):
@@ -95,7 +95,7 @@ def _type_name(written: str, span: Span, package: str, report: Report) -> str:
     return f"{package}/{written}"
 
 
-def _name_with_package(written: str, span: Span, report: Report) -> str:
+def _name_with_package(written: str, span: Span, report: FileFindings) -> str:
     package, *middle, name = written.split("/")
     if middle in (["srv"], ["action"]):
         report.add(
@@ -111,7 +111,7 @@ def _name_with_package(written: str, span: Span, report: Report) -> str:
     return f"{package}/{name}"
 
 
-def _unknown(written: str, span: Span, report: Report) -> None:
+def _unknown(written: str, span: Span, report: FileFindings) -> None:
     if not written:
         report.add(span, "a type is missing; a field is written `type name`")
         return

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from roaml.interfaces.report import Report, shorten
+from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.types import FLOATS, INTEGER_RANGES, STRINGS, ArrayKind, FieldType, Scalar, Value
 from roaml.text import Span
 
@@ -24,7 +24,7 @@ _ESCAPE = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u((?![dD][89a-fA-F])[0-9a-fA-F]{4}
 _SIMPLE_ESCAPES = dict(zip("abfnrtv\\\"'", "\a\b\f\n\r\t\v\\\"'", strict=True))
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 _GREATEST_FLOAT = {"float32": 3.4028234663852886e38, "float64": 1.7976931348623157e308}
-_LONGEST_NUMBER = 1000
+_MAX_DIGITS = 1000
 
 
 def skip_blanks(text: str, start: int, end: int) -> int:
@@ -47,7 +47,7 @@ def value_end(text: str, start: int, line_end: int) -> int:
     return start + len(text[start:end].rstrip())
 
 
-def parse_value(text: str, span: Span, type_: FieldType, report: Report) -> Value | None:
+def parse_value(text: str, span: Span, type_: FieldType, report: FileFindings) -> Value | None:
     """The value in `text[span]`, or `None` with a finding. The value of an array is a tuple.
 
     Nested messages have no literals, so any value of one is an error.
@@ -67,7 +67,7 @@ def parse_value(text: str, span: Span, type_: FieldType, report: Report) -> Valu
     return parse_scalar(text, span, type_, report)
 
 
-def parse_scalar(text: str, span: Span, type_: FieldType, report: Report) -> Scalar | None:
+def parse_scalar(text: str, span: Span, type_: FieldType, report: FileFindings) -> Scalar | None:
     """The single value in `text[span]`, of a primitive type that is not an array, or `None` with a finding."""
     written = text[span.start : span.end]
     if type_.name in STRINGS:
@@ -85,7 +85,7 @@ def parse_scalar(text: str, span: Span, type_: FieldType, report: Report) -> Sca
     return value
 
 
-def _array(text: str, span: Span, type_: FieldType, report: Report) -> tuple[Scalar, ...] | None:
+def _array(text: str, span: Span, type_: FieldType, report: FileFindings) -> tuple[Scalar, ...] | None:
     opening = _LIST.match(text, span.start, span.end)
     if not opening:
         report.add(
@@ -130,7 +130,7 @@ def _element_spans(text: str, start: int, end: int) -> Iterator[Span]:
         at = skip_blanks(text, comma + 1, end)
 
 
-def _integer(written: str, span: Span, type_name: str, report: Report) -> int | None:
+def _integer(written: str, span: Span, type_name: str, report: FileFindings) -> int | None:
     low, high = INTEGER_RANGES[type_name]
     if type_name == "char" and len(written) == 3 and written[0] == written[2] == "'" and ord(written[1]) <= high:
         code = str(ord(written[1]))
@@ -142,14 +142,14 @@ def _integer(written: str, span: Span, type_name: str, report: Report) -> int | 
     # Base 0 accepts the prefixes but rejects the leading zeros that ROS allows.
     digits = written.lstrip("+-")
     base = 10 if digits.isdecimal() else 0
-    value = int(written, base) if len(written) <= _LONGEST_NUMBER else None
+    value = int(written, base) if len(written) <= _MAX_DIGITS else None
     if value is None or not low <= value <= high:
         report.add(span, f"{shorten(written)} does not fit into `{type_name}`, whose range is {low} to {high}")
         return None
     return value
 
 
-def _float(written: str, span: Span, type_name: str, report: Report) -> float | None:
+def _float(written: str, span: Span, type_name: str, report: FileFindings) -> float | None:
     if not _FLOAT.fullmatch(written):
         report.add(span, f"`{shorten(written)}` is not a number; write for example `1.5`, `-2` or `1e-3`")
         return None
@@ -160,7 +160,7 @@ def _float(written: str, span: Span, type_name: str, report: Report) -> float | 
     return value
 
 
-def _string(written: str, span: Span, type_: FieldType, report: Report) -> str | None:
+def _string(written: str, span: Span, type_: FieldType, report: FileFindings) -> str | None:
     value = written
     if written.startswith(('"', "'")):
         quoted = _STRING.match(written)

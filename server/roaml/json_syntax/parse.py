@@ -339,8 +339,8 @@ class _Parser:
             self.report(span, "a name must be followed by `:`", _replacement(span, ":"))
             return self.colon(span, comma)
         for pattern, message, replacement in _INTERLUDES:
-            if found := pattern.match(text, at):
-                span = Span(*found.span())
+            if match := pattern.match(text, at):
+                span = Span(*match.span())
                 self.comma = at if character == ";" else comma
                 fix = _replacement(span, replacement) if replacement else _removal(span)
                 self.report(span, message, fix)
@@ -394,9 +394,9 @@ class _Parser:
 
     def word(self, at: int, comma: int) -> int:
         """A run of characters without quotes: a misspelled number or literal, a string or a name."""
-        found = _WORD.match(self.text, at)
-        assert found is not None
-        text = found[0].rstrip()
+        word = _WORD.match(self.text, at)
+        assert word is not None
+        text = word[0].rstrip()
         span = Span(at, at + len(text))
         if self.is_object and _COLON.match(self.text, span.end):
             self.report(span, "a name needs double quotes", _replacement(span, quote(text)))

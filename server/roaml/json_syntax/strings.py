@@ -30,19 +30,19 @@ _SPECIAL = re.compile(
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
-class Mistake(NamedTuple):
+class StringMistake(NamedTuple):
     """A character that is not allowed in a string, with its replacement."""
 
     message: str
     edit: TextEdit
 
 
-def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
+def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
     """The value of `raw`, the text between the quotes, and the errors in it. `start` is its offset in the source.
 
     For an invalid escape, the character after the backslash is kept; a control character is unchanged.
     """
-    mistakes: list[Mistake] = []
+    mistakes: list[StringMistake] = []
 
     def resolve(match: re.Match[str]) -> str:
         high, low, code, simple, wrong, control = match.groups()
@@ -56,7 +56,7 @@ def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
         if control:
             written = quote(control)[1:-1]
             mistakes.append(
-                Mistake(f"inside a string this character must be written `{written}`", TextEdit(span, written))
+                StringMistake(f"inside a string this character must be written `{written}`", TextEdit(span, written))
             )
             return control
         message = (
@@ -64,7 +64,7 @@ def unescape(raw: str, start: int) -> tuple[str, list[Mistake]]:
             if wrong == "\\u"
             else f"JSON has no escape `{wrong}`; a backslash itself is written `\\\\`"
         )
-        mistakes.append(Mistake(message, TextEdit(span, "\\" + wrong)))
+        mistakes.append(StringMistake(message, TextEdit(span, "\\" + wrong)))
         return wrong[1:]
 
     return _SPECIAL.sub(resolve, raw), mistakes

@@ -96,7 +96,7 @@ class AttributeType:
 
 
 @dataclass(frozen=True, slots=True)
-class Occurrence:
+class Multiplicity:
     """How often a child may occur in its parent."""
 
     least: int
@@ -132,9 +132,9 @@ class ElementType:
     name: str
     documentation: str
     attributes: dict[str, AttributeType]
-    children: dict[str, Occurrence]
+    children: dict[str, Multiplicity]
     local: dict[str, ElementType]
-    any_child: Occurrence | None = None
+    any_child: Multiplicity | None = None
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
@@ -222,10 +222,10 @@ class Grammar:
     @cached_property
     def _everywhere(self) -> tuple[ElementType, ...]:
         """All elements, the global ones first, then those that are only declared inside others."""
-        found = list(self.elements.values())
-        for element in found:
-            found += element.local.values()
-        return tuple(found)
+        elements = list(self.elements.values())
+        for element in elements:
+            elements += element.local.values()
+        return tuple(elements)
 
 
 HL_SCXML = Grammar("ascxml.xsd", ("ascxml", "scxml"), "HL-SCXML")
@@ -240,9 +240,9 @@ class _Shape:
     """The parts of one complex type, while it is read."""
 
     attributes: dict[str, AttributeType] = field(default_factory=dict)
-    children: dict[str, Occurrence] = field(default_factory=dict)
+    children: dict[str, Multiplicity] = field(default_factory=dict)
     local: dict[str, ElementType] = field(default_factory=dict)
-    any_child: Occurrence | None = None
+    any_child: Multiplicity | None = None
     any_is_opaque: bool = False
     any_attribute: bool = False
     text: bool = False
@@ -271,7 +271,7 @@ class _Reader:
         if complex_type is None and ("complexType", node.get("type")) in self.named:
             complex_type = self.named["complexType", node.get("type")]
         if complex_type is not None:
-            self.collect(complex_type, shape, Occurrence(1, 1))
+            self.collect(complex_type, shape, Multiplicity(1, 1))
         roles = dict(_roles(node))
         ignored, deprecated = roles.get("ignored"), roles.get("deprecated")
         tree_node = roles.get("node", {})
@@ -299,7 +299,7 @@ class _Reader:
             translated=tree_node.get("translated") != "false",
         )
 
-    def collect(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+    def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
         """Add to `shape` what `node`, a part of a complex type that may occur `occurs` times, contributes."""
         if node.get("mixed") == "true":
             shape.text = True
@@ -310,7 +310,7 @@ class _Reader:
             if kind in ("sequence", "choice", "all"):
                 inner = _times(part, occurs)
                 if kind == "choice" and len([p for p in part if isinstance(p.tag, str)]) > 1:
-                    inner = Occurrence(0, inner.most)
+                    inner = Multiplicity(0, inner.most)
                 self.collect(part, shape, inner)
             elif kind == "group":
                 self.collect(self.named["group", part.get("ref")], shape, _times(part, occurs))
@@ -331,13 +331,13 @@ class _Reader:
             elif kind == "anyAttribute" and part.get("namespace") is None:
                 shape.any_attribute = True
 
-    def child(self, node: Any, shape: _Shape, occurs: Occurrence) -> None:
+    def child(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
         name = node.get("ref") or node.get("name")
         if node.get("name"):
             shape.local[name] = self.element(node)
         if name in shape.children:
             before = shape.children[name]
-            occurs = Occurrence(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
+            occurs = Multiplicity(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
         shape.children[name] = occurs
 
     def attribute(self, node: Any) -> AttributeType:
@@ -408,9 +408,9 @@ def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:
     return tuple(map(SymbolKind, role["symbol"].split())) if role else ()
 
 
-def _times(node: Any, outer: Occurrence) -> Occurrence:
+def _times(node: Any, outer: Multiplicity) -> Multiplicity:
     most = node.get("maxOccurs", "1")
-    return Occurrence(
+    return Multiplicity(
         int(node.get("minOccurs", "1")) * outer.least,
         min(UNBOUNDED, outer.most * (UNBOUNDED if most == "unbounded" else int(most))),
     )

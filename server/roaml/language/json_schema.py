@@ -43,8 +43,8 @@ class JsonGrammar:
         return schema
 
     def definition(self, name: str) -> Schema:
-        found: Schema = self.root["$defs"][name]
-        return found
+        definition: Schema = self.root["$defs"][name]
+        return definition
 
     def applying(self, schema: Schema, value: JsonValue | None) -> Iterator[Schema]:
         """The parts of a schema that apply to a value, the outermost first; `None` is a value that is not written
@@ -52,49 +52,49 @@ class JsonGrammar:
         stack, seen = [schema], 0
         while stack and seen < _MAX_DEPTH:
             seen += 1
-            each = stack.pop()
-            if "$ref" in each:
-                stack.append(self._resolve(each["$ref"]))
-            yield each
-            branches = list(each.get("allOf", ()))
-            if "if" in each:
-                branch = "then" if self.matches(each["if"], value) else "else"
-                branches += [each[branch]] if branch in each else []
+            part = stack.pop()
+            if "$ref" in part:
+                stack.append(self._resolve(part["$ref"]))
+            yield part
+            branches = list(part.get("allOf", ()))
+            if "if" in part:
+                branch = "then" if self.matches(part["if"], value) else "else"
+                branches += [part[branch]] if branch in part else []
             stack += reversed(branches)
 
     def keys(self, schema: Schema, value: JsonObject) -> dict[str, Key]:
         """The members that an object may have."""
-        found: dict[str, Key] = {}
+        keys: dict[str, Key] = {}
         applying = list(self.applying(schema, value))
-        required = {name for each in applying for name in each.get("required", ())}
-        for each in applying:
-            for name, inner in each.get("properties", {}).items():
+        required = {name for part in applying for name in part.get("required", ())}
+        for part in applying:
+            for name, inner in part.get("properties", {}).items():
                 # If several parts declare one key, the first with documentation is the most specific.
-                if name not in found or not self.text(found[name].schema):
-                    found[name] = Key(name, inner, name in required)
-        return found
+                if name not in keys or not self.text(keys[name].schema):
+                    keys[name] = Key(name, inner, name in required)
+        return keys
 
     def member(self, schema: Schema, value: JsonObject, key: str) -> Schema:
         """The declaration of the member `key` of an object."""
         parts = []
-        for each in self.applying(schema, value):
-            if key in each.get("properties", {}):
-                parts.append(each["properties"][key])
-            elif isinstance(each.get("additionalProperties"), dict):
-                parts.append(each["additionalProperties"])
+        for part in self.applying(schema, value):
+            if key in part.get("properties", {}):
+                parts.append(part["properties"][key])
+            elif isinstance(part.get("additionalProperties"), dict):
+                parts.append(part["additionalProperties"])
         return parts[0] if len(parts) == 1 else {"allOf": parts}
 
     def item(self, schema: Schema, value: JsonArray) -> Schema:
         """The declaration of the items of a list."""
-        return {"allOf": [each["items"] for each in self.applying(schema, value) if "items" in each]}
+        return {"allOf": [part["items"] for part in self.applying(schema, value) if "items" in part]}
 
     def choices(self, schema: Schema) -> tuple[str, ...]:
         """The texts that the value may be; () if it may be any."""
-        for each in self.applying(schema, None):
-            if "enum" in each:
-                return tuple(each["enum"])
-            if "const" in each:
-                return (each["const"],)
+        for part in self.applying(schema, None):
+            if "enum" in part:
+                return tuple(part["enum"])
+            if "const" in part:
+                return (part["const"],)
         return ()
 
     def operators(self, kind: str) -> Iterator[tuple[str, Schema]]:
@@ -114,7 +114,7 @@ class JsonGrammar:
     def is_a(self, schema: Schema, definition: str) -> bool:
         """Whether a definition describes a place."""
         wanted = self.definition(definition)
-        return any(each is wanted for each in self.applying(schema, None))
+        return any(part is wanted for part in self.applying(schema, None))
 
     def matches(self, schema: Schema, value: JsonValue | None) -> bool:
         """Whether a value satisfies a condition (of an `if`)."""
@@ -136,7 +136,7 @@ class JsonGrammar:
 
     def _said(self, schema: Schema, word: str) -> str:
         """The declaration of a place takes precedence over that of its kind."""
-        return next((str(each[word]) for each in self.applying(schema, None) if word in each), "")
+        return next((str(part[word]) for part in self.applying(schema, None) if word in part), "")
 
     def _resolve(self, reference: str) -> Schema:
         return self.definition(reference.rpartition("/")[2])

@@ -18,7 +18,7 @@ from typing import Any, TypeAlias
 
 from lxml import etree
 
-from roaml.language.grammar import AttributeType, ElementType, Grammar, Occurrence, SimpleType
+from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
 from roaml.text import Span
@@ -127,12 +127,12 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     root = document.root
     if root is None or root.name not in grammar.roots:
         return ()
-    found = list(_walk(document, root, grammar))
-    if not found and not any(finding.code in _UNREAD for finding in document.findings):
+    violations = list(_walk(document, root, grammar))
+    if not violations and not any(finding.code in _UNREAD for finding in document.findings):
         tree, back = to_lxml(document, root)
         if not grammar.validator.validate(tree):
-            found.extend(_explain(tree, back, grammar))
-    return tuple(found)
+            violations.extend(_explain(tree, back, grammar))
+    return tuple(violations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +172,7 @@ def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
 # ---------------------------------------------------------------- by the tables
 
 
-_ANYTHING = ElementType("", "", {}, {}, {}, Occurrence(0, UNBOUNDED), any_attribute=True, text=True)
+_ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attribute=True, text=True)
 """An element that the grammar does not know, where any may stand: those below it may be known."""
 
 

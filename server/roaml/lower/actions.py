@@ -15,8 +15,7 @@ from roaml.lower.build import equal, event_data, integer, name
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
-from roaml.model.system import Automaton as SystemAutomaton
-from roaml.model.system import Channel, sanitise
+from roaml.model.system import Channel, SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, ScxmlEvent, Send, State, Statement
 from roaml.scxml.names import ACTION_HANDLER_PREFIX

@@ -12,11 +12,11 @@ from roaml.expr.types import STRING, UNKNOWN, Type, is_kind, resolve_type
 from roaml.lower.data import as_type
 from roaml.lower.expressions import LoweringScope
 from roaml.lower.program import TranslatableSystem
-from roaml.model.expand import Constant, PortValue, Reference
-from roaml.model.machine import Chart, Communicate, Data, Declaration, Handler, Machine
+from roaml.model.expand import PortConstant, PortValue, Reference
+from roaml.model.machine import Chart, Data, Declaration, Handler, Machine, RosSend
 from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import PortRead
-from roaml.model.system import Automaton, Channel
+from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings, find_handle, port_type
 from roaml.roles import SymbolKind
 from roaml.scxml.model import ScxmlEvent
@@ -24,7 +24,7 @@ from roaml.text import Decoded, Location, Span
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Context:
+class LoweringContext:
     """
     Attributes:
         name: of the plain automaton.
@@ -35,7 +35,7 @@ class Context:
     """
 
     program: TranslatableSystem
-    automaton: Automaton
+    automaton: SystemAutomaton
     machine: Machine
     chart: Chart
     name: str
@@ -60,16 +60,16 @@ class Context:
         """The value of the port. A port that is not set has been reported; it is treated as empty."""
         key = read.key.value if read.key else ""
         value = self.automaton.port(key)
-        return Constant(self.ports.get(key, "")) if value is None else value
+        return PortConstant(self.ports.get(key, "")) if value is None else value
 
-    def constant(self, read: PortRead, value: Constant) -> Expr:
+    def constant(self, read: PortRead, value: PortConstant) -> Expr:
         """The literal for a port with a constant value."""
         return literal(value.text, port_type(self.machine, read), read.span)
 
     def is_reference(self, value: object) -> bool:
         return isinstance(value, PortRead) and isinstance(self.port(value), Reference)
 
-    def use(self, user: Handler | Communicate) -> InterfaceUse:
+    def use(self, user: Handler | RosSend) -> InterfaceUse:
         """The outline of the declaration that a handler or sending element refers to."""
         declaration = find_handle(self.machine, user)
         assert declaration is not None
@@ -79,7 +79,7 @@ class Context:
         declared = [d for d in self.machine.declarations if d.kind is not SymbolKind.TIMER]
         return self.automaton.outline.interfaces[declared.index(declaration)]
 
-    def channel(self, user: Handler | Communicate) -> Channel:
+    def channel(self, user: Handler | RosSend) -> Channel:
         channel = self.program.system.channel(self.automaton, self.use(user))
         assert channel is not None
         return channel

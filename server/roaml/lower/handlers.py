@@ -9,7 +9,7 @@ from roaml.expr.types import Type
 from roaml.lower.build import event_data, name
 from roaml.lower.data import lower_data
 from roaml.lower.program import TranslatableSystem
-from roaml.model.system import Channel, Endpoint
+from roaml.model.system import Channel, ChannelEndpoint
 from roaml.scxml.model import Assign, Body, Data, Param, ScxmlEvent, Statement, Target, Transition
 from roaml.text import Location
 
@@ -32,7 +32,7 @@ def on(event: ScxmlEvent, target: str, body: Iterable[Statement], origin: Locati
     return Transition(event, None, (Target(target, 1.0, tuple(body), origin),), origin)
 
 
-def declared_at(endpoint: Endpoint, program: TranslatableSystem) -> Location:
+def declared_at(endpoint: ChannelEndpoint, program: TranslatableSystem) -> Location:
     """Where a client or server is declared."""
     machine = program.machines.get(endpoint.automaton.path)
     for declaration in machine.declarations if machine else ():

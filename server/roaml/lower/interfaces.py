@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
 from roaml.model.globals import FIELD_PREFIX
-from roaml.model.system import Automaton, Channel, Endpoint, safe_name, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, safe_name, sanitise
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import EventRole, ScxmlEvent
@@ -44,10 +44,10 @@ class ServiceEvents:
     def response(self) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_response", EventRole.BLOCKING)
 
-    def request_of(self, client: Automaton) -> ScxmlEvent:
+    def request_of(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_req_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def response_to(self, client: Automaton) -> ScxmlEvent:
+    def response_to(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_response_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
@@ -90,19 +90,19 @@ class ActionEvents:
     def thread_free(self) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_thread_free", EventRole.BLOCKING)
 
-    def goal_of(self, client: Automaton) -> ScxmlEvent:
+    def goal_of(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_goal_req_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def accept_for(self, client: Automaton) -> ScxmlEvent:
+    def accept_for(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_goal_accept_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def reject_for(self, client: Automaton) -> ScxmlEvent:
+    def reject_for(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_goal_reject_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
-    def feedback_for(self, client: Automaton) -> ScxmlEvent:
+    def feedback_for(self, client: SystemAutomaton) -> ScxmlEvent:
         return named(f"{self.stem}_feedback_handle_client_{safe_name(client.name)}")
 
-    def result_for(self, client: Automaton) -> ScxmlEvent:
+    def result_for(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_result_handle_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
@@ -121,7 +121,7 @@ def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> di
     return {}
 
 
-def sent_parameters(endpoint: Endpoint, part: ProtocolPart) -> set[str]:
+def sent_parameters(endpoint: ChannelEndpoint, part: ProtocolPart) -> set[str]:
     """The event parameters that one side sends for the fields of a part."""
     return {
         parameter((*field.name.split("."), *path))

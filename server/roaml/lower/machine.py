@@ -11,7 +11,7 @@ from roaml.expr.tree import Expr
 from roaml.expr.types import Type
 from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
-from roaml.lower.context import Context, type_of, variables_of
+from roaml.lower.context import LoweringContext, type_of, variables_of
 from roaml.lower.data import lower_data
 from roaml.lower.expressions import LoweringScope, lower_expr
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
@@ -19,10 +19,10 @@ from roaml.lower.nodes import builtin_ports
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
-from roaml.model.system import Automaton, sanitise
+from roaml.model.system import SystemAutomaton, sanitise
 from roaml.model.value_types import STATUSES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
@@ -33,7 +33,7 @@ TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""
 
 
-def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart, int | None]]:
+def copies(automaton: SystemAutomaton, machine: Machine) -> Iterator[tuple[str, Chart, int | None]]:
     """The plain automata of a machine: their names, their charts and the number of the thread."""
     yield automaton.name, machine.chart, None
     for thread in machine.threads:
@@ -53,19 +53,19 @@ def copies(automaton: Automaton, machine: Machine) -> Iterator[tuple[str, Chart,
 
 
 def lower_machine(
-    automaton: Automaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
+    automaton: SystemAutomaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
     ports = {} if automaton.path else builtin_ports(automaton, program)
     for plain_name, chart, thread in copies(automaton, machine):
         events = {timer: event for (user, timer), event in timers.items() if user == plain_name}
         variables = variables_of(chart, program)
         yield _ChartLowering(
-            Context(program, automaton, machine, chart, plain_name, thread, events, ports, variables)
+            LoweringContext(program, automaton, machine, chart, plain_name, thread, events, ports, variables)
         ).automaton()
 
 
 class _ChartLowering:
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: LoweringContext) -> None:
         self.context = context
         self.statements = StatementLowering(context)
         self.state_ids = {state.id.value for state in context.chart.states if state.id}
@@ -96,7 +96,7 @@ class _ChartLowering:
                 return value.tree
             case PortRead():
                 held = self.context.port(value)
-                assert isinstance(held, Constant)
+                assert isinstance(held, PortConstant)
                 return self.context.constant(value, held)
         return None
 
@@ -257,7 +257,7 @@ def values_in(statement: hl.Statement) -> Iterator[Value | None]:
             yield statement.value
         case hl.Send():
             yield from (param.value for param in statement.params)
-        case hl.Communicate():
+        case hl.RosSend():
             yield from (param.value for param in statement.fields)
 
 

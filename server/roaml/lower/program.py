@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.model.machine import Machine
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import Parameters
 from roaml.model.value_types import Environment
 from roaml.text import Location, Span
@@ -32,7 +32,7 @@ class TranslatableSystem:
     nodes: Mapping[int, Location]
     parameters: Parameters
 
-    def place_of(self, automaton: Automaton) -> Location:
+    def place_of(self, automaton: SystemAutomaton) -> Location:
         """The place of an automaton as a whole: its file, or the tree node if it has no file."""
         machine = self.machines.get(automaton.path)
         if machine is not None:

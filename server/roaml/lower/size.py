@@ -26,11 +26,11 @@ from roaml.model.machine import (
     Assign,
     CallChild,
     Chart,
-    Communicate,
     Handler,
     If,
     Machine,
     Param,
+    RosSend,
     Send,
     SetOutput,
     State,
@@ -39,7 +39,7 @@ from roaml.model.machine import (
 )
 from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
-from roaml.model.system import Automaton, Channel
+from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings
 from roaml.roles import ProtocolPart, SymbolKind
 
@@ -115,7 +115,7 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
         yield Share(count, f"the forwarded data of the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
 
 
-def _members(program: TranslatableSystem) -> Iterator[tuple[Automaton, Machine]]:
+def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Machine]]:
     for automaton in program.system.automata:
         machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
         if machine is not None:
@@ -158,7 +158,7 @@ def _parts(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
     yield Share(automata * syncs // _PLACES, f"the synchronisation of {automata:,} automata", "")
 
 
-def _machine_symbol(automaton: Automaton) -> Symbol | None:
+def _machine_symbol(automaton: SystemAutomaton) -> Symbol | None:
     return Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name) if automaton.path else None
 
 
@@ -282,7 +282,7 @@ class _Counter:
                 return self.choice(statement, handler)
             case Send():
                 return _EDGE + sum(self.param(param, handler) for param in statement.params)
-            case Communicate():
+            case RosSend():
                 return _EDGE + sum(self.param(param, handler) for param in statement.fields)
             case SetOutput():
                 return _EDGE + (self.value(statement.value, handler) if statement.value else 0)

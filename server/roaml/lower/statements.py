@@ -14,13 +14,13 @@ from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, 
 from roaml.expr.zero import zero
 from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
-from roaml.lower.context import Context
+from roaml.lower.context import LoweringContext
 from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
 from roaml.model.globals import FIELD_PREFIX
-from roaml.model.machine import CallChild, Communicate, NoEffect, ReturnHalted, ReturnStatus, SetOutput
+from roaml.model.machine import CallChild, NoEffect, ReturnHalted, ReturnStatus, RosSend, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import STATUSES, unset_fields
 from roaml.roles import ProtocolPart
@@ -51,7 +51,7 @@ TypedParam: TypeAlias = tuple[Param, Type]
 class StatementLowering:
     """Lowers the bodies of one automaton. `drawn` are variables for random numbers, created on the way."""
 
-    context: Context
+    context: LoweringContext
     drawn: list[Data] = field(default_factory=list)
 
     def body(self, statements: Iterable[hl.Statement], scope: LoweringScope) -> Body:
@@ -68,7 +68,7 @@ class StatementLowering:
                 assert statement.event is not None
                 sent = [p for param in statement.params for p in self.params(param, "", scope)]
                 yield from self.send(named(statement.event.value), sent, origin)
-            case Communicate():
+            case RosSend():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
                 yield Send(tree_event(self.number, "response"), (self.status(statement, scope, origin),), origin)
@@ -189,14 +189,14 @@ class StatementLowering:
         self.drawn.append(Data(found, named, zero(named), origin))
         return self.drawn[-1]
 
-    def communicate(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
+    def communicate(self, statement: RosSend, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
         fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
-    def arguments(self, statement: Communicate, scope: LoweringScope, origin: Location) -> Iterator[Param]:
+    def arguments(self, statement: RosSend, scope: LoweringScope, origin: Location) -> Iterator[Param]:
         """The parameters that are sent in addition to the fields (docs/spec/plain-scxml.md#events)."""
         for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
@@ -207,7 +207,7 @@ class StatementLowering:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
 
-    def event(self, statement: Communicate) -> ScxmlEvent:
+    def event(self, statement: RosSend) -> ScxmlEvent:
         channel, part = self.context.channel(statement), statement.part
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match part:

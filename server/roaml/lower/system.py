@@ -14,7 +14,7 @@ from roaml.lower.services import service_handler
 from roaml.lower.timers import clock, timers_of
 from roaml.lower.tree import tick_timer, tree_root
 from roaml.model.machine import Machine
-from roaml.model.system import Automaton
+from roaml.model.system import SystemAutomaton
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Network
 
@@ -30,14 +30,14 @@ def lower(program: TranslatableSystem) -> Network:
     return Network(tuple(automata), program.parameters.max_array_size, program.parameters.random_values)
 
 
-def _machine(automaton: Automaton, program: TranslatableSystem) -> Machine:
+def _machine(automaton: SystemAutomaton, program: TranslatableSystem) -> Machine:
     if automaton.path:
         return program.machines[automaton.path]
     return builtin_machine(automaton, program)
 
 
 def _automata(
-    program: TranslatableSystem, members: Iterable[tuple[Automaton, Machine]], timers: TimerEvents
+    program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]], timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
     system = program.system
     for automaton, machine in members:

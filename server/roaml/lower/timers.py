@@ -24,7 +24,7 @@ from roaml.model.expand import ROOT_NUMBER
 from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
-from roaml.model.system import CLOCK_TOPIC, Automaton, safe_name
+from roaml.model.system import CLOCK_TOPIC, SystemAutomaton, safe_name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import (
@@ -63,7 +63,7 @@ class Timer:
     origin: Location
 
 
-def timers_of(program: TranslatableSystem, members: Iterable[tuple[Automaton, Machine]]) -> list[Timer]:
+def timers_of(program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]]) -> list[Timer]:
     """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
     found: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
@@ -86,7 +86,7 @@ def _event(user: str, handle: str, alone: bool) -> ScxmlEvent:
 
 
 def _declared(
-    automaton: Automaton, machine: Machine, program: TranslatableSystem
+    automaton: SystemAutomaton, machine: Machine, program: TranslatableSystem
 ) -> Iterator[tuple[str, str, Fraction, bool, Location]]:
     """(user, handle, rate in Hz, whether anything waits for it, place) for each timer of a machine."""
     for declaration in machine.declarations:
@@ -109,7 +109,7 @@ def _awaited(chart: Chart) -> set[str]:
     }
 
 
-def _rate(declaration: Declaration, automaton: Automaton) -> Fraction:
+def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
     text = declaration.rate.value if isinstance(declaration.rate, Name) else ""
     port = declaration.rate.key.value if isinstance(declaration.rate, PortRead) and declaration.rate.key else ""
     found = rate(automaton, text, port)

@@ -14,7 +14,6 @@ from roaml.model.machine import (
     Branch,
     CallChild,
     Chart,
-    Communicate,
     Data,
     Declaration,
     Handler,
@@ -25,6 +24,7 @@ from roaml.model.machine import (
     Port,
     ReturnHalted,
     ReturnStatus,
+    RosSend,
     Send,
     SetOutput,
     State,
@@ -242,7 +242,7 @@ class _Builder:
         type_ = HL_SCXML.elements[element.name]
         if type_.ignored:
             return NoEffect(element)
-        return Communicate(
+        return RosSend(
             element,
             type_,
             self.handle(element, type_),

@@ -63,7 +63,7 @@ class TreeFileOutline:
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class PortConstant:
     """The port holds this text."""
 
     text: str
@@ -76,11 +76,11 @@ class Reference:
     variable: str
 
 
-PortValue: TypeAlias = Constant | Reference
+PortValue: TypeAlias = PortConstant | Reference
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class NodeSource:
     """The node of a file from which something was created."""
 
     path: str
@@ -106,7 +106,7 @@ class Instance:
     ports: tuple[tuple[str, PortValue], ...]
     parent: int | None
     children: tuple[int, ...]
-    source: Source
+    source: NodeSource
     condition: bool = False
 
     @property
@@ -169,7 +169,7 @@ def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
     return next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
 
 
-def node_at(file: TreeFile, source: Source) -> TreeNode | None:
+def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
     """The node of a file that `source` names."""
     found = nodes_of(file, source.tree)
     return found[source.position] if source.position < len(found) else None
@@ -234,7 +234,7 @@ MAX_SUBTREES = 1_000
 
 
 @dataclass(frozen=True, slots=True)
-class Extent:
+class TreeExtent:
     """How large a tree is when all subtrees are put in place, counted without doing so.
 
     Attributes:
@@ -246,18 +246,18 @@ class Extent:
 
     nodes: int
     depth: int
-    largest: Source | None
+    largest: NodeSource | None
 
     @property
     def is_expanded(self) -> bool:
         return self.nodes <= MAX_NODES and self.depth <= MAX_SUBTREES
 
 
-def extent(files: tuple[TreeFileOutline, ...]) -> Extent:
+def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
     """The size of the executed tree. Subtrees that are unknown or contain themselves have the size 0."""
     main = main_tree(files)
     if isinstance(main, tuple) or main.root is None:
-        return Extent(0, 0, None)
+        return TreeExtent(0, 0, None)
     trees = _by_id(files)
     sizes: dict[str, tuple[int, int]] = {}
     for name in _innermost_first(main, trees):
@@ -265,7 +265,7 @@ def extent(files: tuple[TreeFileOutline, ...]) -> Extent:
         used = [sizes[node.plugin] for node in _walk(tree.root) if node.is_subtree and node.plugin in sizes]
         own = sum(not node.is_subtree for node in _walk(tree.root))
         sizes[name] = own + sum(nodes for nodes, _ in used), 1 + max((depth for _, depth in used), default=-1)
-    return Extent(*sizes[main.id], _largest(main, trees, sizes))
+    return TreeExtent(*sizes[main.id], _largest(main, trees, sizes))
 
 
 def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
@@ -292,14 +292,14 @@ def _used(tree: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
 
 def _largest(
     main: TreeOutline, trees: Mapping[str, TreeOutline], sizes: Mapping[str, tuple[int, int]]
-) -> Source | None:
+) -> NodeSource | None:
     tree, largest, seen = main, None, {main.id}
     while True:
         uses = [n for n in _walk(tree.root) if n.is_subtree and n.plugin in sizes and n.plugin not in seen]
         if not uses:
             return largest
         node = max(uses, key=lambda each: sizes[each.plugin])
-        largest = Source(tree.path, tree.id, node.position)
+        largest = NodeSource(tree.path, tree.id, node.position)
         nodes, depth = sizes[node.plugin]
         if nodes <= MAX_NODES and depth <= MAX_SUBTREES:
             return largest
@@ -328,7 +328,7 @@ class Frame:
     """
 
     tree: TreeOutline
-    use: Source | None
+    use: NodeSource | None
     word: str
     suffix: str
     prefix: str
@@ -353,7 +353,7 @@ class Frame:
 
     def value(self, text: str) -> PortValue:
         variable = blackboard_variable(text)
-        return Constant(text) if variable is None else self.resolve(variable)
+        return PortConstant(text) if variable is None else self.resolve(variable)
 
 
 @dataclass(frozen=True, slots=True)
@@ -387,7 +387,7 @@ class _Placed:
     name: str
     ports: tuple[tuple[str, PortValue], ...]
     parent: int | None
-    source: Source
+    source: NodeSource
     condition: bool
     children: list[int]
 
@@ -443,7 +443,7 @@ class _Expander:
         number = ROOT_NUMBER + len(self.placed)
         settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
         ports = tuple((key, frame.value(text)) for key, text in settings.items())
-        source = Source(frame.tree.path, frame.tree.id, node.position)
+        source = NodeSource(frame.tree.path, frame.tree.id, node.position)
         condition = node.condition or node.plugin in self.conditions
         self.placed.append(_Placed(node.plugin, node.name or node.plugin, ports, parent, source, condition, []))
         self.frame_of[number] = frame
@@ -467,7 +467,7 @@ class _Expander:
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
         autoremap = any(attributes.get(name) in ("true", "1") for name in _AUTOREMAP)
-        use, inside = Source(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
+        use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
         entered = Frame(inner, use, word, suffix, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
         self.frames.append(entered)
         return entered
@@ -506,7 +506,7 @@ class StrayRemap:
         names: the variables of the subtree.
     """
 
-    source: Source
+    source: NodeSource
     key: str
     outer: str
     meant: tuple[str, ...]
@@ -535,7 +535,7 @@ def _strays(
     for key, text in given.items():
         if key not in known and (node.plugin, key) not in declared and ":" not in key:
             free = sorted(known - given.keys())
-            source = Source(tree.path, tree.id, node.position)
+            source = NodeSource(tree.path, tree.id, node.position)
             yield StrayRemap(source, key, text, close_names(key, free), tuple(free))
 
 

@@ -17,10 +17,10 @@ from roaml.expr.types import UNKNOWN
 from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import misfits
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
-from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send, SetOutput
+from roaml.model.machine import Declaration, Handler, Machine, RosSend, Send, SetOutput
 from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
-from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, Use, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, ValueUse, find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -219,7 +219,7 @@ class _Search:
             for statement in chart.statements:
                 if statement.element is parent and isinstance(statement, Send):
                     yield Gap(PARAMETER, statement.event.value if statement.event else None)
-                elif statement.element is parent and isinstance(statement, Communicate):
+                elif statement.element is parent and isinstance(statement, RosSend):
                     yield from self._fields(statement)
 
     # ----------------------------------------------------- elements that are read
@@ -243,19 +243,19 @@ class _Search:
                 yield PlacedGap(_about(f"{declaration.kind.value} {part.value} field", declaration), span)
 
     def _statements(self) -> Iterator[PlacedGap]:
-        owners: dict[Element, Communicate] = {}
+        owners: dict[Element, RosSend] = {}
         for chart in self.machine.charts:
             for statement in chart.statements:
                 if isinstance(statement, Send):
                     yield from self._send(statement)
-                elif isinstance(statement, Communicate):
+                elif isinstance(statement, RosSend):
                     owners |= {field.element: statement for field in statement.fields}
                     yield from self._user(statement, statement.part)
                     if any(field.name is None for field in statement.fields):
                         yield from (PlacedGap(g, statement.element.name_span) for g in self._fields(statement))
         # A field of unknown type does not exist in the ROS type, or the ROS type is unknown.
         for value in self.typed.values:
-            owner = owners.get(value.element) if value.use is Use.FIELD else None
+            owner = owners.get(value.element) if value.use is ValueUse.FIELD else None
             if owner is not None and (value.wanted is None or value.wanted == UNKNOWN):
                 yield from (PlacedGap(g, value.element.name_span) for g in self._fields(owner))
 
@@ -267,13 +267,13 @@ class _Search:
             if param.name is None:
                 yield PlacedGap(Gap(PARAMETER, send.event.value if send.event else None), param.element.name_span)
 
-    def _fields(self, statement: Communicate) -> Iterator[Gap]:
+    def _fields(self, statement: RosSend) -> Iterator[Gap]:
         declaration = find_handle(self.machine, statement)
         for kind in statement.type.attributes["name"].refers:
             act = f"{kind.value} {statement.part.value} field"
             yield _about(act, declaration) if declaration is not None else Gap(act)
 
-    def _user(self, user: Communicate | Handler, part: ProtocolPart) -> Iterator[PlacedGap]:
+    def _user(self, user: RosSend | Handler, part: ProtocolPart) -> Iterator[PlacedGap]:
         """An element that refers to no declaration, or to one of another kind."""
         name = user.type.attributes.get("name")
         kinds = [kind for kind in name.refers if kind in INTERFACE_KINDS] if name else []

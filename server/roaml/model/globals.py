@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Automaton, Channel, Endpoint, System, safe_name, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
@@ -146,7 +146,7 @@ def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
                 yield f"{name}_{part.value.replace('-', '_')}", server.symbol, sent[part]
 
 
-def _action_client(name: str, client: Endpoint, interface: FindInterface) -> Iterator[_Event]:
+def _action_client(name: str, client: ChannelEndpoint, interface: FindInterface) -> Iterator[_Event]:
     who, symbol = safe_name(client.automaton.name), client.symbol
     goal, feedback, result = (_declared(client.use, part, interface) for part in ("goal", "feedback", "result"))
     if ProtocolPart.GOAL in client.use.sends:
@@ -177,7 +177,7 @@ def _tree(system: System) -> Iterator[_Event]:
             yield f"{node}_halt_response", symbol, []
 
 
-def _calls(parent: Automaton, number: int) -> bool:
+def _calls(parent: SystemAutomaton, number: int) -> bool:
     """Whether a parent ever ticks or halts its child `number`."""
     assert parent.instance is not None
     plugin = parent.outline.plugin

@@ -116,7 +116,7 @@ class If:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Communicate:
+class RosSend:
     """Sends a part of a ROS interface: a message, request, response, goal, feedback, result, ...
 
     `goal_id` and `thread_id` are `None` if the element has no such attribute or it is missing.
@@ -170,7 +170,7 @@ class NoEffect:
     element: Element
 
 
-Statement: TypeAlias = Assign | Send | If | Communicate | ReturnStatus | ReturnHalted | CallChild | SetOutput | NoEffect
+Statement: TypeAlias = Assign | Send | If | RosSend | ReturnStatus | ReturnHalted | CallChild | SetOutput | NoEffect
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,7 @@ MAX_DEPTH = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Extent:
+class TypeExtent:
     """Attributes:
     fields: the number of fields that are not structs.
     depth: the maximum number of nested structs.
@@ -28,17 +28,17 @@ class Extent:
         return self.fields > MAX_FIELDS or self.depth > MAX_DEPTH
 
 
-def extents(members: Mapping[str, Sequence[str]]) -> dict[str, Extent]:
+def extents(members: Mapping[str, Sequence[str]]) -> dict[str, TypeExtent]:
     """The extent of each name, inner ones first. A recursive use has one field.
 
     Args:
         members: name -> the types of its members; names that are not keys are plain fields.
     """
-    found: dict[str, Extent] = {}
+    found: dict[str, TypeExtent] = {}
     for name in _inner_first(members):
         inner = [found[member] for member in members[name] if member in found]
         fields = len(members[name]) - len(inner) + sum(each.fields for each in inner)
-        found[name] = Extent(fields, 1 + max((each.depth for each in inner), default=0))
+        found[name] = TypeExtent(fields, 1 + max((each.depth for each in inner), default=0))
     return found
 
 

@@ -20,18 +20,18 @@ from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
     CallChild,
     Chart,
-    Communicate,
     Declaration,
     Handler,
     Machine,
     ReturnHalted,
     ReturnStatus,
+    RosSend,
     Send,
     SetOutput,
     Statement,
 )
 from roaml.model.syntax import Expression, Name, PortRead
-from roaml.model.value_types import TypedMachine, Use, find_handle
+from roaml.model.value_types import TypedMachine, ValueUse, find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
@@ -171,7 +171,7 @@ class MachineOutline:
 
 def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
     """The outline of a machine whose gaps are `gaps`."""
-    types = {value.element: value.sent for value in typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
+    types = {value.element: value.sent for value in typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)}
     reads = _reads(typed)
     return MachineOutline(
         machine.name.value if machine.name else "",
@@ -246,7 +246,7 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
     receives: defaultdict[Element, set[ProtocolPart]] = defaultdict(set)
     fields: defaultdict[Element, dict[ProtocolPart, dict[str, Type]]] = defaultdict(dict)
     for statement in _executed(machine):
-        if isinstance(statement, Communicate) and (declaration := find_handle(machine, statement)):
+        if isinstance(statement, RosSend) and (declaration := find_handle(machine, statement)):
             part = statement.part
             sends[declaration.element].add(part)
             known = fields[declaration.element].setdefault(part, {})

@@ -15,7 +15,7 @@ from typing import TypeAlias
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, leaves, unwrap
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, FieldType, Kind, Section
-from roaml.model.nesting import Extent, extents
+from roaml.model.nesting import TypeExtent, extents
 
 FindMessage: TypeAlias = Callable[[str], Definition | NotFound]
 """`package/Name` -> the message."""
@@ -81,7 +81,7 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
     return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
 
 
-def extent_of(definitions: Iterable[Definition]) -> Extent:
+def extent_of(definitions: Iterable[Definition]) -> TypeExtent:
     """The size of the first definition; the others are the messages in it."""
     fields = {each.full_name: [f.type.name for s in each.sections for f in s.fields] for each in definitions}
     return extents(fields)[next(iter(fields))]

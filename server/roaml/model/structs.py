@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
-from roaml.model.nesting import Extent, extents
+from roaml.model.nesting import TypeExtent, extents
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
@@ -89,7 +89,7 @@ def _member_type(name: TypeName | None, resolved: Mapping[str, Type]) -> Type:
     return wrap(BASE_TYPES.get(name.base) or resolved.get(name.base, UNKNOWN), name.dimensions)
 
 
-def struct_extents(outlines: Mapping[str, StructOutline]) -> Mapping[str, Extent]:
+def struct_extents(outlines: Mapping[str, StructOutline]) -> Mapping[str, TypeExtent]:
     """The sizes of structs, including their members."""
     return extents(_graph(outlines))
 

@@ -17,7 +17,7 @@ from typing import TypeAlias
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
-from roaml.model.expand import Constant, Instance, PortValue, Reference, Source
+from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference
 from roaml.model.gaps import (
     ANYTHING,
     NAME,
@@ -69,7 +69,7 @@ def safe_name(automaton: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Automaton:
+class SystemAutomaton:
     """A machine in its place in the system: a ROS node, or a plugin for one node of the tree.
 
     Attributes:
@@ -89,13 +89,13 @@ class Automaton:
         if self.instance is None or self.outline.port(key) is None:
             return None
         if key == CHILDREN_COUNT:
-            return Constant(str(len(self.instance.children)))
+            return PortConstant(str(len(self.instance.children)))
         return self.instance.port(key)
 
     def interface_name(self, use: InterfaceUse) -> str | None:
         """The topic, service or action of a declaration; `None` if there is none, or its name is unknown."""
-        value = self.port(use.port) if use.port else Constant(use.name)
-        name = value.text.strip() if isinstance(value, Constant) else ""
+        value = self.port(use.port) if use.port else PortConstant(use.name)
+        name = value.text.strip() if isinstance(value, PortConstant) else ""
         return name if is_interface_name(name) else None
 
     def symbol(self, use: InterfaceUse) -> Symbol:
@@ -103,10 +103,10 @@ class Automaton:
 
 
 @dataclass(frozen=True, slots=True)
-class Endpoint:
+class ChannelEndpoint:
     """One side of a topic, service or action."""
 
-    automaton: Automaton
+    automaton: SystemAutomaton
     use: InterfaceUse
 
     @property
@@ -119,21 +119,21 @@ class Channel:
     """A topic, service or action with both sides: publishers or servers, subscribers or clients."""
 
     name: str
-    sources: list[Endpoint] = field(default_factory=list)
-    users: list[Endpoint] = field(default_factory=list)
+    sources: list[ChannelEndpoint] = field(default_factory=list)
+    users: list[ChannelEndpoint] = field(default_factory=list)
 
     @property
-    def endpoints(self) -> list[Endpoint]:
+    def endpoints(self) -> list[ChannelEndpoint]:
         return [*self.sources, *self.users]
 
 
 @dataclass(slots=True)
-class Event:
+class PlainEvent:
     """A plain event with all its senders and receivers."""
 
     name: str
-    senders: list[tuple[Automaton, EventSent]] = field(default_factory=list)
-    receivers: list[tuple[Automaton, EventReceived]] = field(default_factory=list)
+    senders: list[tuple[SystemAutomaton, EventSent]] = field(default_factory=list)
+    receivers: list[tuple[SystemAutomaton, EventReceived]] = field(default_factory=list)
 
     @property
     def data(self) -> Struct:
@@ -150,11 +150,11 @@ class Event:
 class BoundPort:
     """A port that is bound to a blackboard variable."""
 
-    automaton: Automaton
+    automaton: SystemAutomaton
     port: PortOutline
 
     @property
-    def source(self) -> Source:
+    def source(self) -> NodeSource:
         assert self.automaton.instance is not None
         return self.automaton.instance.source
 
@@ -193,13 +193,13 @@ class System:
     observed: frozenset[str] = frozenset()
 
     @cached_property
-    def automata(self) -> tuple[Automaton, ...]:
+    def automata(self) -> tuple[SystemAutomaton, ...]:
         """In processing order: nodes, then the tree in pre-order (docs/spec/systems.md#processing-order)."""
-        found = [Automaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)]
+        found = [SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)]
         for instance in self.instances:
             path, outline = self.plugin(instance.plugin)
             if outline is not None:
-                found.append(Automaton(instance.automaton, path, outline, instance))
+                found.append(SystemAutomaton(instance.automaton, path, outline, instance))
         return tuple(found)
 
     @property
@@ -222,7 +222,7 @@ class System:
                 found |= self.facts_of_unknown(instance)
         return frozenset(found)
 
-    def may(self, act: str, name: str, automaton: Automaton | None = None) -> bool:
+    def may(self, act: str, name: str, automaton: SystemAutomaton | None = None) -> bool:
         """Whether an automaton, or this automaton, may do this in an unreadable part. `name` is as for channels and
         events."""
         possible = self.possible if automaton is None else self.facts_of(automaton)
@@ -232,7 +232,7 @@ class System:
         """Whether the translated system may have a variable of this name, once all of it can be read."""
         return any(may_give_variable(act, other, name) for act, other in self.possible)
 
-    def facts(self, gap: Gap, automaton: Automaton | None = None) -> set[Fact]:
+    def facts(self, gap: Gap, automaton: SystemAutomaton | None = None) -> set[Fact]:
         """The facts of a gap, in an automaton or in the files around the automata."""
         if gap.act == NODE:
             return self._facts_of_any_node()
@@ -245,11 +245,11 @@ class System:
             return {(VARIABLE, value.variable) for value in bound if isinstance(value, Reference)}
         if gap.port and automaton is not None:
             value = automaton.port(gap.port)
-            name = value.text.strip() if isinstance(value, Constant) else ""
+            name = value.text.strip() if isinstance(value, PortConstant) else ""
             return {_fact(gap.act, name if is_interface_name(name) else None)}
         return {_fact(gap.act, gap.name)}
 
-    def facts_of(self, automaton: Automaton) -> set[Fact]:
+    def facts_of(self, automaton: SystemAutomaton) -> set[Fact]:
         """The facts of an automaton in the unreadable parts of its machine, or of its node in the tree."""
         found = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
         for use in automaton.outline.interfaces:
@@ -266,7 +266,7 @@ class System:
             if any(act not in _BESIDE_EVENTS and not act.endswith(" field") for act, _ in self.facts_of(automaton))
         )
 
-    def facts_of_name(self, automaton: Automaton, use: InterfaceUse) -> set[Fact]:
+    def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
         """The facts of a tree node whose port should name a topic, service or action, and does not."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
@@ -285,7 +285,7 @@ class System:
             return {*found, (ANYTHING, None)}
         for path, outline in (*self.plugins, *self.nodes):
             if outline.name in close:
-                meant = Automaton(instance.automaton, path, outline, instance)
+                meant = SystemAutomaton(instance.automaton, path, outline, instance)
                 found |= set(_said(meant)) | self.facts_of(meant)
         return {*found, (TREE, None)}
 
@@ -295,7 +295,7 @@ class System:
             return {(ANYTHING, None)}
         found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
         for path, outline in self.plugins:
-            found |= set(_said(Automaton(outline.name, path, outline)))
+            found |= set(_said(SystemAutomaton(outline.name, path, outline)))
             found |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
         return found
 
@@ -319,7 +319,7 @@ class System:
         )
 
     @cached_property
-    def by_instance(self) -> Mapping[int, Automaton]:
+    def by_instance(self) -> Mapping[int, SystemAutomaton]:
         return {automaton.instance.number: automaton for automaton in self.automata if automaton.instance}
 
     @cached_property
@@ -334,7 +334,7 @@ class System:
             return "", builtin
         return self._plugins.get(name, ("", None))
 
-    def automata_of(self, path: str) -> tuple[Automaton, ...]:
+    def automata_of(self, path: str) -> tuple[SystemAutomaton, ...]:
         """The automata of the machine in the file `path`."""
         return tuple(automaton for automaton in self.automata if automaton.path == path)
 
@@ -377,10 +377,10 @@ class System:
                 name = automaton.interface_name(use) if use.kind in (source, user) else None
                 if name is not None:
                     channel = found.setdefault(key(name), Channel(key(name)))
-                    (channel.sources if use.kind is source else channel.users).append(Endpoint(automaton, use))
+                    (channel.sources if use.kind is source else channel.users).append(ChannelEndpoint(automaton, use))
         return found
 
-    def channel(self, automaton: Automaton, use: InterfaceUse) -> Channel | None:
+    def channel(self, automaton: SystemAutomaton, use: InterfaceUse) -> Channel | None:
         """The topic, service or action of a declaration of an automaton."""
         name = automaton.interface_name(use)
         if name is None:
@@ -395,13 +395,13 @@ class System:
     # --------------------------------------------------------------- events
 
     @cached_property
-    def events(self) -> Mapping[str, Event]:
-        found: dict[str, Event] = {}
+    def events(self) -> Mapping[str, PlainEvent]:
+        found: dict[str, PlainEvent] = {}
         for automaton in self.automata:
             for sent in automaton.outline.sent:
-                found.setdefault(sent.event, Event(sent.event)).senders.append((automaton, sent))
+                found.setdefault(sent.event, PlainEvent(sent.event)).senders.append((automaton, sent))
             for received in automaton.outline.received:
-                found.setdefault(received.event, Event(received.event)).receivers.append((automaton, received))
+                found.setdefault(received.event, PlainEvent(received.event)).receivers.append((automaton, received))
         return found
 
     def is_observed(self, event: str) -> bool:
@@ -436,7 +436,7 @@ class System:
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
         return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
 
-    def any_type(self, automaton: Automaton) -> str:
+    def any_type(self, automaton: SystemAutomaton) -> str:
         """The name of the type of those ports of a node that accept any type, the ports of `Switch`
         (docs/spec/nodes.md#control).
 
@@ -459,7 +459,7 @@ def _fact(act: str, name: str | None) -> Fact:
     return act, sanitise(name) if name is not None and is_topic else name
 
 
-def _said(automaton: Automaton) -> Iterator[Fact]:
+def _said(automaton: SystemAutomaton) -> Iterator[Fact]:
     """The facts of an automaton that may take part in the system."""
     for use in automaton.outline.interfaces:
         yield _fact(use.kind.value, automaton.interface_name(use))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.spelling import meant
@@ -29,7 +29,7 @@ NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Input:
+class SystemInput:
     """An `<input>`: a file of the system. `section` is the name of the element around it."""
 
     element: Element
@@ -49,9 +49,9 @@ class ListedFile:
         found: what it is.
     """
 
-    input: Input
+    input: SystemInput
     path: str
-    problem: Problem | None
+    problem: UnreadableReason | None
     wanted: FileKind | None
     found: FileKind
 
@@ -74,7 +74,7 @@ _WANTED = {
 }
 
 
-def wanted_kind(entry: Input) -> FileKind | None:
+def wanted_kind(entry: SystemInput) -> FileKind | None:
     """The kind of file that a system expects; if its type is misspelled, that of the intended type."""
     if entry.type is None:
         return None
@@ -136,7 +136,7 @@ class SystemFile:
     element: Element
     older: bool
     parameters: Parameters
-    inputs: tuple[Input, ...]
+    inputs: tuple[SystemInput, ...]
     unread: frozenset[str]
 
     def parameter(self, name: str) -> Element | None:
@@ -155,7 +155,7 @@ def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -
     if root is None or root.name not in SYSTEM.roots:
         return None
     inputs = [
-        Input(child, name, meant(child, "type", _INPUT), meant(child, "src", _INPUT))
+        SystemInput(child, name, meant(child, "type", _INPUT), meant(child, "src", _INPUT))
         for section in root.elements
         if (name := _section(section))
         for child in section.elements

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roaml.model.expand import Constant
-from roaml.model.system import Automaton, System
+from roaml.model.expand import PortConstant
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import NANOSECONDS, Parameters
 
 NANOSECONDS_PER_SECOND = 10**9
@@ -48,10 +48,10 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
                 yield period(found)
 
 
-def rate(automaton: Automaton, text: str, port: str) -> Fraction | None:
+def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
     """A rate in Hz, as written or as `port` of the automaton holds it; `None` if it is invalid."""
-    value = automaton.port(port) if port else Constant(text)
-    if not isinstance(value, Constant):
+    value = automaton.port(port) if port else PortConstant(text)
+    if not isinstance(value, PortConstant):
         return None
     try:
         found = Fraction(value.text.strip())

@@ -21,13 +21,13 @@ from roaml.model.initial import InitialProblem, check_bound, check_initial
 from roaml.model.machine import (
     Assign,
     Chart,
-    Communicate,
     Data,
     Declaration,
     Handler,
     If,
     Machine,
     Param,
+    RosSend,
     Send,
     SetOutput,
     State,
@@ -55,7 +55,7 @@ class Environment(Protocol):
         """The parameters that the senders of a plain event send; `None` if they are unknown."""
 
 
-class Use(enum.Enum):
+class ValueUse(enum.Enum):
     """The purpose of a value."""
 
     CONDITION = "condition of a transition"
@@ -88,7 +88,7 @@ class BranchConditions:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class ValuePlace:
     """The place of a value.
 
     Attributes:
@@ -116,13 +116,13 @@ class TypedValue:
     (docs/spec/expressions.md#whole-reals).
     """
 
-    use: Use
+    use: ValueUse
     value: Value
     type: Type
     wanted: Type | None
     problems: tuple[Problem | InitialProblem, ...]
     element: Element
-    place: Place
+    place: ValuePlace
     target: str = ""
     sent: Type = UNKNOWN
 
@@ -155,7 +155,7 @@ def type_machine(
             typer.taken_over.setdefault(handler, []).append(value)
     for chart in machine.charts:
         typer.chart(chart)
-    sent = (s for chart in machine.charts for s in chart.statements if isinstance(s, Communicate))
+    sent = (s for chart in machine.charts for s in chart.statements if isinstance(s, RosSend))
     unset = {each.element: fields for each in sent if (fields := unset_fields(each, machine, environment))}
     return TypedMachine(tuple(typer.values), typer.variables, unset)
 
@@ -232,7 +232,7 @@ CHANNEL_KINDS: Mapping[SymbolKind, SymbolKind] = {
 """What a declaration of each kind names."""
 
 
-def find_handle(machine: Machine, user: Handler | Communicate) -> Declaration | None:
+def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None:
     """The declaration to which a handler or sending element refers: one of the required kind, otherwise the first with
     the name."""
     if user.handle is None:
@@ -270,7 +270,7 @@ def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct
     return own if len(members) == len(own.members) else replace(own, members=tuple(members.items()))
 
 
-def unset_fields(statement: Communicate, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
+def unset_fields(statement: RosSend, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
     """The dotted paths and types of the fields that a sending element should set and does not. They are sent as well,
     with the defaults of ROS: 0, false, empty (docs/spec/files.md#dialects); in the current dialect a rule forbids
     that."""
@@ -305,13 +305,13 @@ class _Typer:
             if data.id is not None:
                 variables.setdefault(data.id.value, self.declared(data))
         self.variables[chart.scope] = variables
-        place = Place(chart, None, None, "data")
+        place = ValuePlace(chart, None, None, "data")
         for data in chart.data:
             self.data(data, place)
         for state in chart.states:
             for body, part in ((state.entry, "onentry"), (state.exit, "onexit")):
                 if body is not None:
-                    _Body(self, variables, {}, Place(chart, state, None, part)).run(body.statements)
+                    _Body(self, variables, {}, ValuePlace(chart, state, None, part)).run(body.statements)
             late = state.exit is not None and any(not isinstance(s, Assign) for s in state.exit.statements)
             for handler in state.handlers:
                 self.handler(handler, chart, state, variables, late)
@@ -321,18 +321,20 @@ class _Typer:
             return UNKNOWN
         return resolve_type(data.type.name, self.environment.struct) or UNKNOWN
 
-    def data(self, data: Data, place: Place) -> None:
+    def data(self, data: Data, place: ValuePlace) -> None:
         wanted = self.declared(data)
         target = data.id.value if data.id else ""
-        for value, use in ((data.value, Use.INITIAL), (data.lower, Use.BOUND), (data.upper, Use.BOUND)):
+        for value, use in ((data.value, ValueUse.INITIAL), (data.lower, ValueUse.BOUND), (data.upper, ValueUse.BOUND)):
             if isinstance(value, Expression):
-                check = check_bound if use is Use.BOUND else check_initial
+                check = check_bound if use is ValueUse.BOUND else check_initial
                 problems = () if value.broken else check(value.tree, wanted)
                 self.values.append(TypedValue(use, value, wanted, wanted, problems, data.element, place, target))
             elif value is not None:
                 self.port(use, value, wanted, data.element, place, target)
 
-    def port(self, use: Use, value: PortRead, wanted: Type | None, element: Element, place: Place, target: str) -> None:
+    def port(
+        self, use: ValueUse, value: PortRead, wanted: Type | None, element: Element, place: ValuePlace, target: str
+    ) -> None:
         type_ = port_type(self.machine, value)
         self.values.append(TypedValue(use, value, type_, wanted, (), element, place, target, type_))
 
@@ -346,11 +348,11 @@ class _Typer:
             known = bindings(handler, "cond", self.machine, self.environment)
             if "_bt" in known:
                 known |= dict.fromkeys(STATUSES, STATUS)
-            body = _Body(self, variables, known, Place(chart, state, handler, "cond"))
-            body.value(Use.CONDITION, handler.cond, BOOL, handler.element)
+            body = _Body(self, variables, known, ValuePlace(chart, state, handler, "cond"))
+            body.value(ValueUse.CONDITION, handler.cond, BOOL, handler.element)
         known = bindings(handler, "body", self.machine, self.environment)
         for target in handler.targets:
-            _Body(self, variables, known, Place(chart, state, handler, "body", late)).run(target.body)
+            _Body(self, variables, known, ValuePlace(chart, state, handler, "body", late)).run(target.body)
 
 
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
@@ -364,13 +366,15 @@ def port_type(machine: Machine, read: PortRead) -> Type:
     return UNKNOWN
 
 
-_SENT = (Use.PARAMETER, Use.FIELD, Use.OUTPUT)
+_SENT = (ValueUse.PARAMETER, ValueUse.FIELD, ValueUse.OUTPUT)
 
 
 class _Body:
     """Types one sequence of statements, in the order of their execution."""
 
-    def __init__(self, typer: _Typer, variables: Mapping[str, Type], known: Mapping[str, Type], place: Place) -> None:
+    def __init__(
+        self, typer: _Typer, variables: Mapping[str, Type], known: Mapping[str, Type], place: ValuePlace
+    ) -> None:
         self.typer = typer
         self.variables = variables
         self.known = known
@@ -392,8 +396,8 @@ class _Body:
                 return
             case Send():
                 for param in statement.params:
-                    self.param(Use.PARAMETER, param, None)
-            case Communicate():
+                    self.param(ValueUse.PARAMETER, param, None)
+            case RosSend():
                 self.communicate(statement)
             case SetOutput():
                 self.output(statement)
@@ -410,7 +414,9 @@ class _Body:
         if not self.place.late:
             self.place = replace(self.place, late=True)
 
-    def value(self, use: Use, value: Value | None, wanted: Type | None, element: Element, target: str = "") -> None:
+    def value(
+        self, use: ValueUse, value: Value | None, wanted: Type | None, element: Element, target: str = ""
+    ) -> None:
         if isinstance(value, Expression):
             type_, problems = infer(value.tree, self.scope)
             if value.broken:
@@ -426,31 +432,33 @@ class _Body:
         wanted: Type | None = None
         target = ""
         if statement.location is not None:
-            self.value(Use.LOCATION, statement.location, None, statement.element)
+            self.value(ValueUse.LOCATION, statement.location, None, statement.element)
             wanted, target = self.typer.values[-1].type, statement.location.text
-        self.value(Use.ASSIGNED, statement.value, wanted, statement.element, target)
+        self.value(ValueUse.ASSIGNED, statement.value, wanted, statement.element, target)
 
-    def param(self, use: Use, param: Param, wanted: Type | None) -> None:
+    def param(self, use: ValueUse, param: Param, wanted: Type | None) -> None:
         self.late_value(use, param.value, wanted, param.element, param.name.value if param.name else "")
 
-    def late_value(self, use: Use, value: Value | None, wanted: Type | None, element: Element, target: str) -> None:
+    def late_value(
+        self, use: ValueUse, value: Value | None, wanted: Type | None, element: Element, target: str
+    ) -> None:
         """A value that is sent: it is evaluated in the step of the sending, after the event arrived."""
         self.later()
         self.value(use, value, wanted, element, target)
 
-    def communicate(self, statement: Communicate) -> None:
+    def communicate(self, statement: RosSend) -> None:
         declaration = find_handle(self.typer.machine, statement)
         part = interface_part(statement.part, declaration, self.typer.environment)
         for param in statement.fields:
             wanted = _leaf(part, param.name.value) if param.name else None
-            self.param(Use.FIELD, param, wanted)
+            self.param(ValueUse.FIELD, param, wanted)
         for expression, name in ((statement.goal_id, "goal_id"), (statement.thread_id, "thread_id")):
-            self.late_value(Use.ARGUMENT, expression, INT, statement.element, name)
+            self.late_value(ValueUse.ARGUMENT, expression, INT, statement.element, name)
 
     def output(self, statement: SetOutput) -> None:
         wanted = port_type(self.typer.machine, PortRead(statement.key, statement.element.span))
         target = statement.key.value if statement.key else ""
-        self.late_value(Use.OUTPUT, statement.value, wanted, statement.element, target)
+        self.late_value(ValueUse.OUTPUT, statement.value, wanted, statement.element, target)
 
     def choice(self, statement: If) -> None:
         """The first condition is evaluated in a step of its own, so even it is late."""
@@ -458,7 +466,7 @@ class _Body:
         self.later()
         outer = known = self.place.branch_conditions
         for branch in statement.branches:
-            self.value(Use.BRANCH, branch.cond, BOOL, branch.element)
+            self.value(ValueUse.BRANCH, branch.cond, BOOL, branch.element)
             holds = BranchConditions(branch.cond, True, known) if branch.cond else known
             self.place = replace(self.place, branch_conditions=holds)
             self.run(branch.body)

@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from roaml.diagnostics import Finding
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.expr.types import UNKNOWN, Struct, Type
 from roaml.forest.forest import NEWEST, Forest, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
@@ -43,10 +43,10 @@ from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import (
     NO_OVERRIDES,
-    Input,
     ListedFile,
     Overrides,
     SystemFile,
+    SystemInput,
     build_system_file,
     wanted_kind,
 )
@@ -301,16 +301,16 @@ class Analysis:
             return False
         return all(listed.usable for listed in self.listed(system) if listed.input.section == section)
 
-    def _listed_file(self, base: str, entry: Input) -> ListedFile:
+    def _listed_file(self, base: str, entry: SystemInput) -> ListedFile:
         wanted = wanted_kind(entry)
         if entry.src is None:
             return ListedFile(entry, "", None, wanted, FileKind.UNKNOWN)
         path = resolve(base, entry.src.value)
         source = self.files.read(path)
-        if isinstance(source, Problem):
+        if isinstance(source, UnreadableReason):
             return ListedFile(entry, path, source, wanted, FileKind.UNKNOWN)
         if len(source.text) > MAX_CHARACTERS:
-            return ListedFile(entry, path, Problem.TOO_LONG, wanted, self.kind(path))
+            return ListedFile(entry, path, UnreadableReason.TOO_LONG, wanted, self.kind(path))
         found = self.kind(path)
         if found is FileKind.MACHINE and self.machine(path) is None:
             found = FileKind.UNKNOWN

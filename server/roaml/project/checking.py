@@ -16,7 +16,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.types import Kind
 from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
@@ -419,7 +419,7 @@ class _Run:
                     )
                 continue
             source = self.analysis.files.read(target)
-            if isinstance(source, Problem):
+            if isinstance(source, UnreadableReason):
                 found[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
                 found[include.path.value] = "it is not a file of behavior trees"

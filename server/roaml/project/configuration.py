@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from roaml.diagnostics import Finding, Fix
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
-from roaml.project.settings import Folder, Mistake, Settings, folders_above, folders_in, settings_from
+from roaml.project.settings import Folder, SettingMistake, Settings, folders_above, folders_in, settings_from
 from roaml.rules.parser_rules import INVALID_SETTING, MISSING_FOLDER, TOML_SYNTAX
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
@@ -78,7 +78,7 @@ def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
     )
 
 
-def _finding(source: SourceFile, known: Places, prefix: Path, mistake: Mistake) -> Finding:
+def _finding(source: SourceFile, known: Places, prefix: Path, mistake: SettingMistake) -> Finding:
     path = (*prefix, *mistake.path)
     span = known.keys.get(path) if mistake.is_key else None
     span = span or _span(source, known, path)
@@ -113,8 +113,8 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
         for name in CONFIG_FILES:
             file = os.path.join(folder, name)
             source = disk.read(file)
-            if isinstance(source, Problem):
-                if name == CONFIG_FILE and source is not Problem.MISSING:
+            if isinstance(source, UnreadableReason):
+                if name == CONFIG_FILE and source is not UnreadableReason.MISSING:
                     return Settings(), (f"{file}: {source.value}",)
                 continue
             if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:

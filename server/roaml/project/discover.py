@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator
 
-from roaml.disk import Problem, Roots, read, status_of
+from roaml.disk import Roots, UnreadableReason, read, status_of
 from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, FileKind, kind_of
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.files import Files
@@ -82,14 +82,14 @@ class SystemIndex:
         if path in files.open_files:
             return kind_of(path, files.open_files[path].text) is FileKind.SYSTEM
         status = status_of(path)
-        if isinstance(status, Problem):
+        if isinstance(status, UnreadableReason):
             return False
         stamp = (status.st_mtime_ns, status.st_size)
         known = self._known.get(path)
         if known is not None and known[0] == stamp:
             return known[1]
         head = read(path, head=_HEAD)
-        if isinstance(head, Problem) or not files.roots.hold(path):
+        if isinstance(head, UnreadableReason) or not files.roots.hold(path):
             return False
         found = kind_of(path, decode(path, head).text) is FileKind.SYSTEM
         self._known[path] = (stamp, found)

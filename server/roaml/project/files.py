@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the user's files: an open buffer in an editor takes precedence over the disk.
+"""Reading the user's files: what is open in an editor before what is on the disk.
 
-- Never raises for the state of the disk: a file that cannot be used is a `Problem`.
-- Opens only regular files (`roaml.disk`), and none outside of the roots to which a link leads.
-- A file is read again only when its size or modification time differs.
+- Never raises for what stands on the disk: a file that cannot be used is a `UnreadableReason`.
+- Opens regular files only (`roaml.disk`), and none outside of the roots that a link leads to.
+- A file is read again only when its size or time of change differs.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from roaml.disk import MAX_BYTES, Problem, Roots, read, status_of
+from roaml.disk import MAX_BYTES, Roots, UnreadableReason, read, status_of
 from roaml.text import SourceFile, decode
 
 MAX_CHARACTERS = 2_000_000
@@ -23,11 +23,11 @@ class DiskFiles:
 
     def __init__(self, roots: Roots | None = None) -> None:
         self.roots = roots or Roots()
-        self._known: dict[str, tuple[tuple[int, int, int], SourceFile | Problem]] = {}
+        self._known: dict[str, tuple[tuple[int, int, int], SourceFile | UnreadableReason]] = {}
 
-    def read(self, path: str) -> SourceFile | Problem:
+    def read(self, path: str) -> SourceFile | UnreadableReason:
         status = status_of(path)
-        if isinstance(status, Problem):
+        if isinstance(status, UnreadableReason):
             self._known.pop(path, None)
             return status
         stamp = (status.st_mtime_ns, status.st_size, status.st_ino)
@@ -36,11 +36,11 @@ class DiskFiles:
             known = self._known[path] = (stamp, self._read(path))
         return known[1]
 
-    def _read(self, path: str) -> SourceFile | Problem:
+    def _read(self, path: str) -> SourceFile | UnreadableReason:
         if not self.roots.hold(path):
-            return Problem.OUTSIDE
+            return UnreadableReason.OUTSIDE
         content = read(path, MAX_BYTES)
-        return content if isinstance(content, Problem) else decode(path, content)
+        return content if isinstance(content, UnreadableReason) else decode(path, content)
 
     def listing(self, folder: str) -> tuple[str, ...]:
         """The names of the files in a folder, sorted; empty if it cannot be read."""
@@ -57,14 +57,14 @@ class Files:
     def __init__(self, disk: DiskFiles, open_files: Mapping[str, SourceFile]) -> None:
         self._disk = disk
         self.open_files = open_files
-        self._seen: dict[str, SourceFile | Problem] = {}
+        self._seen: dict[str, SourceFile | UnreadableReason] = {}
         self._folders: dict[str, tuple[str, ...]] = {}
 
     @property
     def roots(self) -> Roots:
         return self._disk.roots
 
-    def read(self, path: str) -> SourceFile | Problem:
+    def read(self, path: str) -> SourceFile | UnreadableReason:
         if path in self.open_files:
             return self.open_files[path]
         if path not in self._seen:

@@ -67,7 +67,7 @@ def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ..
 
 
 @dataclass(frozen=True, slots=True)
-class Mistake:
+class SettingMistake:
     """An error in a configuration table.
 
     Attributes:
@@ -92,19 +92,19 @@ class Folder:
     full: str
 
 
-def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[Mistake, ...]]:
+def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[SettingMistake, ...]]:
     """`base` with the values of a configuration table, and the errors in it.
 
     Args:
         folder: the base of relative paths in the table.
     """
-    mistakes: list[Mistake] = []
+    mistakes: list[SettingMistake] = []
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in _KEYS:
             close = close_names(key, _KEYS)
             known = did_you_mean(close) if close else f"; there are {', '.join(sorted(_KEYS))}"
-            mistakes.append(Mistake((key,), f"there is no setting `{key}`{known}", is_key=True, instead=close))
+            mistakes.append(SettingMistake((key,), f"there is no setting `{key}`{known}", is_key=True, instead=close))
             continue
         read = _KEYS[key]((key,), value, mistakes)
         if read is None:
@@ -139,27 +139,27 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
                     yield Folder((key, index), each, full(folder, each))
 
 
-_Reader = Callable[[Path, Any, list[Mistake]], Any]
+_Reader = Callable[[Path, Any, list[SettingMistake]], Any]
 """Reads the value at a path; records errors, and returns `None` for an unusable value."""
 
 
-def _strings(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+def _strings(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     if isinstance(value, str):
         return (value,)
     if isinstance(value, list) and all(isinstance(each, str) for each in value):
         return tuple(value)
-    mistakes.append(Mistake(path, f"`{path[0]}` must be a list of strings"))
+    mistakes.append(SettingMistake(path, f"`{path[0]}` must be a list of strings"))
     return None
 
 
-def _patterns(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+def _patterns(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     read = _strings(path, value, mistakes)
     if read is None:
         return None
     wrong = [exclude.problem(pattern) for pattern in read]
     for place, problem in zip(_places(path, value), wrong, strict=True):
         if problem:
-            mistakes.append(Mistake(place, problem))
+            mistakes.append(SettingMistake(place, problem))
     return tuple(pattern for pattern, problem in zip(read, wrong, strict=True) if not problem)
 
 
@@ -168,7 +168,7 @@ def _places(path: Path, value: str | list[str]) -> list[Path]:
     return [path] if isinstance(value, str) else [(*path, index) for index in range(len(value))]
 
 
-def _codes(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+def _codes(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     read = _strings(path, value, mistakes)
     if read is None:
         return None
@@ -178,14 +178,14 @@ def _codes(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] |
     return tuple(code for code in read if code in BY_CODE)
 
 
-def _no_rule(place: Path, code: str, is_key: bool = False) -> Mistake:
+def _no_rule(place: Path, code: str, is_key: bool = False) -> SettingMistake:
     close = close_names(code, BY_CODE)
-    return Mistake(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
+    return SettingMistake(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
 
 
-def _severities(path: Path, value: Any, mistakes: list[Mistake]) -> dict[str, Severity] | None:
+def _severities(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Severity] | None:
     if not isinstance(value, dict):
-        mistakes.append(Mistake(path, f"`{path[0]}` must be a table of rule codes and severities"))
+        mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table of rule codes and severities"))
         return None
     found = {}
     for code, label in value.items():
@@ -195,46 +195,46 @@ def _severities(path: Path, value: Any, mistakes: list[Mistake]) -> dict[str, Se
             known = ", ".join(f"`{each}`" for each in SEVERITIES)
             close = close_names(label, SEVERITIES) if isinstance(label, str) else ()
             text = f"the severity of `{code}` must be one of {known}{did_you_mean(close)}"
-            mistakes.append(Mistake((*path, code), text, instead=close))
+            mistakes.append(SettingMistake((*path, code), text, instead=close))
         else:
             found[code] = SEVERITIES[label]
     return found
 
 
-def _boolean(path: Path, value: Any, mistakes: list[Mistake]) -> bool | None:
+def _boolean(path: Path, value: Any, mistakes: list[SettingMistake]) -> bool | None:
     if isinstance(value, bool):
         return value
-    mistakes.append(Mistake(path, f"`{path[0]}` must be true or false"))
+    mistakes.append(SettingMistake(path, f"`{path[0]}` must be true or false"))
     return None
 
 
-def _count(path: Path, value: Any, mistakes: list[Mistake]) -> int | None:
+def _count(path: Path, value: Any, mistakes: list[SettingMistake]) -> int | None:
     if isinstance(value, int) and not isinstance(value, bool) and value > 0:
         return value
-    mistakes.append(Mistake(path, f"`{path[0]}` must be a whole number above 0"))
+    mistakes.append(SettingMistake(path, f"`{path[0]}` must be a whole number above 0"))
     return None
 
 
-def _scheduler(path: Path, value: Any, mistakes: list[Mistake]) -> str | None:
+def _scheduler(path: Path, value: Any, mistakes: list[SettingMistake]) -> str | None:
     """The scheduler in the table `verify`."""
     if not isinstance(value, dict):
-        mistakes.append(Mistake(path, f"`{path[0]}` must be a table"))
+        mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table"))
         return None
     scheduler = None
     for key, said in value.items():
         if key != "scheduler":
             close = close_names(key, ("scheduler",))
             message = f"there is no setting `verify.{key}`; there is `scheduler`"
-            mistakes.append(Mistake((*path, key), message, is_key=True, instead=close))
+            mistakes.append(SettingMistake((*path, key), message, is_key=True, instead=close))
         elif said not in SCHEDULERS:
             message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"
-            mistakes.append(Mistake((*path, key), message))
+            mistakes.append(SettingMistake((*path, key), message))
         else:
             scheduler = said
     return scheduler
 
 
-def _libraries(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ...] | None:
+def _libraries(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     read = _strings(path, value, mistakes)
     if read is None:
         return None
@@ -243,14 +243,14 @@ def _libraries(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[str, ..
         if name not in LIBRARIES:
             close = close_names(name, LIBRARIES)
             known = did_you_mean(close) or f"; there is {', '.join(f'`{library}`' for library in LIBRARIES)}"
-            mistakes.append(Mistake(place, f"there is no tree library `{name}`{known}", instead=close))
+            mistakes.append(SettingMistake(place, f"there is no tree library `{name}`{known}", instead=close))
     return tuple(name for name in read if name in LIBRARIES)
 
 
-def _version(path: Path, value: Any, mistakes: list[Mistake]) -> tuple[int, int] | None:
+def _version(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[int, int] | None:
     match = _VERSION.match(value) if isinstance(value, str) else None
     if match is None:
-        mistakes.append(Mistake(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
+        mistakes.append(SettingMistake(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
         return None
     return 4, int(match[1])
 

@@ -12,7 +12,7 @@ from roaml.project.paths import relative
 from roaml.text import Location
 
 
-class Place(TypedDict):
+class MappedPlace(TypedDict):
     """A place in a file: `file` relative to the system file's folder with `/`, line and column from 1, the column in
     code points."""
 
@@ -21,18 +21,18 @@ class Place(TypedDict):
     column: int
 
 
-class VariablePlace(Place):
+class VariablePlace(MappedPlace):
     name: str
 
 
-class EdgePlace(Place):
+class EdgePlace(MappedPlace):
     """An edge; `action` is null if JANI has none."""
 
     location: str
     action: str | None
 
 
-class AutomatonPlaces(Place):
+class AutomatonPlaces(MappedPlace):
     """An automaton with its parts, in the order of the JANI file."""
 
     name: str
@@ -59,7 +59,7 @@ def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
     """
     folder = os.path.dirname(system)
 
-    def place(origin: Location | None) -> Place:
+    def place(origin: Location | None) -> MappedPlace:
         assert origin is not None
         source = analysis.source(origin.path)
         assert source is not None

@@ -28,7 +28,7 @@ from roaml.model.machine import Dialect, Machine
 from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import ListedFile, SystemFile
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
@@ -66,7 +66,7 @@ class MachineContext:
     typed: TypedMachine
     dialect: Dialect
     system: System | None
-    automata: tuple[Automaton, ...]
+    automata: tuple[SystemAutomaton, ...]
     listed_as: frozenset[str]
     struct: Callable[[str], Type | None]
     struct_names: tuple[str, ...]

@@ -11,7 +11,7 @@ from roaml.smc.record import VERDICTS
 from roaml.smc.run import Seen
 from roaml.text import Location
 from roaml.verification.results import Result
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.views.story import StoryLine, heading, lines
 
 
@@ -66,7 +66,7 @@ def counterexample(result: Result, place_of: Callable[[Location], str] | None = 
     return Counterexample(heading(story), verdict, seen.trace, tuple(told))
 
 
-def _path_and_line(target: Target) -> Callable[[Location], str]:
+def _path_and_line(target: VerificationTarget) -> Callable[[Location], str]:
     def place_of(origin: Location) -> str:
         place = target.place(origin)
         return f"{place.path}:{place.line}" if place else ""

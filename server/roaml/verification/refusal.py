@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roaml.smc.fault import FaultError
-from roaml.verification.target import LineColumn, Target
+from roaml.verification.target import LineColumn, VerificationTarget
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Refusal:
     place: LineColumn | None = None
 
 
-def refusal(fault: FaultError, target: Target, seed: int) -> Refusal:
+def refusal(fault: FaultError, target: VerificationTarget, seed: int) -> Refusal:
     """
     Args:
         seed: of the traces.

@@ -15,7 +15,7 @@ from roaml.smc.story import Story, tell
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
 from roaml.verification.stuck import Stuck
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class SampledResult:
 class Traces:
     """The traces under uniform choices for a property. Each can be simulated again."""
 
-    target: Target
+    target: VerificationTarget
     checker: ModelChecker
     asked: CompiledProperty
     options: Options

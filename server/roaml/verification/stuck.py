@@ -19,7 +19,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.views.waiting import Wait, advice, rule, waits
 
 WARNING, ERROR = "warning", "error"
@@ -103,7 +103,9 @@ class Look:
         return self.stuck is None or self.level != ERROR
 
 
-def look(target: Target, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None) -> Look:
+def look(
+    target: VerificationTarget, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None
+) -> Look:
     """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
@@ -132,7 +134,7 @@ def can_be_stuck(checker: ModelChecker) -> bool:
 
 
 def stuck_in(
-    target: Target, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
+    target: VerificationTarget, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
 ) -> Stuck | None:
     """The traces of an answer that got stuck; `None` if none did."""
     ended = answer.tally.ends.get(End.STUCK)
@@ -144,7 +146,7 @@ def stuck_in(
     return Stuck(ended.count, answer.tally.traces, ended.shortest, time, waits(recorder.standstill(), time))
 
 
-def time_of(target: Target, recorder: Recorder) -> float | None:
+def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
     """The time of the model in the current state, in s; `None` without a clock."""
     if target.clock is None:
         return None

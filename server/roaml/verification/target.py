@@ -24,7 +24,7 @@ class LineColumn(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class VerificationTarget:
     """A model, with the texts that its positions refer to.
 
     Attributes:
@@ -54,7 +54,9 @@ def target_of(
     path: str = "",
     files: tuple[str, ...] = (),
     source_of: Callable[[str], SourceFile | None] = lambda _: None,
-) -> Target:
+) -> VerificationTarget:
     """A model as a target, with its clock if it has one."""
     names = {variable.name for variable in model.variables}
-    return Target(path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None)
+    return VerificationTarget(
+        path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None
+    )

@@ -22,7 +22,7 @@ from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
 from roaml.verification.storm import exact_values, judge_exactly
 from roaml.verification.stuck import Look
-from roaml.verification.target import Target
+from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks
 
 
@@ -30,7 +30,7 @@ class NoThresholdError(ValueError):
     """A sequential test requires a property that is compared with a number."""
 
 
-def checker_of(target: Target, properties: Iterable[str] | None = None) -> ModelChecker:
+def checker_of(target: VerificationTarget, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
@@ -53,7 +53,7 @@ def checker_of(target: Target, properties: Iterable[str] | None = None) -> Model
 
 
 def verifier_of(
-    target: Target,
+    target: VerificationTarget,
     properties: Sequence[str] | None = None,
     options: Options | None = None,
     expectations: Iterable[Expectation] = (),
@@ -92,7 +92,7 @@ def verifier_of(
 class Verifier:
     """A target with compiled properties, and their expectations; see `verifier_of`."""
 
-    target: Target
+    target: VerificationTarget
     checker: ModelChecker
     options: Options = field(default_factory=Options)
     expectations: tuple[Expectation, ...] = ()

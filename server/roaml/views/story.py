@@ -17,7 +17,7 @@ from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
-LONGEST = 60
+MAX_CHARACTERS = 60
 FIRST, LAST = 30, 50
 """The maximum number of turns that are shown; those in between are folded."""
 
@@ -264,7 +264,7 @@ def _shown(before: Plain, after: Plain) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 1]}…"
 
 
 def _escaped(text: str) -> str:

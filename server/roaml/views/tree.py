@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from roaml.model.expand import Constant, Instance
+from roaml.model.expand import Instance, PortConstant
 from roaml.model.system import System
 from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
@@ -29,7 +29,7 @@ def title_of(instance: Instance) -> str:
 def ports_of(instance: Instance) -> tuple[str, ...]:
     """The values of the ports, one line for each."""
     return tuple(
-        f"{key} = {value.text if isinstance(value, Constant) else f'{{{value.variable}}}'}"
+        f"{key} = {value.text if isinstance(value, PortConstant) else f'{{{value.variable}}}'}"
         for key, value in instance.ports
         if key not in _OWN
     )

@@ -49,7 +49,7 @@ _TAG_SPACE = re.compile(r"\s*")
 _ODD_SPACE = re.compile(rf"[^\S{SPACE}]+")
 _LESS = re.compile("<")
 _AMPERSAND = re.compile("&")
-_LONGEST_ODD_VALUE = 5000
+_MAX_ODD_VALUE_LENGTH = 5000
 _UNQUOTED = re.compile(r"[^\s<>/\"']*")
 _SWALLOWED = re.compile(rf"\s{_NAME}\s*=\s*\Z")
 _NEXT_ATTRIBUTE = re.compile(rf"{_NAME}\s*=")
@@ -133,14 +133,14 @@ class _Parser:
         start, end = match.span(2)
         if start != end:
             seen: dict[str, Attribute] = {}
-            for found in _SOUND_ATTRIBUTE.finditer(self.text, start, end):
-                group = found.lastindex or 2
-                name, value = found[1], found[group]
-                value_span = span_of(found.span(group))
+            for written in _SOUND_ATTRIBUTE.finditer(self.text, start, end):
+                group = written.lastindex or 2
+                name, value = written[1], written[group]
+                value_span = span_of(written.span(group))
                 if "&" in value:
                     self.check_references(value_span)
                     value = unescape(value)
-                attribute = Attribute(name, value, span_of(found.span(1)), value_span, span_of(found.span()))
+                attribute = Attribute(name, value, span_of(written.span(1)), value_span, span_of(written.span()))
                 attributes.append(attribute)
                 if seen.setdefault(name, attribute) is not attribute:
                     self.duplicate(attribute, seen[name])
@@ -157,8 +157,8 @@ class _Parser:
             if tag_end := _TAG_END.match(text, position):
                 self.check_space(position, tag_end.start(1))
                 return self.open_element(match, attributes, tag_end.end(), tag_end[1] == "/>", complete=True)
-            found = _ATTRIBUTE.match(text, position)
-            if found is None:
+            written = _ATTRIBUTE.match(text, position)
+            if written is None:
                 junk = _JUNK.match(text, position)
                 if junk is None:
                     break
@@ -166,7 +166,7 @@ class _Parser:
                 self.report(Span(*junk.span(1)), f"`{junk[1][:20]}` is not an attribute", drop)
                 position = junk.end()
                 continue
-            attribute = self.attribute(found, position)
+            attribute = self.attribute(written, position)
             if first.setdefault(attribute.name, attribute) is not attribute:
                 self.duplicate(attribute, first[attribute.name])
             attributes.append(attribute)
@@ -179,10 +179,10 @@ class _Parser:
         space = _TAG_SPACE.match(text, position)
         return self.open_element(match, attributes, space.end() if space else position, False, complete=False)
 
-    def attribute(self, found: re.Match[str], at: int) -> Attribute:
+    def attribute(self, match: re.Match[str], at: int) -> Attribute:
         """Read the attribute in the text after `at`."""
-        name, equals = found[1], found[2]
-        name_span = Span(*found.span(1))
+        name, equals = match[1], match[2]
+        name_span = Span(*match.span(1))
         self.check_name(name_span)
         if name_span.start > at:
             self.check_space(at, name_span.start)
@@ -190,21 +190,21 @@ class _Parser:
             insert = Fix("Insert a space", (TextEdit(Span(at, at), " "),), safe=True)
             self.report(name_span, "a space is missing before this attribute", insert)
         if equals is not None:
-            self.check_space(*found.span(2))
+            self.check_space(*match.span(2))
         else:
             insert = Fix('Add `=""`', (TextEdit(Span(name_span.end, name_span.end), '=""'),), preferred=False)
             self.report(name_span, f"the attribute `{shown(name)}` has no value", insert)
             return Attribute(name, "", name_span, Span(name_span.end, name_span.end), name_span, has_value=False)
-        group = 3 if found[3] is not None else 4
-        raw = found[group]
+        group = 3 if match[3] is not None else 4
+        raw = match[group]
         if raw is not None:
-            value_span = Span(*found.span(group))
+            value_span = Span(*match.span(group))
             if (end := self.swallowing(value_span)) is not None:
                 return self.open_value(name, name_span, Span(value_span.start, end))
             if "&" in raw:
                 self.check_references(value_span)
-            return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, found.end()))
-        return self.odd_value(name, name_span, found.end(2))
+            return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, match.end()))
+        return self.odd_value(name, name_span, match.end(2))
 
     def odd_value(self, name: str, name_span: Span, at: int) -> Attribute:
         """Read a value that contains `<`, has no closing quote, or has no quotes at all."""
@@ -226,7 +226,7 @@ class _Parser:
             self.check_references(value_span)
             return Attribute(name, unescape(text[at:end]), name_span, value_span, Span(name_span.start, end))
         start = at + 1
-        close = text.find(quote, start, start + _LONGEST_ODD_VALUE)
+        close = text.find(quote, start, start + _MAX_ODD_VALUE_LENGTH)
         if close >= 0 and self.is_plausible_value(start, close):
             value_span = Span(start, close)
             for less in _LESS.finditer(text, start, close):

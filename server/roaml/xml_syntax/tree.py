@@ -180,8 +180,8 @@ class Document:
                     pieces.append(self.decoded(node.span))
                 case CData():
                     pieces.append(Decoded(node.value, node.span.start + len("<![CDATA[")))
-        found = joined(pieces).stripped() if pieces else None
-        return found if found is not None and found.text else None
+        content = joined(pieces).stripped() if pieces else None
+        return content if content is not None and content.text else None
 
     def path_at(self, offset: int) -> list[Element]:
         """The elements around `offset`, outermost first; a caret at the end of an unfinished element is inside it."""

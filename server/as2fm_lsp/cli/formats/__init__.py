@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The output formats of diagnostics: one module for each, all created from `Report`."""
+"""The forms in which diagnostics are written: one module each, all made from `CheckReport`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
 from as2fm_lsp.cli.formats import github, gitlab, json, junit, sarif, text
-from as2fm_lsp.cli.formats.report import Report
+from as2fm_lsp.cli.formats.report import CheckReport
 
-FORMATS: Mapping[str, Callable[[Report], str]] = {
+FORMATS: Mapping[str, Callable[[CheckReport], str]] = {
     "text": text.render,
     "json": json.render,
     "github": github.render,
@@ -17,4 +17,4 @@ FORMATS: Mapping[str, Callable[[Report], str]] = {
     "junit": junit.render,
 }
 
-__all__ = ["FORMATS", "Report"]
+__all__ = ["FORMATS", "CheckReport"]

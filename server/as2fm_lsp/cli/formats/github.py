@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from as2fm_lsp.cli.formats.report import Report
+from as2fm_lsp.cli.formats.report import CheckReport
 from roaml.project.paths import slashed
 
 _KINDS = {"error": "error", "warning": "warning", "information": "notice", "hint": "notice"}
 
 
-def render(report: Report) -> str:
+def render(report: CheckReport) -> str:
     lines = []
     for entry in report.entries:
         place = entry.place

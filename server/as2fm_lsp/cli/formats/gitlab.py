@@ -6,13 +6,13 @@ from __future__ import annotations
 import json
 from collections import Counter
 
-from as2fm_lsp.cli.formats.report import Report
+from as2fm_lsp.cli.formats.report import CheckReport
 from roaml.project.paths import slashed
 
 _SEVERITIES = {"error": "major", "warning": "minor", "information": "info", "hint": "info"}
 
 
-def render(report: Report) -> str:
+def render(report: CheckReport) -> str:
     seen: Counter[str] = Counter()
     rows = []
     for entry in report.entries:

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import json
 
-from as2fm_lsp.cli.formats.report import Report
+from as2fm_lsp.cli.formats.report import CheckReport
 
 
-def render(report: Report) -> str:
+def render(report: CheckReport) -> str:
     rows = [
         {
             "file": entry.file,

@@ -82,7 +82,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Report:
+class CheckReport:
     """Attributes:
     checked: how many files were checked.
     limit: the least severity that makes the check fail.

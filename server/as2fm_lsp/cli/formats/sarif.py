@@ -12,7 +12,7 @@ import urllib.parse
 from collections import Counter
 from typing import Any
 
-from as2fm_lsp.cli.formats.report import Entry, LineRange, Report
+from as2fm_lsp.cli.formats.report import CheckReport, Entry, LineRange
 from roaml import __version__
 from roaml.project.paths import slashed
 from roaml.rules import BY_CODE, cited, document
@@ -23,7 +23,7 @@ MAX_RESULTS = 25_000
 _LEVELS = {"error": "error", "warning": "warning", "information": "note", "hint": "note"}
 
 
-def render(report: Report) -> str:
+def render(report: CheckReport) -> str:
     entries = report.entries[:MAX_RESULTS]
     codes = sorted({entry.code for entry in entries})
     seen: Counter[str] = Counter()

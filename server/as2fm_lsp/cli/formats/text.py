@@ -5,20 +5,20 @@ from __future__ import annotations
 
 import unicodedata
 
-from as2fm_lsp.cli.formats.report import Entry, Report
+from as2fm_lsp.cli.formats.report import CheckReport, Entry
 from roaml.diagnostics import Severity
 
 _COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFORMATION: "36", Severity.HINT: "34"}
 _MAX_COLUMNS = 160
 
 
-def render(report: Report) -> str:
+def render(report: CheckReport) -> str:
     paint = _paint if report.color else _plain
     blocks = [_block(entry, paint) for entry in report.entries]
     return "".join(block + "\n" for block in blocks) + summary(report) + "\n"
 
 
-def summary(report: Report) -> str:
+def summary(report: CheckReport) -> str:
     """The number of diagnostics of each severity, and of files."""
     counts = dict.fromkeys(sorted(Severity, reverse=True), 0)
     for entry in report.entries:

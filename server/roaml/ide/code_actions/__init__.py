@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from roaml.diagnostics import Diagnostic, Fix
-from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, Action, Change, whole
+from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, CodeAction, WorkspaceEdit, whole
 from roaml.ide.code_actions.quick_fixes import repairs
 from roaml.ide.code_actions.refactorings import refactorings
 from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
@@ -15,7 +15,7 @@ from roaml.project.workspace import Snapshot
 from roaml.text import Span
 
 
-def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]) -> Iterator[Action]:
+def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]) -> Iterator[CodeAction]:
     """All code actions at a place, of the requested kinds.
 
     Args:
@@ -37,21 +37,21 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str
         yield from _fix_file(snapshot, path)
 
 
-def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
+def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """All fixes of a diagnostic: first those of its rule, then those that change other files."""
     for fix in diagnostic.fixes:
-        yield Action(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
+        yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
     titles = {fix.title for fix in diagnostic.fixes}
     for action in repairs(snapshot, diagnostic):
         if action.title not in titles:
             yield action
 
 
-def _made(path: str, fix: Fix) -> Change:
-    return Change({path: fix.edits})
+def _made(path: str, fix: Fix) -> WorkspaceEdit:
+    return WorkspaceEdit({path: fix.edits})
 
 
-def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[Action]:
+def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
     """A fix of all findings of a rule in the file, if more than one has an obvious fix."""
     mendable = [diagnostic for diagnostic in found if diagnostic.code == code and preferred_fix(diagnostic)]
     if len(mendable) > 1:
@@ -59,7 +59,7 @@ def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code
         def choose(diagnostic: Diagnostic) -> Fix | None:
             return preferred_fix(diagnostic) if diagnostic.code == code else None
 
-        yield Action(
+        yield CodeAction(
             f"Fix all `{code}` in this file",
             QUICK_FIX,
             lambda: _all(snapshot, path, choose, careful=False),
@@ -67,14 +67,14 @@ def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code
         )
 
 
-def _fix_file(snapshot: Snapshot, path: str) -> Iterator[Action]:
+def _fix_file(snapshot: Snapshot, path: str) -> Iterator[CodeAction]:
     """All safe fixes of the file."""
     if any(safe_fix(diagnostic) for diagnostic in snapshot.checker.diagnostics(path)):
         title = "Apply all safe fixes in this file"
-        yield Action(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))
+        yield CodeAction(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))
 
 
-def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> Change:
+def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> WorkspaceEdit:
     source = snapshot.analysis.source(path)
     after = fix_all(snapshot, (path,), choose, careful=careful)
-    return Change({path: whole(source.text, after[path])}) if source and path in after else Change()
+    return WorkspaceEdit({path: whole(source.text, after[path])}) if source and path in after else WorkspaceEdit()

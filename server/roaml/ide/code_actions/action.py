@@ -18,7 +18,7 @@ KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class WorkspaceEdit:
     """Attributes:
     edits: of files that are there, by path; those of one file do not overlap.
     created: the text of new files, by path.
@@ -34,7 +34,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Action:
+class CodeAction:
     """A code action at a place.
 
     Attributes:
@@ -47,14 +47,14 @@ class Action:
 
     title: str
     kind: str
-    make: Callable[[], Change]
+    make: Callable[[], WorkspaceEdit]
     mends: Diagnostic | None = None
     preferred: bool = False
     resources: tuple[str, ...] = ()
 
 
-def known(change: Change) -> Callable[[], Change]:
-    """A change that is already computed, as `Action.make`."""
+def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
+    """A change that is worked out already, as `CodeAction.make`."""
     return lambda: change
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.ide.code_actions.action import REWRITE, Action, Change, whole
+from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit, whole
 from roaml.project.migrate import CODES, migrate
 from roaml.project.workspace import Snapshot
 from roaml.text import Span
@@ -13,7 +13,7 @@ from roaml.text import Span
 TITLE = "Convert the system to the current dialect"
 
 
-def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]:
+def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
     """Offered at spellings of the older dialect, in a file of a system of that dialect."""
     analysis = snapshot.analysis
     systems = analysis.memberships.get(path, ())
@@ -21,10 +21,10 @@ def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]:
         return
     found = (d for d in snapshot.checker.diagnostics(path) if d.code in CODES)
     if any(d.span.start <= place.end and place.start <= d.span.end for d in found):
-        yield Action(TITLE, REWRITE, lambda: _convert(snapshot, path), resources=("rename",))
+        yield CodeAction(TITLE, REWRITE, lambda: _convert(snapshot, path), resources=("rename",))
 
 
-def _convert(snapshot: Snapshot, path: str) -> Change:
+def _convert(snapshot: Snapshot, path: str) -> WorkspaceEdit:
     """Migrates all systems that share a file with those of `path`, because a file cannot be in two dialects."""
     analysis = snapshot.analysis
     systems = list(analysis.memberships.get(path, ()))
@@ -32,7 +32,7 @@ def _convert(snapshot: Snapshot, path: str) -> Change:
         for file in analysis.files_of(system):
             systems += [each for each in analysis.memberships.get(file, ()) if each not in systems]
     found = migrate(systems, snapshot.with_texts)
-    return Change(
+    return WorkspaceEdit(
         {each.path: edits for each in found if (edits := whole(each.before, each.after))},
         renamed={each.path: each.new_path for each in found if each.new_path != each.path},
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from roaml.ide.code_actions import new_file
-from roaml.ide.code_actions.action import Change
+from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.ide.code_actions.inputs import add_input
 from roaml.model.system import System, safe_name
 from roaml.model.tree import PortSetting, TreeNode
@@ -14,7 +14,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.paths import folder_of, name_of
 
 
-def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], Change]]]:
+def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:
     """The title and the change, if a new plugin is possible: a plugin cannot tick several children here."""
     systems = analysis.memberships.get(path, ())
     if (
@@ -41,13 +41,13 @@ def free_path(analysis: Analysis, system: str, name: str) -> str:
     return new_file.free_path(analysis, folder, new_file.file_name(name))
 
 
-def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target: str) -> Change:
+def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target: str) -> WorkspaceEdit:
     assert node.plugin is not None
     linked = analysis.system(systems[0])
     ports = [(*port_of(linked, setting),) for setting in node.ports]
     text = new_file.plugin(node.plugin.value, ports, child=bool(node.children))
     edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", target) for s in systems}
-    return Change({s: each for s, each in edits.items() if each}, {target: text})
+    return WorkspaceEdit({s: each for s, each in edits.items() if each}, {target: text})
 
 
 def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:

@@ -6,22 +6,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.edit.elements import removal
-from roaml.ide.code_actions.action import REWRITE, Action, Change, known
+from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit, known
 from roaml.model.tree import EXPLICIT, SUBTREES, TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.text import Span, TextEdit, computed
 
 
-def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[Action]:
+def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[CodeAction]:
     """Convert a node to the other form."""
     edits = _other_form(analysis, path, node)
     if edits:
         title = "Write the node in its explicit form" if node.compact else "Write the node in its compact form"
-        yield Action(title, REWRITE, known(_change(analysis, path, edits)))
+        yield CodeAction(title, REWRITE, known(_change(analysis, path, edits)))
 
 
-def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[Action]:
+def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
     """Convert all nodes to one form, offered at the start tags of the file and its trees."""
     file = analysis.tree(path)
     if file is None:
@@ -34,15 +34,15 @@ def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[Action]:
         if any(_other_form(analysis, path, node) for node in found):
             form = "compact" if compact else "explicit"
 
-            def make(found: list[TreeNode] = found) -> Change:
+            def make(found: list[TreeNode] = found) -> WorkspaceEdit:
                 return _change(analysis, path, [edit for node in found for edit in _other_form(analysis, path, node)])
 
-            yield Action(f"Write all nodes in their {form} form", REWRITE, make)
+            yield CodeAction(f"Write all nodes in their {form} form", REWRITE, make)
 
 
-def _change(analysis: Analysis, path: str, edits: list[TextEdit]) -> Change:
+def _change(analysis: Analysis, path: str, edits: list[TextEdit]) -> WorkspaceEdit:
     source = analysis.source(path)
-    return Change({path: tuple(in_layout(source, edits))}) if source else Change()
+    return WorkspaceEdit({path: tuple(in_layout(source, edits))}) if source else WorkspaceEdit()
 
 
 def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]:

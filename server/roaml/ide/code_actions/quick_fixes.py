@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from roaml.diagnostics import Diagnostic
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
-from roaml.ide.code_actions.action import QUICK_FIX, Action, Change, known
+from roaml.ide.code_actions.action import QUICK_FIX, CodeAction, WorkspaceEdit, known
 from roaml.ide.code_actions.inputs import add_input, move_input
 from roaml.ide.code_actions.new_plugin import port_of, skeletons
 from roaml.ide.rename import Renaming, rename
@@ -37,13 +37,13 @@ from roaml.rules.systems.input_count import InputCount
 from roaml.rules.trees.blackboard_type_conflict import TypeConflict
 from roaml.text import SourceFile, Span, TextEdit
 
-_MOST = 3
+_MAX_FILES = 3
 """The maximum number of files that are offered instead of a missing one."""
 
 _Edits = dict[str, tuple[TextEdit, ...]]
 
 
-def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """The fixes of a diagnostic, in addition to those of its rule."""
     repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
@@ -51,15 +51,20 @@ def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
 
 
 def _action(
-    diagnostic: Diagnostic, title: str, make: Callable[[], Change], *, preferred: bool = False, creates: bool = False
-) -> Action:
-    return Action(title, QUICK_FIX, make, diagnostic, preferred, ("create",) if creates else ())
+    diagnostic: Diagnostic,
+    title: str,
+    make: Callable[[], WorkspaceEdit],
+    *,
+    preferred: bool = False,
+    creates: bool = False,
+) -> CodeAction:
+    return CodeAction(title, QUICK_FIX, make, diagnostic, preferred, ("create",) if creates else ())
 
 
 # --------------------------------------------------------- files that are missing
 
 
-def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Use a file with a similar name, or create a new one."""
     analysis, system = snapshot.analysis, diagnostic.path
     listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
@@ -69,16 +74,18 @@ def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action
     of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.wanted)
     yield from _other_files(analysis, diagnostic, listed.path, of_kind)
     text = _NEW.get(listed.input.type.value if listed.input.type else "")
-    is_missing = diagnostic.facts == UnusableFile(Problem.MISSING)
+    is_missing = diagnostic.facts == UnusableFile(UnreadableReason.MISSING)
     if text is not None and is_missing and is_on_disk(listed.path):
         yield from _create(diagnostic, listed, text)
 
 
-def _create(diagnostic: Diagnostic, listed: ListedFile, text: Callable[[str], str]) -> Iterator[Action]:
+def _create(diagnostic: Diagnostic, listed: ListedFile, text: Callable[[str], str]) -> Iterator[CodeAction]:
     path, stem = listed.path, new_file.stem_of(listed.path)
     if split_name(path)[1] and stem:
         content = text(new_file.camel_case(stem))
-        yield _action(diagnostic, f"Create `{name_of(path)}`", known(Change(created={path: content})), creates=True)
+        yield _action(
+            diagnostic, f"Create `{name_of(path)}`", known(WorkspaceEdit(created={path: content})), creates=True
+        )
 
 
 _NEW: dict[str, Callable[[str], str]] = {
@@ -89,7 +96,7 @@ _NEW: dict[str, Callable[[str], str]] = {
 }
 
 
-def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     analysis = snapshot.analysis
     file = analysis.tree(diagnostic.path)
     include = next((i for i in file.includes if i.path and i.path.span == diagnostic.span), None) if file else None
@@ -102,7 +109,7 @@ def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Act
         yield from _other_files(analysis, diagnostic, target, trees)
 
 
-def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[Action]:
+def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[CodeAction]:
     """Files that may be meant instead of `path`: with the same name elsewhere, or with a similar one."""
     written = _text_at(analysis, diagnostic)
     by_name: dict[str, list[str]] = {}
@@ -112,16 +119,16 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
     name = name_of(path)
     close = dict.fromkeys((*([name] if name in by_name else []), *close_names(name, by_name)))
     found = [other for each in close for other in by_name[each]]
-    for number, other in enumerate(found[:_MOST]):
+    for number, other in enumerate(found[:_MAX_FILES]):
         new = new_file.relative(other, diagnostic.path, [written])
-        change = Change({diagnostic.path: (TextEdit(diagnostic.span, _attribute(new)),)})
+        change = WorkspaceEdit({diagnostic.path: (TextEdit(diagnostic.span, _attribute(new)),)})
         yield _action(diagnostic, f"Change to `{new}`", known(change), preferred=number == 0)
 
 
 # ------------------------------------------------------------ plugins and inputs
 
 
-def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """List the file that contains the plugin, or create one."""
     analysis = snapshot.analysis
     node = _node_at(analysis, diagnostic)
@@ -155,12 +162,12 @@ def _is_machine(analysis: Analysis, path: str, name: str) -> bool:
     return machine is not None and machine.name is not None and machine.name.value == name
 
 
-def _list(analysis: Analysis, systems: Iterable[str], path: str) -> Change:
+def _list(analysis: Analysis, systems: Iterable[str], path: str) -> WorkspaceEdit:
     edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", path) for s in systems}
-    return Change({system: edit for system, edit in edits.items() if edit})
+    return WorkspaceEdit({system: edit for system, edit in edits.items() if edit})
 
 
-def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Move a plugin that is listed as a node to the right section."""
     analysis = snapshot.analysis
     for system in analysis.memberships.get(diagnostic.path, ()):
@@ -172,22 +179,22 @@ def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Act
                 return
 
 
-def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: ListedFile) -> Action:
+def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: ListedFile) -> CodeAction:
     title = f"List `{name_of(listed.path)}` as a plugin in `{name_of(system)}`"
 
-    def make() -> Change:
+    def make() -> WorkspaceEdit:
         edits = move_input(analysis, system, listed, "behavior_tree", "bt-plugin-ascxml")
-        return Change({system: edits}) if edits else Change()
+        return WorkspaceEdit({system: edits}) if edits else WorkspaceEdit()
 
     return _action(diagnostic, title, make, preferred=True)
 
 
-def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     if diagnostic.facts == InputCount(FileKind.TREE):
         yield from _list_file(snapshot, diagnostic, "behavior_tree", "bt.cpp-xml", FileKind.TREE)
 
 
-def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """List a property file from the folder in a system without properties."""
     facts = diagnostic.facts
     if isinstance(facts, MissingChild) and facts.parent in SYSTEM.roots and facts.name == "properties":
@@ -196,15 +203,15 @@ def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
 
 def _list_file(
     snapshot: Snapshot, diagnostic: Diagnostic, section: str, type_: str, kind: FileKind
-) -> Iterator[Action]:
+) -> Iterator[CodeAction]:
     """List a file from the folder of the system file, or below it."""
     analysis, system = snapshot.analysis, diagnostic.path
     folder = folder_of(system)
     for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
-        if number < _MOST:
+        if number < _MAX_FILES:
             title = f"List `{new_file.relative(path, system)}`"
             edits = add_input(analysis, system, section, type_, path)
-            change = Change({system: edits}) if edits else Change()
+            change = WorkspaceEdit({system: edits}) if edits else WorkspaceEdit()
             if change:
                 yield _action(diagnostic, title, known(change), preferred=number == 0)
 
@@ -212,7 +219,7 @@ def _list_file(
 # --------------------------------------------------------------------- ports
 
 
-def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Remove a port, and its settings in the trees."""
     if diagnostic.fixes:
         return
@@ -222,11 +229,11 @@ def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]
         return
     key, element = port.key.value, port.element
 
-    def make() -> Change:
+    def make() -> WorkspaceEdit:
         edits = _settings(snapshot.analysis, machine, diagnostic.path, key)
         source = snapshot.analysis.source(diagnostic.path)
         assert source is not None
-        return Change({**edits, diagnostic.path: _removals(source, element.span)})
+        return WorkspaceEdit({**edits, diagnostic.path: _removals(source, element.span)})
 
     yield _action(diagnostic, f"Remove the port `{key}` here and in the tree", make, preferred=True)
 
@@ -253,7 +260,7 @@ def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edi
     return edits
 
 
-def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Declare a port in the plugin, if all its nodes set it."""
     if any(fix.preferred for fix in diagnostic.fixes):
         return
@@ -289,11 +296,11 @@ def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action
             if machine.ports
             else first_in(document, machine.element, text)
         )
-        change = Change({plugin: tuple(in_layout(source, (edit,)))})
+        change = WorkspaceEdit({plugin: tuple(in_layout(source, (edit,)))})
         yield _action(diagnostic, f"Declare the port `{key}` in `{node.plugin.value}`", known(change))
 
 
-def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Remove an unused plugin, unless a tree that is not executed uses it."""
     analysis, system = snapshot.analysis, diagnostic.path
     source = analysis.source(system)
@@ -303,11 +310,11 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Actio
         return
     used = (n.plugin.value for tree in analysis.tree_paths(system) for n in _all_nodes(analysis, tree) if n.plugin)
     if machine.name.value not in used:
-        change = Change({system: _removals(source, listed.input.element.span)})
+        change = WorkspaceEdit({system: _removals(source, listed.input.element.span)})
         yield _action(diagnostic, "Remove this `<input>`", known(change), preferred=True)
 
 
-def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Declare a port with the type that the other port of the same variable has."""
     analysis = snapshot.analysis
     facts, node = diagnostic.facts, _node_at(analysis, diagnostic)
@@ -320,14 +327,14 @@ def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Actio
         machine = analysis.machine(path) if path else None
         port = next((p for p in machine.ports if p.key and p.key.value == key), None) if machine else None
         if port is not None and port.type is not None:
-            change = Change({path: (TextEdit(port.type.span, other),)})
+            change = WorkspaceEdit({path: (TextEdit(port.type.span, other),)})
             yield _action(diagnostic, f"Declare `{key}` of `{node.plugin.value}` as {other}", known(change))
 
 
 # --------------------------------------------------------------------- names
 
 
-def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
+def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Rename something with an invalid name, in all its places."""
     if diagnostic.fixes or not isinstance(diagnostic.facts, WrongName):
         return
@@ -341,7 +348,7 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Action]:
         new = f"{new}_value"
         found = rename(analysis, diagnostic.path, diagnostic.span.start, new)
     if isinstance(found, Renaming):
-        change = Change(found.edits)
+        change = WorkspaceEdit(found.edits)
         yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
 
 
@@ -382,7 +389,7 @@ def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
 
 
-FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[Action]]] = {
+FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeAction]]] = {
     "blackboard-type-conflict": _type_conflict,
     "input-count": _no_tree,
     "invalid-name": _name,

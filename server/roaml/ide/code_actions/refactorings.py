@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.edit.elements import after, halts, last_in
 from roaml.ide.code_actions import migrate, new_plugin, node_form
-from roaml.ide.code_actions.action import EXTRACT, REWRITE, Action, Change, known
+from roaml.ide.code_actions.action import EXTRACT, REWRITE, CodeAction, WorkspaceEdit, known
 from roaml.language import HL_SCXML
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Declaration, Machine, State
@@ -23,7 +23,7 @@ _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.rece
 """The handlers of the results that an action may have."""
 
 
-def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]:
+def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
     """The refactorings at a place."""
     analysis = snapshot.analysis
     machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
@@ -35,15 +35,15 @@ def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[Action]
     yield from migrate.actions(snapshot, path, place)
 
 
-def _edited(analysis: Analysis, path: str, *edits: Edit) -> Change:
+def _edited(analysis: Analysis, path: str, *edits: Edit) -> WorkspaceEdit:
     source = analysis.source(path)
-    return Change({path: tuple(in_layout(source, edits))}) if source else Change()
+    return WorkspaceEdit({path: tuple(in_layout(source, edits))}) if source else WorkspaceEdit()
 
 
 # ------------------------------------------------------------------ machines
 
 
-def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[Action]:
+def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
     """Add a `<bt_halt>` to the state at the caret, or to all states."""
     document, root = analysis.document(path), machine.element
     state = _state_at(machine, place)
@@ -52,13 +52,13 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
     here = halts(document, root, [state.element])
     everywhere = halts(document, root, root.elements)
     if here:
-        yield Action("Add `<bt_halt>` to this state", REWRITE, known(_edited(analysis, path, *here)))
+        yield CodeAction("Add `<bt_halt>` to this state", REWRITE, known(_edited(analysis, path, *here)))
     if here and len(everywhere) > 1:
         title = "Add `<bt_halt>` to every state with `<bt_tick>`"
-        yield Action(title, REWRITE, known(_edited(analysis, path, *everywhere)))
+        yield CodeAction(title, REWRITE, known(_edited(analysis, path, *everywhere)))
 
 
-def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[Action]:
+def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
     """Add handlers for all results of an action to the state at the caret."""
     document, state = analysis.document(path), _state_at(machine, place)
     if document is None or state is None or state.id is None or not state.element.complete:
@@ -83,7 +83,7 @@ def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> It
             )
             which = "the other" if known_handlers else "all"
             title = f"Handle {which} results of `{client.handle.value}` in this state"
-            yield Action(title, REWRITE, known(_edited(analysis, path, edit)))
+            yield CodeAction(title, REWRITE, known(_edited(analysis, path, edit)))
 
 
 def _sends_goals(machine: Machine, client: Declaration) -> bool:
@@ -103,7 +103,7 @@ def _state_at(machine: Machine, place: Span) -> State | None:
 # --------------------------------------------------------------------- trees
 
 
-def _nodes(analysis: Analysis, path: str, place: Span) -> Iterator[Action]:
+def _nodes(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
     node = _node_at(analysis, path, place)
     if node is None:
         yield from node_form.whole_file(analysis, path, place)
@@ -111,7 +111,7 @@ def _nodes(analysis: Analysis, path: str, place: Span) -> Iterator[Action]:
     yield from node_form.one_node(analysis, path, node)
     if node.plugin is not None and not node.is_subtree and _is_unknown(analysis, path, node):
         for title, make in new_plugin.skeletons(analysis, path, node):
-            yield Action(title, EXTRACT, make, resources=("create",))
+            yield CodeAction(title, EXTRACT, make, resources=("create",))
 
 
 def _is_unknown(analysis: Analysis, path: str, node: TreeNode) -> bool:

@@ -14,7 +14,7 @@ from roaml.ide.completion.attributes import attributes
 from roaml.ide.completion.document import document
 from roaml.ide.completion.documents import documents
 from roaml.ide.completion.elements import elements
-from roaml.ide.completion.item import Completions, Item, ItemKind, Rank, escaped, plain
+from roaml.ide.completion.item import CompletionItem, Completions, ItemKind, Rank, escaped, plain
 from roaml.ide.completion.json_documents import in_json
 from roaml.ide.completion.place import AttributeName, AttributeValue, Content, EndTag, Place, StartTag, place_at
 from roaml.ide.completion.request import Request, Subject
@@ -23,12 +23,12 @@ from roaml.ide.syntax import Typed, xml_file
 from roaml.project.workspace import Snapshot
 from roaml.text import Span
 
-__all__ = ["Completions", "Item", "ItemKind", "Rank", "complete", "document", "plain"]
+__all__ = ["CompletionItem", "Completions", "ItemKind", "Rank", "complete", "document", "plain"]
 
 TRIGGERS = ("<", " ", '"', "'", "/", "=", ".", "{", "@", "_")
 """Characters after which an editor requests completion automatically."""
 
-MOST = 400
+MAX_ITEMS = 400
 """The maximum number of items in one list; if there are more, the editor requests the list again after more typing."""
 
 
@@ -52,7 +52,7 @@ def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> C
     return None if found is None else _shortened(file.document.text, offset, *found)
 
 
-def _at(request: Request, place: Place) -> tuple[Span, Iterable[Item]] | None:
+def _at(request: Request, place: Place) -> tuple[Span, Iterable[CompletionItem]] | None:
     match place:
         case StartTag():
             items = list(elements(request, place.parents, bare=place.bare))
@@ -62,7 +62,7 @@ def _at(request: Request, place: Place) -> tuple[Span, Iterable[Item]] | None:
         case EndTag():
             name = place.name
             close = ">" if place.bare else ""
-            return (place.span, [Item(name, ItemKind.ELEMENT, f"{escaped(name)}{close}")]) if name else None
+            return (place.span, [CompletionItem(name, ItemKind.ELEMENT, f"{escaped(name)}{close}")]) if name else None
         case AttributeName():
             bare = place.attribute is None or not place.attribute.has_value
             found = attributes(request, place.parents, place.each, bare=bare)
@@ -75,12 +75,12 @@ def _at(request: Request, place: Place) -> tuple[Span, Iterable[Item]] | None:
             return _content(request, place)
 
 
-def _end(parent: Typed, lead: str) -> Item:
+def _end(parent: Typed, lead: str) -> CompletionItem:
     label = f"{lead}{parent.element.name}"
-    return Item(label, ItemKind.ELEMENT, f"{escaped(label)}>", "end tag", rank=Rank.BEST)
+    return CompletionItem(label, ItemKind.ELEMENT, f"{escaped(label)}>", "end tag", rank=Rank.BEST)
 
 
-def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[Item]] | None:
+def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[CompletionItem]] | None:
     if place.each.type is None and not any(each.element.name == "BehaviorTree" for each in place.parents):
         return None
     type_ = place.each.type or request.file.grammar.elements["Action"]
@@ -96,12 +96,12 @@ def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[Item
     return found
 
 
-def _with(item: Item, insert: str) -> Item:
+def _with(item: CompletionItem, insert: str) -> CompletionItem:
     filter_ = item.filter or item.label
-    return Item(item.label, item.kind, insert, item.detail, item.about, item.rank, filter_, item.deprecated)
+    return CompletionItem(item.label, item.kind, insert, item.detail, item.about, item.rank, filter_, item.deprecated)
 
 
-def _content(request: Request, place: Content) -> tuple[Span, Iterable[Item]] | None:
+def _content(request: Request, place: Content) -> tuple[Span, Iterable[CompletionItem]] | None:
     parent = place.parents[-1] if place.parents else None
     if parent is not None and parent.type is not None and (parent.type.value or parent.type.refers):
         text = request.file.document.text[place.text.start : place.text.end]
@@ -120,10 +120,10 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Item]] | 
     return place.span, _tags(request, place)
 
 
-def _tags(request: Request, place: Content) -> list[Item]:
+def _tags(request: Request, place: Content) -> list[CompletionItem]:
     """Whole elements, where not even the `<` has been typed."""
     found = [
-        Item(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
+        CompletionItem(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
         for i in elements(request, place.parents, bare=True)
     ]
     if place.parents and not place.parents[-1].element.complete:
@@ -132,7 +132,7 @@ def _tags(request: Request, place: Content) -> list[Item]:
     return found
 
 
-def _tag(item: Item) -> str:
+def _tag(item: CompletionItem) -> str:
     """Skeletons of several elements and of fields, which include their `<`."""
     return item.snippet if item.snippet.startswith("<") else f"<{item.snippet}"
 
@@ -145,17 +145,17 @@ def _new_document(snapshot: Snapshot, path: str) -> Completions | None:
     return Completions(Span(0, len(source.text)), items) if items else None
 
 
-def _shortened(text: str, offset: int, span: Span, items: Iterable[Item]) -> Completions:
+def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionItem]) -> Completions:
     """The items that match the typed text, the best first; at most as many as an editor can show at once."""
     before, after = text[span.start : offset], text[offset : span.end]
     span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
     unique = {(item.label, item.insert): item for item in items}.values()
     ordered = sorted(unique, key=lambda item: item.rank)
-    if len(ordered) <= MOST:
+    if len(ordered) <= MAX_ITEMS:
         return Completions(span, tuple(ordered))
     typed = text[span.start : offset].lower()
     fitting = [item for item in ordered if _may_become(typed, (item.filter or item.label).lower())]
-    return Completions(span, tuple(fitting[:MOST]), incomplete=True)
+    return Completions(span, tuple(fitting[:MAX_ITEMS]), incomplete=True)
 
 
 def _may_become(typed: str, label: str) -> bool:

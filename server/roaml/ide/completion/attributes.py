@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.elements import likely
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.ports import ports_to_add
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.frames import names_in
@@ -17,7 +17,7 @@ from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
 
 
-def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bare: bool) -> Iterator[Item]:
+def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bare: bool) -> Iterator[CompletionItem]:
     """The attributes that may be inserted in a start tag.
 
     Args:
@@ -48,7 +48,7 @@ def _plugin_type() -> ElementType:
     return BEHAVIOR_TREE.elements["Action"]
 
 
-def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare: bool) -> Item:
+def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare: bool) -> CompletionItem:
     about = Symbol(subject.key, SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
     insert = ""
     if bare:
@@ -58,10 +58,12 @@ def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare:
     if attribute.use or attribute.ignored is not None or attribute.name.startswith("_"):
         rank = Rank.LATE
     detail = "required" if attribute.required else ""
-    return Item(attribute.name, ItemKind.ATTRIBUTE, insert, detail, about, rank, deprecated=bool(attribute.use))
+    return CompletionItem(
+        attribute.name, ItemKind.ATTRIBUTE, insert, detail, about, rank, deprecated=bool(attribute.use)
+    )
 
 
-def _remappings(request: Request, subject: Subject, given: set[str]) -> Iterator[Item]:
+def _remappings(request: Request, subject: Subject, given: set[str]) -> Iterator[CompletionItem]:
     """The variables of the tree of a subtree node."""
     id_ = subject.element.get("ID") if subject.element else None
     path, tree = request.trees.trees.get(id_.value if id_ else "", ("", None))
@@ -71,4 +73,4 @@ def _remappings(request: Request, subject: Subject, given: set[str]) -> Iterator
         if name not in given and not name.startswith("@"):
             insert = str(Snippet().text(f'{name}="').stop([f"{{{name}}}"]).text('"'))
             about = request.trees.variable(path, id_.value, name)
-            yield Item(name, ItemKind.PORT, insert, "variable of the subtree", about, Rank.LIKELY)
+            yield CompletionItem(name, ItemKind.PORT, insert, "variable of the subtree", about, Rank.LIKELY)

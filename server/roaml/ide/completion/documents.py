@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.model.kinds import MACHINE_EXTENSIONS
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -70,7 +70,7 @@ _STRUCTS = """\
 """
 
 
-def documents(path: str) -> Iterator[Item]:
+def documents(path: str) -> Iterator[CompletionItem]:
     """The documents that an empty file may become."""
     name = path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
     if path.lower().endswith(MACHINE_EXTENSIONS):
@@ -82,5 +82,5 @@ def documents(path: str) -> Iterator[Item]:
         yield _item("struct declarations", _STRUCTS, Rank.USUAL)
 
 
-def _item(label: str, snippet: str, rank: Rank) -> Item:
-    return Item(label, ItemKind.SKELETON, _DECLARATION + snippet, "a new file", rank=rank, filter=f"<{label}")
+def _item(label: str, snippet: str, rank: Rank) -> CompletionItem:
+    return CompletionItem(label, ItemKind.SKELETON, _DECLARATION + snippet, "a new file", rank=rank, filter=f"<{label}")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.fields import fields_to_add, sending
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import plugins, port_list
 from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
@@ -22,10 +22,10 @@ from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_T
 from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
-_MOST_CHOICES = 20
+_MAX_CHOICES = 20
 
 
-def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[Item]:
+def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
     """The elements that are allowed inside the last of `parents`.
 
     Args:
@@ -92,7 +92,7 @@ def likely(request: Request, subject: Subject, attribute: AttributeType) -> list
     if attribute.value == "ros-type":
         return []
     found = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
-    return found if len(found) <= _MOST_CHOICES else []
+    return found if len(found) <= _MAX_CHOICES else []
 
 
 def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
@@ -119,12 +119,12 @@ def _close(made: Snippet, name: str, type_: ElementType | None) -> None:
         made.text("/>").end()
 
 
-def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> Item:
+def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> CompletionItem:
     insert = snippet(request, type_, parents) if bare else ""
     rank = Rank.LATE if type_.ignored or type_.use or _has_no_handle(request, type_) else Rank.USUAL
     above = parents[-1].element.name if parents else ""
     about = Symbol(above, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
-    return Item(type_.name, ItemKind.ELEMENT, insert, about=about, rank=rank, deprecated=bool(type_.use))
+    return CompletionItem(type_.name, ItemKind.ELEMENT, insert, about=about, rank=rank, deprecated=bool(type_.use))
 
 
 def _has_no_handle(request: Request, type_: ElementType) -> bool:
@@ -138,20 +138,20 @@ def _has_no_handle(request: Request, type_: ElementType) -> bool:
 # ------------------------------------------------------------------------ trees
 
 
-def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[Item]:
+def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
     """Plugins of the system, nodes of BehaviorTree.CPP and subtrees."""
     grammar = request.file.grammar
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
         has_children = outline.plugin.children > 0 or outline.plugin.any_child
         insert = _plugin(request, name, grammar, has_children=has_children) if bare else ""
-        yield Item(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
+        yield CompletionItem(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
     for name in request.trees.trees if bare else ():
         around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
         if name and (around is None or around.value != name):
             about = request.trees.tree_symbol(request.path, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
-            yield Item(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
+            yield CompletionItem(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
     yield from _known_nodes(request, bare=bare)
     for type_ in grammar.elements.values():
         is_known = request.forest is not None and type_.name not in (*EXPLICIT, *SUBTREES[:1])
@@ -159,7 +159,7 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
             yield _node(request, type_, parents, bare=bare)
 
 
-def _known_nodes(request: Request, *, bare: bool) -> Iterator[Item]:
+def _known_nodes(request: Request, *, bare: bool) -> Iterator[CompletionItem]:
     """The nodes that libraries and models describe, for a tree that belongs to no system."""
     forest = request.forest
     for name in dict.fromkeys(forest.names) if forest else ():
@@ -169,10 +169,10 @@ def _known_nodes(request: Request, *, bare: bool) -> Iterator[Item]:
             detail = f"{known.kind.value}, {known.library}" if known.library else known.kind.value
             about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
             rank = Rank.USUAL if known.library else Rank.BEST
-            yield Item(name, ItemKind.PLUGIN, insert, detail, about, rank)
+            yield CompletionItem(name, ItemKind.PLUGIN, insert, detail, about, rank)
 
 
-def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> Item:
+def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> CompletionItem:
     if type_.name in (*EXPLICIT, *SUBTREES):
         insert = snippet(request, type_, parents) if bare else ""
     else:
@@ -180,7 +180,7 @@ def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
     rank = Rank.USUAL if type_.translated and not type_.use else Rank.LAST
     detail = type_.node if type_.translated else f"{type_.node}, cannot be translated"
     about = Symbol(parents[-1].element.name, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
-    return Item(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
+    return CompletionItem(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
 
 
 def _plugin(request: Request, name: str, grammar: Grammar, *, has_children: bool) -> str:

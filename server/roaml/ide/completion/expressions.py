@@ -16,7 +16,7 @@ from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
 from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, Type, fits, unwrap, wrap
 from roaml.expr.zero import zero_text
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
@@ -87,7 +87,9 @@ def _object(text: str) -> str:
     return "" if open_ else text[at:]
 
 
-def in_expression(request: Request, subject: Subject, part: str, start: int) -> tuple[Span, list[Item]] | None:
+def in_expression(
+    request: Request, subject: Subject, part: str, start: int
+) -> tuple[Span, list[CompletionItem]] | None:
     """The completions at the caret in an expression that begins at `start`.
 
     Args:
@@ -109,7 +111,7 @@ def in_expression(request: Request, subject: Subject, part: str, start: int) -> 
     wanted = _wanted(request, subject, part)
     items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
     items += [
-        Item(
+        CompletionItem(
             name,
             ItemKind.VARIABLE,
             detail=str(type_),
@@ -120,27 +122,29 @@ def in_expression(request: Request, subject: Subject, part: str, start: int) -> 
         if name not in STATUSES
     ]
     items += [
-        Item(name, ItemKind.VALUE, detail="answer of the child", rank=Rank.LIKELY)
+        CompletionItem(name, ItemKind.VALUE, detail="answer of the child", rank=Rank.LIKELY)
         for name in events
         if name in STATUSES
     ]
-    items += [Item(word, ItemKind.VALUE, detail="bool", rank=_fitting(BOOL, wanted)) for word in ("true", "false")]
-    items.append(Item("Math", ItemKind.FUNCTION, detail="functions", rank=Rank.LATE))
+    items += [
+        CompletionItem(word, ItemKind.VALUE, detail="bool", rank=_fitting(BOOL, wanted)) for word in ("true", "false")
+    ]
+    items.append(CompletionItem("Math", ItemKind.FUNCTION, detail="functions", rank=Rank.LATE))
     items += [_function(function, "Math.", Rank.LATE) for function in FUNCTIONS.values()]
     return begun.span, items
 
 
-def initial_values(type_: Type) -> Iterator[Item]:
+def initial_values(type_: Type) -> Iterator[CompletionItem]:
     """Typical values of a type."""
     if type_ == UNKNOWN:
         return
     if type_ == BOOL:
-        yield Item("false", ItemKind.VALUE, rank=Rank.BEST)
-        yield Item("true", ItemKind.VALUE, rank=Rank.BEST)
+        yield CompletionItem("false", ItemKind.VALUE, rank=Rank.BEST)
+        yield CompletionItem("true", ItemKind.VALUE, rank=Rank.BEST)
         return
     snippet = Snippet()
     _literal(type_, snippet)
-    yield Item(zero_text(type_), ItemKind.VALUE, str(snippet), detail=str(type_), rank=Rank.BEST)
+    yield CompletionItem(zero_text(type_), ItemKind.VALUE, str(snippet), detail=str(type_), rank=Rank.BEST)
 
 
 def _literal(type_: Type, snippet: Snippet) -> None:
@@ -175,10 +179,10 @@ def _event_variables(request: Request, part: str) -> Mapping[str, Type]:
     return known
 
 
-def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> Item:
+def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> CompletionItem:
     scope = request.chart.scope if request.chart else ""
     about = variable(request.path, name, scope)
-    return Item(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, wanted))
+    return CompletionItem(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, wanted))
 
 
 def _fitting(type_: Type, wanted: Type | None) -> Rank:
@@ -188,14 +192,14 @@ def _fitting(type_: Type, wanted: Type | None) -> Rank:
     return Rank.BEST if fits(type_, wanted) else Rank.USUAL
 
 
-def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Iterator[Item]:
+def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Iterator[CompletionItem]:
     if object_ == "Math":
         yield from (_function(function, "", Rank.USUAL) for function in FUNCTIONS.values())
         return
     tree, findings = parse(Decoded(object_, 0))
     type_ = UNKNOWN if findings else infer(tree, scope.get)[0]
     if isinstance(type_, Array) or (isinstance(type_, Scalar) and type_.kind == "string"):
-        yield Item("length", ItemKind.MEMBER, detail=str(INT))
+        yield CompletionItem("length", ItemKind.MEMBER, detail=str(INT))
     # The member of an array of structs is the array of the members (docs/spec/types.md#leaves).
     inner, bounds = unwrap(type_)
     if not isinstance(inner, Struct):
@@ -204,10 +208,10 @@ def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Itera
         about = Symbol("", SymbolKind.FIELD, name, inner.name)
         if inner.what == "struct":
             about = Symbol(request.system_path or request.path, SymbolKind.MEMBER, name, inner.name)
-        yield Item(name, ItemKind.MEMBER, detail=str(wrap(member, bounds)), about=about)
+        yield CompletionItem(name, ItemKind.MEMBER, detail=str(wrap(member, bounds)), about=about)
 
 
-def _function(function: Function, prefix: str, rank: Rank) -> Item:
+def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
     snippet = Snippet().text(f"{prefix}{function.name}(")
     needed = function.parameters[: len(function.parameters) - function.optional]
     for number, parameter in enumerate(needed):
@@ -215,7 +219,9 @@ def _function(function: Function, prefix: str, rank: Rank) -> Item:
     snippet.text(")")
     detail = f"({', '.join(function.parameters)}) → {function.result}"
     label = f"{prefix}{function.name}"
-    return Item(label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", SymbolKind.FUNCTION, function.name), rank)
+    return CompletionItem(
+        label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", SymbolKind.FUNCTION, function.name), rank
+    )
 
 
 # ----------------------------------------------------------------- wanted types

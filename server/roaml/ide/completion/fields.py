@@ -8,17 +8,17 @@ from collections.abc import Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, Type, leaves
 from roaml.expr.zero import zero_text
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.language import ElementType
-from roaml.model.machine import Communicate, Declaration
+from roaml.model.machine import Declaration, RosSend
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS, find_handle, section_of
 from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
-def field_names(request: Request, subject: Subject) -> Iterator[Item]:
+def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """For the name of a `<field>`: the fields that are not set yet, first."""
     holder = subject.parents[-1].element if subject.parents else None
     statement = request.communicate(holder) if holder is not None else None
@@ -31,10 +31,10 @@ def field_names(request: Request, subject: Subject) -> Iterator[Item]:
         if path not in given:
             about = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner)
             rank = Rank.LIKELY if path in required else Rank.LATE
-            yield Item(path, ItemKind.MEMBER, detail=str(type_), about=about, rank=rank)
+            yield CompletionItem(path, ItemKind.MEMBER, detail=str(type_), about=about, rank=rank)
 
 
-def fields_to_add(request: Request, element: Element) -> Iterator[Item]:
+def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem]:
     """Inside of a sending element: each missing field, and all of them at once."""
     statement = request.communicate(element)
     if statement is None:
@@ -46,14 +46,16 @@ def fields_to_add(request: Request, element: Element) -> Iterator[Item]:
     if len(missing) > 1:
         insert = str(_all(Snippet(), {path: known[path][0] for path in missing}, "\n"))
         detail = ", ".join(missing)
-        yield Item("all missing fields", ItemKind.SKELETON, insert, detail, None, Rank.BEST, "field all missing")
+        yield CompletionItem(
+            "all missing fields", ItemKind.SKELETON, insert, detail, None, Rank.BEST, "field all missing"
+        )
     for path in missing:
         about = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], known[path][1])
         insert = str(_field(Snippet(), path, known[path][0]))
-        yield Item(f"field {path}", ItemKind.SKELETON, insert, str(known[path][0]), about, Rank.LIKELY)
+        yield CompletionItem(f"field {path}", ItemKind.SKELETON, insert, str(known[path][0]), about, Rank.LIKELY)
 
 
-def sending(request: Request, type_: ElementType) -> Iterator[Item]:
+def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
     """For each handle that an element may use: the element with all fields of the message."""
     name = type_.attributes.get("name")
     if name is None or "field" not in type_.children:
@@ -74,7 +76,7 @@ def sending(request: Request, type_: ElementType) -> Iterator[Item]:
             about = Symbol(request.path, declaration.kind, declaration.handle.value)
             label = f"{type_.name} {declaration.handle.value}"
             detail = ", ".join(required)
-            yield Item(label, ItemKind.SKELETON, str(made), detail, about, Rank.LIKELY)
+            yield CompletionItem(label, ItemKind.SKELETON, str(made), detail, about, Rank.LIKELY)
 
 
 def _all(made: Snippet, types: Mapping[str, Type], lead: str) -> Snippet:
@@ -89,7 +91,7 @@ def _field(made: Snippet, path: str, type_: Type) -> Snippet:
     return made.text(f'<field name="{path}" expr="').stop([zero_text(type_)]).text('"/>')
 
 
-def _fields(request: Request, statement: Communicate) -> Mapping[str, tuple[Type, str]]:
+def _fields(request: Request, statement: RosSend) -> Mapping[str, tuple[Type, str]]:
     """The dotted paths of all leaf fields, with their types and the message that contains them."""
     declaration = find_handle(request.machine, statement) if request.machine else None
     part = _part(request, declaration, statement.type)

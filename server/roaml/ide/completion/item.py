@@ -44,7 +44,7 @@ class Rank(enum.IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class CompletionItem:
     """One completion item.
 
     Attributes:
@@ -74,7 +74,7 @@ class Completions:
     """`span` is what the items replace. `incomplete` means that there are more: request again after more typing."""
 
     span: Span
-    items: tuple[Item, ...]
+    items: tuple[CompletionItem, ...]
     incomplete: bool = False
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet, escaped
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet, escaped
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Schema
 from roaml.model.kinds import FileKind
@@ -18,7 +18,7 @@ from roaml.text import Span
 _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCTS}
 
 
-def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Item]] | None:
+def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[CompletionItem]] | None:
     """The completions at a caret, and what they replace; `None` in other files, or if there are none."""
     kind = next(analysis.kind_in(path, system) for system in analysis.systems_of(path))
     grammar = _GRAMMARS.get(kind)
@@ -107,7 +107,7 @@ def _word(text: str, offset: int) -> Span:
 # ------------------------------------------------------------------------- keys
 
 
-def _keys(place: _Place) -> Iterator[Item]:
+def _keys(place: _Place) -> Iterator[CompletionItem]:
     if not isinstance(place.inside, JsonObject):
         return
     keys = place.grammar.keys(place.schema, place.inside)
@@ -118,7 +118,7 @@ def _keys(place: _Place) -> Iterator[Item]:
             rank = Rank.LIKELY if key.required else Rank.LATE if key.name == "comment" else Rank.USUAL
             about = Symbol(place.grammar.name, SymbolKind.JSON, key.name, place.grammar.text(key.schema))
             detail = "required" if key.required else ""
-            yield Item(key.name, ItemKind.ATTRIBUTE, insert, detail, about, rank, f'"{key.name}"')
+            yield CompletionItem(key.name, ItemKind.ATTRIBUTE, insert, detail, about, rank, f'"{key.name}"')
 
 
 def _with_value(grammar: JsonGrammar, name: str, schema: Schema) -> str:
@@ -139,12 +139,12 @@ def _with_value(grammar: JsonGrammar, name: str, schema: Schema) -> str:
 # ----------------------------------------------------------------------- values
 
 
-def _values(analysis: Analysis, path: str, place: _Place) -> Iterator[Item]:
+def _values(analysis: Analysis, path: str, place: _Place) -> Iterator[CompletionItem]:
     grammar, schema = place.grammar, place.schema
     for choice in grammar.choices(schema):
         rank = Rank.LATE if choice in _ALIASES else Rank.USUAL
         detail = _ALIASES.get(choice, "")
-        yield Item(choice, ItemKind.OPERATOR, _quoted(choice), detail, None, rank, f'"{choice}"')
+        yield CompletionItem(choice, ItemKind.OPERATOR, _quoted(choice), detail, None, rank, f'"{choice}"')
     if grammar is JSON_STRUCTS:
         yield from _references(analysis, path, place)
         return
@@ -153,7 +153,7 @@ def _values(analysis: Analysis, path: str, place: _Place) -> Iterator[Item]:
         yield from _names(analysis, path)
         yield from _operators(grammar, "formula" if is_formula else "expression")
         for word in ("true", "false"):
-            yield Item(word, ItemKind.VALUE, rank=Rank.LATE)
+            yield CompletionItem(word, ItemKind.VALUE, rank=Rank.LATE)
     elif grammar.is_a(schema, "property"):
         yield from _SKELETONS
 
@@ -162,17 +162,17 @@ def _quoted(text: str) -> str:
     return escaped(f'"{text}"')
 
 
-def _names(analysis: Analysis, path: str) -> Iterator[Item]:
+def _names(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
     """The variables of the translated systems."""
     for system in analysis.systems_of(path):
         for name, variable in (analysis.globals(system) if system else {}).items():
             about = Symbol(system or "", SymbolKind.GLOBAL, name)
             rank = Rank.LIKELY if name.endswith(".valid") else Rank.USUAL
             detail = str(variable.type)
-            yield Item(name, ItemKind.VARIABLE, _quoted(name), detail, about, rank, f'"{name}"')
+            yield CompletionItem(name, ItemKind.VARIABLE, _quoted(name), detail, about, rank, f'"{name}"')
 
 
-def _operators(grammar: JsonGrammar, kind: str) -> Iterator[Item]:
+def _operators(grammar: JsonGrammar, kind: str) -> Iterator[CompletionItem]:
     """An object for each operator, with all its required members."""
     for operator, described in grammar.operators(kind):
         if operator in _ALIASES:
@@ -187,10 +187,10 @@ def _operators(grammar: JsonGrammar, kind: str) -> Iterator[Item]:
         about = Symbol(grammar.name, SymbolKind.JSON, operator, grammar.text(described))
         rank = Rank.LATE if operator in _SELDOM else Rank.USUAL
         detail = grammar.title(described)
-        yield Item(f"{{{operator}}}", ItemKind.SKELETON, str(made), detail, about, rank, f"{{{operator}")
+        yield CompletionItem(f"{{{operator}}}", ItemKind.SKELETON, str(made), detail, about, rank, f"{{{operator}")
 
 
-def _references(analysis: Analysis, path: str, place: _Place) -> Iterator[Item]:
+def _references(analysis: Analysis, path: str, place: _Place) -> Iterator[CompletionItem]:
     """The definitions of a file of struct declarations."""
     if place.grammar.text(place.schema) != place.grammar.text(JSON_STRUCTS.definition("member")["properties"]["$ref"]):
         return
@@ -200,7 +200,7 @@ def _references(analysis: Analysis, path: str, place: _Place) -> Iterator[Item]:
         definitions = root.get(section) if isinstance(root, JsonObject) else None
         for member in definitions.members if isinstance(definitions, JsonObject) else ():
             label = f"#/{section}/{member.key}"
-            yield Item(label, ItemKind.TYPE, _quoted(label), rank=Rank.BEST, filter=f'"{label}"')
+            yield CompletionItem(label, ItemKind.TYPE, _quoted(label), rank=Rank.BEST, filter=f'"{label}"')
 
 
 _ALIASES = {
@@ -228,13 +228,13 @@ _SELDOM = frozenset(
 """Operators that are rarely used in properties."""
 
 
-def _property(label: str, detail: str, path: Callable[[Snippet], Snippet]) -> Item:
+def _property(label: str, detail: str, path: Callable[[Snippet], Snippet]) -> CompletionItem:
     made = (
         Snippet().text('{\n\t"name": "').stop().text('",\n\t"expression": {\n\t\t"op": "filter",\n\t\t"fun": "values"')
     )
     made.text(',\n\t\t"values": {\n\t\t\t"op": "').stop(("Pmin", "Pmax")).text('",\n\t\t\t"exp": ')
     path(made).text('\n\t\t},\n\t\t"states": {"op": "initial"}\n\t}\n}')
-    return Item(label, ItemKind.SKELETON, str(made), detail, rank=Rank.BEST, filter=f"{{{label}")
+    return CompletionItem(label, ItemKind.SKELETON, str(made), detail, rank=Rank.BEST, filter=f"{{{label}")
 
 
 _SKELETONS = (

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.describe import forest as describe_forest
@@ -21,7 +21,7 @@ from roaml.roles import SymbolKind
 _SHOWN = 3
 
 
-def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[Item]:
+def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
     """The symbols of a kind that `subject` may refer to."""
     if kind in HANDLES:
         yield from _handles(request, kind)
@@ -29,7 +29,7 @@ def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[I
         yield from _PROVIDERS[kind](request, subject)
 
 
-def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[Item]:
+def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
     """Names for a new definition: those that are used but not defined."""
     if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
@@ -50,7 +50,9 @@ def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[
                     used[each.symbol] = None
         for symbol in used:
             if symbol not in defined:
-                yield Item(symbol.name, _KINDS.get(kind, ItemKind.VALUE), detail="used, not defined", rank=Rank.BEST)
+                yield CompletionItem(
+                    symbol.name, _KINDS.get(kind, ItemKind.VALUE), detail="used, not defined", rank=Rank.BEST
+                )
 
 
 _KINDS = {SymbolKind.STATE: ItemKind.STATE, SymbolKind.VARIABLE: ItemKind.VARIABLE, SymbolKind.PORT: ItemKind.PORT}
@@ -59,18 +61,18 @@ _KINDS = {SymbolKind.STATE: ItemKind.STATE, SymbolKind.VARIABLE: ItemKind.VARIAB
 # ------------------------------------------------------------------- machines
 
 
-def _states(request: Request, subject: Subject) -> Iterator[Item]:
+def _states(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     for state in request.chart.states if request.chart else ():
         if state.id is not None:
             about = Symbol(request.path, SymbolKind.STATE, state.id.value, request.chart.scope if request.chart else "")
-            yield Item(state.id.value, ItemKind.STATE, about=about)
+            yield CompletionItem(state.id.value, ItemKind.STATE, about=about)
 
 
-def _handles(request: Request, kind: SymbolKind) -> Iterator[Item]:
+def _handles(request: Request, kind: SymbolKind) -> Iterator[CompletionItem]:
     for declaration in request.machine.declarations if request.machine else ():
         if declaration.kind is kind and declaration.handle is not None:
             about = Symbol(request.path, kind, declaration.handle.value)
-            yield Item(declaration.handle.value, ItemKind.HANDLE, detail=_declared(declaration), about=about)
+            yield CompletionItem(declaration.handle.value, ItemKind.HANDLE, detail=_declared(declaration), about=about)
 
 
 def _declared(declaration: Declaration) -> str:
@@ -80,7 +82,7 @@ def _declared(declaration: Declaration) -> str:
     return " : ".join(filter(None, (name, declaration.type.value if declaration.type else "")))
 
 
-def _ports(request: Request, subject: Subject) -> Iterator[Item]:
+def _ports(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """Ports of a plugin that can be read or written there; in a tree file, those of the plugin that is described."""
     if request.machine is None:
         id_ = subject.parents[-1].element.get("ID") if subject.parents else None
@@ -88,13 +90,13 @@ def _ports(request: Request, subject: Subject) -> Iterator[Item]:
         for declared in outline.ports if outline else ():
             if subject.type.name == f"{declared.direction}put_port":
                 about = Symbol(path, SymbolKind.PORT, declared.key)
-                yield Item(declared.key, ItemKind.PORT, detail=declared.type, about=about)
+                yield CompletionItem(declared.key, ItemKind.PORT, detail=declared.type, about=about)
         return
     wanted = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
     for port in request.machine.ports:
         if port.key is not None and wanted in (None, port.direction):
             detail = port.type.text if port.type else ""
-            yield Item(
+            yield CompletionItem(
                 port.key.value,
                 ItemKind.PORT,
                 detail=detail,
@@ -102,19 +104,19 @@ def _ports(request: Request, subject: Subject) -> Iterator[Item]:
             )
 
 
-def _machine_names(request: Request) -> Iterator[Item]:
+def _machine_names(request: Request) -> Iterator[CompletionItem]:
     stem = request.path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
-    yield Item(stem, ItemKind.VALUE, detail="the file's name", rank=Rank.LIKELY)
+    yield CompletionItem(stem, ItemKind.VALUE, detail="the file's name", rank=Rank.LIKELY)
     for system in request.systems:
         for name in _unknown_plugins(system):
-            yield Item(name, ItemKind.PLUGIN, detail="used in the tree", rank=Rank.BEST)
+            yield CompletionItem(name, ItemKind.PLUGIN, detail="used in the tree", rank=Rank.BEST)
 
 
 def _unknown_plugins(system: System) -> Iterator[str]:
     yield from dict.fromkeys(each.plugin for each in system.instances if system.plugin(each.plugin)[1] is None)
 
 
-def _missing_ports(request: Request) -> Iterator[Item]:
+def _missing_ports(request: Request) -> Iterator[CompletionItem]:
     """Ports that trees set for this plugin and that it does not declare."""
     machine = request.machine
     if machine is None or machine.name is None:
@@ -125,14 +127,14 @@ def _missing_ports(request: Request) -> Iterator[Item]:
             if instance.plugin == machine.name.value:
                 for key, _ in instance.ports:
                     if key not in known:
-                        yield Item(key, ItemKind.PORT, detail="set in the tree", rank=Rank.BEST)
-    yield Item(CHILDREN_COUNT, ItemKind.PORT, detail="the number of children of the node", rank=Rank.LATE)
+                        yield CompletionItem(key, ItemKind.PORT, detail="set in the tree", rank=Rank.BEST)
+    yield CompletionItem(CHILDREN_COUNT, ItemKind.PORT, detail="the number of children of the node", rank=Rank.LATE)
 
 
 # --------------------------------------------------------------------- events
 
 
-def _events_received(request: Request, subject: Subject) -> Iterator[Item]:
+def _events_received(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """Events to wait for: those that a machine sends."""
     for system in request.systems:
         for event in system.events.values():
@@ -145,7 +147,7 @@ def _events_received(request: Request, subject: Subject) -> Iterator[Item]:
             yield _event(request.path, name, "sent here", sound=True)
 
 
-def _events_to_send(request: Request) -> Iterator[Item]:
+def _events_to_send(request: Request) -> Iterator[CompletionItem]:
     """Events to send: those that a machine waits for, first."""
     for system in request.systems:
         for event in system.events.values():
@@ -159,15 +161,15 @@ def _events_to_send(request: Request) -> Iterator[Item]:
             yield _event(request.path, name, "awaited here", sound=True)
 
 
-def _event(owner: str, name: str, detail: str, *, sound: bool) -> Item:
+def _event(owner: str, name: str, detail: str, *, sound: bool) -> CompletionItem:
     rank = Rank.USUAL if sound else Rank.LATE
-    return Item(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, SymbolKind.EVENT, name), rank=rank)
+    return CompletionItem(name, ItemKind.EVENT, detail=detail, about=Symbol(owner, SymbolKind.EVENT, name), rank=rank)
 
 
 # ----------------------------------------------------------- ROS and the tree
 
 
-def channels(request: Request, kind: SymbolKind, type_: str = "") -> Iterator[Item]:
+def channels(request: Request, kind: SymbolKind, type_: str = "") -> Iterator[CompletionItem]:
     """The topics, services or actions of the workspace; those of ROS type `type_` first, the file's own system before
     others."""
     seen = set()
@@ -182,15 +184,17 @@ def channels(request: Request, kind: SymbolKind, type_: str = "") -> Iterator[It
             own = system in request.systems
             rank = Rank.LAST if not fitting else Rank.LIKELY if own else Rank.USUAL
             detail = " · ".join(filter(None, (", ".join(types), _some(_machines(channel)))))
-            yield Item(written, ItemKind.INTERFACE, detail=detail, about=Symbol(system.path, kind, name), rank=rank)
+            yield CompletionItem(
+                written, ItemKind.INTERFACE, detail=detail, about=Symbol(system.path, kind, name), rank=rank
+            )
 
 
 def _machines(channel: Channel) -> dict[str, None]:
     return dict.fromkeys(endpoint.automaton.name for endpoint in channel.endpoints)
 
 
-def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[Item]]:
-    def provide(request: Request, subject: Subject) -> Iterator[Item]:
+def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[CompletionItem]]:
+    def provide(request: Request, subject: Subject) -> Iterator[CompletionItem]:
         element = subject.element
         if subject.type.text and subject.parents:
             element = subject.parents[-1].element  # `<topic>` is inside of the declaration
@@ -210,22 +214,22 @@ def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
     return found
 
 
-def _plugin_names(request: Request, subject: Subject) -> Iterator[Item]:
+def _plugin_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
-        yield Item(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
+        yield CompletionItem(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
     wanted = subject.type.name.lower()
     if request.forest is not None:
         for name in dict.fromkeys(request.forest.names):
             known = request.forest.node(name)
             if known is not None and known.kind.value == wanted:
                 about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
-                yield Item(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
+                yield CompletionItem(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
         return
     for name in builtin_plugins():
         type_ = request.file.grammar.elements[name]
         if type_.node == wanted:
-            yield Item(
+            yield CompletionItem(
                 name,
                 ItemKind.PLUGIN,
                 detail="BehaviorTree.CPP",
@@ -240,11 +244,13 @@ def port_list(outline: MachineOutline) -> str:
     )
 
 
-def _tree_names(request: Request, subject: Subject) -> Iterator[Item]:
+def _tree_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     for name, (path, _) in request.trees.trees.items():
         if name:
             file = path.replace("\\", "/").rpartition("/")[2]
-            yield Item(name, ItemKind.PLUGIN, detail=file, about=request.trees.tree_symbol(request.path, name))
+            yield CompletionItem(
+                name, ItemKind.PLUGIN, detail=file, about=request.trees.tree_symbol(request.path, name)
+            )
 
 
 def _some(names: Iterable[str]) -> str:
@@ -253,7 +259,7 @@ def _some(names: Iterable[str]) -> str:
     return ", ".join(listed[:_SHOWN]) + more
 
 
-_PROVIDERS: Mapping[SymbolKind, Callable[[Request, Subject], Iterator[Item]]] = {
+_PROVIDERS: Mapping[SymbolKind, Callable[[Request, Subject], Iterator[CompletionItem]]] = {
     SymbolKind.STATE: _states,
     SymbolKind.PORT: _ports,
     SymbolKind.EVENT: _events_received,

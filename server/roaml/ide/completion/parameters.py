@@ -6,20 +6,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.model.machine import Send
 from roaml.roles import SymbolKind
 
 
-def parameter_names(request: Request, subject: Subject) -> Iterator[Item]:
+def parameter_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """For the name of a `<param>`: the parameters that the `<send>` around the caret does not send yet."""
     for statement in request.chart.statements if request.chart else ():
         if isinstance(statement, Send) and any(each.element is statement.element for each in subject.parents):
             yield from _missing(request, statement, subject)
 
 
-def parameters_to_add(request: Request, subject: Subject) -> Iterator[Item]:
+def parameters_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """Inside of a `<send>`: each missing parameter, and all of them at once."""
     for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
@@ -30,17 +30,17 @@ def parameters_to_add(request: Request, subject: Subject) -> Iterator[Item]:
             for number, item in enumerate(missing):
                 _param(made.text("\n" if number else ""), item.label)
             detail = ", ".join(item.label for item in missing)
-            yield Item("all parameters", ItemKind.SKELETON, str(made), detail, None, Rank.BEST, "param all")
+            yield CompletionItem("all parameters", ItemKind.SKELETON, str(made), detail, None, Rank.BEST, "param all")
         for item in missing:
             insert = str(_param(Snippet(), item.label))
-            yield Item(f"param {item.label}", ItemKind.SKELETON, insert, item.detail, item.about, Rank.LIKELY)
+            yield CompletionItem(f"param {item.label}", ItemKind.SKELETON, insert, item.detail, item.about, Rank.LIKELY)
 
 
 def _param(made: Snippet, name: str) -> Snippet:
     return made.text(f'<param name="{name}" expr="').stop().text('"/>')
 
 
-def _missing(request: Request, send: Send, subject: Subject) -> Iterator[Item]:
+def _missing(request: Request, send: Send, subject: Subject) -> Iterator[CompletionItem]:
     if send.event is None:
         return
     given = {param.name.value for param in send.params if param.name and param.element is not subject.element}
@@ -55,4 +55,4 @@ def _missing(request: Request, send: Send, subject: Subject) -> Iterator[Item]:
                 about = Symbol(system.path, SymbolKind.PARAMETER, name, event.name)
                 detail = str(types[name]) if name in types else "read by a receiver"
                 rank = Rank.BEST if name in reads else Rank.USUAL
-                yield Item(name, ItemKind.MEMBER, detail=detail, about=about, rank=rank)
+                yield CompletionItem(name, ItemKind.MEMBER, detail=detail, about=about, rank=rank)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.request import Request, Subject
 from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
 from roaml.model.machine import Machine
@@ -29,7 +29,7 @@ _BY_TYPE = {
 }
 
 
-def paths(request: Request, subject: Subject) -> Iterator[Item]:
+def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """The files that may be meant; those that this file does not refer to yet, first."""
     analysis = request.analysis
     wanted, plugin = _wanted(subject)
@@ -42,7 +42,7 @@ def paths(request: Request, subject: Subject) -> Iterator[Item]:
             machine = analysis.machine(path)
             fitting = plugin is None or machine is None or _is_plugin(machine) == plugin
             rank = Rank.LAST if not fitting else Rank.LIKELY if rank is Rank.USUAL else rank
-        yield Item(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
+        yield CompletionItem(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
 
 
 def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:

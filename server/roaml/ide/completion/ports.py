@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.ide.completion.item import Item, ItemKind, Rank, Snippet
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import channels, plugins
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.describe import forest as describe_forest
@@ -23,7 +23,7 @@ from roaml.xml_syntax import Element
 
 
 @dataclass(frozen=True, slots=True)
-class Port:
+class SettablePort:
     """A port that a node may set. `about` refers to its documentation."""
 
     key: str
@@ -39,7 +39,7 @@ class Port:
         return f"{self.direction} {self.type}{default}".strip()
 
 
-def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Port, ...]:
+def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[SettablePort, ...]:
     """The ports of the plugin with this name, or of the node of BehaviorTree.CPP that `type_` describes."""
     known = request.forest.node(name) if request.forest else None
     if known is not None:
@@ -50,14 +50,14 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
             assert attribute.port is not None
             about = Symbol(f"/{type_.name}", SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
             port = attribute.port
-            found.append(Port(attribute.name, port.type, port.direction, port.required, port.default, about))
+            found.append(SettablePort(attribute.name, port.type, port.direction, port.required, port.default, about))
         return tuple(found)
     path, outline = plugins(request).get(name, ("", None))
     if outline is None:
         return ()
     defaults = request.trees.defaults.get(name, {})
     return tuple(
-        Port(
+        SettablePort(
             port.key,
             port.type,
             port.direction,
@@ -70,12 +70,12 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Po
     )
 
 
-def _of_library(known: Node) -> Iterator[Port]:
+def _of_library(known: Node) -> Iterator[SettablePort]:
     for port in known.ports:
         if not port.alias_of:
             about = Symbol("", SymbolKind.JSON, port.name, describe_forest.port(known, port))
             default = port.default or ""
-            yield Port(port.name, port.type, port.direction.value, port.required, default, about)
+            yield SettablePort(port.name, port.type, port.direction.value, port.required, default, about)
 
 
 def node_name(element: Element) -> str:
@@ -90,7 +90,7 @@ def _type_of(request: Request, name: str) -> ElementType | None:
     return request.file.grammar.elements.get(name)
 
 
-def port_values(request: Request, subject: Subject, key: str) -> list[Item]:
+def port_values(request: Request, subject: Subject, key: str) -> list[CompletionItem]:
     """The possible values of the port `key` of a node: blackboard variables, and constants if its type determines
     them."""
     element = subject.element
@@ -109,7 +109,7 @@ def port_values(request: Request, subject: Subject, key: str) -> list[Item]:
         return []
     items = [*_constants(request, name, port)] if port else []
     if element.name in SUBTREES:
-        items.append(Item("{=}", ItemKind.VARIABLE, detail="the variable of the same name", rank=Rank.LIKELY))
+        items.append(CompletionItem("{=}", ItemKind.VARIABLE, detail="the variable of the same name", rank=Rank.LIKELY))
     return [*items, *_variables(request, key, port)]
 
 
@@ -117,7 +117,7 @@ def _in_tree(subject: Subject) -> bool:
     return any(each.element.name == "BehaviorTree" for each in subject.parents)
 
 
-def _variables(request: Request, key: str, port: Port | None) -> Iterator[Item]:
+def _variables(request: Request, key: str, port: SettablePort | None) -> Iterator[CompletionItem]:
     tree = next((t for t in request.trees.files[request.path].trees if _around(t.element, request.offset)), None)
     if tree is None:
         return
@@ -125,43 +125,43 @@ def _variables(request: Request, key: str, port: Port | None) -> Iterator[Item]:
     id_ = tree.id.value if tree.id else ""
     for name in own:
         about = request.trees.variable(request.path, id_, name)
-        yield Item(f"{{{name}}}", ItemKind.VARIABLE, detail="blackboard", about=about, rank=Rank.LIKELY)
+        yield CompletionItem(f"{{{name}}}", ItemKind.VARIABLE, detail="blackboard", about=about, rank=Rank.LIKELY)
     if key not in own and is_variable_name(key):
-        yield Item(f"{{{key}}}", ItemKind.VARIABLE, detail="new blackboard variable", rank=Rank.USUAL)
+        yield CompletionItem(f"{{{key}}}", ItemKind.VARIABLE, detail="new blackboard variable", rank=Rank.USUAL)
     main = request.trees.main
     if main is not None and main[1] is not tree:
         for name in dict.fromkeys(names_in(main[1])):
             if is_variable_name(name) and not name.startswith("@"):
-                yield Item(f"{{@{name}}}", ItemKind.VARIABLE, detail="of the main tree", rank=Rank.LATE)
+                yield CompletionItem(f"{{@{name}}}", ItemKind.VARIABLE, detail="of the main tree", rank=Rank.LATE)
 
 
 def _around(element: Element, offset: int) -> bool:
     return element.span.start < offset <= element.span.end
 
 
-def _constants(request: Request, name: str, port: Port) -> Iterator[Item]:
+def _constants(request: Request, name: str, port: SettablePort) -> Iterator[CompletionItem]:
     if port.direction == "out":
         return
     if port.default and blackboard_variable(port.default) is None:
-        yield Item(port.default, ItemKind.VALUE, detail="default", rank=Rank.LIKELY)
+        yield CompletionItem(port.default, ItemKind.VALUE, detail="default", rank=Rank.LIKELY)
     if port.type == "NodeStatus":
         for status in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED"):
-            yield Item(status, ItemKind.VALUE, rank=Rank.LIKELY)
+            yield CompletionItem(status, ItemKind.VALUE, rank=Rank.LIKELY)
     if port.type == "bool":
-        yield Item("true", ItemKind.VALUE, rank=Rank.LIKELY)
-        yield Item("false", ItemKind.VALUE, rank=Rank.LIKELY)
+        yield CompletionItem("true", ItemKind.VALUE, rank=Rank.LIKELY)
+        yield CompletionItem("false", ItemKind.VALUE, rank=Rank.LIKELY)
     _, outline = plugins(request).get(name, ("", None))
     yield from _interfaces(request, outline, port.key)
 
 
-def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[Item]:
+def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[CompletionItem]:
     """If the port names a topic, service or action: those of the workspace."""
     for use in outline.interfaces if outline else ():
         if use.port == key and use.kind in CHANNEL_KINDS:
             yield from channels(request, CHANNEL_KINDS[use.kind], use.type)
 
 
-def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:
+def ports_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """As attributes: each port that is not set, and all required ones at once."""
     element = subject.element
     assert element is not None
@@ -175,14 +175,14 @@ def ports_to_add(request: Request, subject: Subject) -> Iterator[Item]:
             snippet.text(" " if number else "")
             add_port(snippet, port)
         detail = ", ".join(port.key for port in required)
-        yield Item("all ports", ItemKind.SKELETON, str(snippet), detail, rank=Rank.BEST)
+        yield CompletionItem("all ports", ItemKind.SKELETON, str(snippet), detail, rank=Rank.BEST)
     for port in missing:
         snippet = Snippet()
         add_port(snippet, port)
         rank = Rank.LIKELY if port.required else Rank.USUAL
-        yield Item(port.key, ItemKind.PORT, str(snippet), port.detail, port.about, rank)
+        yield CompletionItem(port.key, ItemKind.PORT, str(snippet), port.detail, port.about, rank)
 
 
-def add_port(snippet: Snippet, port: Port) -> None:
+def add_port(snippet: Snippet, port: SettablePort) -> None:
     """`key="…"`; the default of an output is a variable with its own name."""
     snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction == "out" else [port.default]).text('"')

@@ -12,7 +12,7 @@ from roaml.ide.names.frames import Trees
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
-from roaml.model.machine import Chart, Communicate, Handler, Machine
+from roaml.model.machine import Chart, Handler, Machine, RosSend
 from roaml.model.system import System
 from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
@@ -99,10 +99,10 @@ class Request:
         handlers = (handler for state in states for handler in state.handlers)
         return next((each for each in handlers if _is_around(each.element, self.offset)), None)
 
-    def communicate(self, element: Element) -> Communicate | None:
+    def communicate(self, element: Element) -> RosSend | None:
         """The sending statement that an element is."""
         statements = self.chart.statements if self.chart else ()
-        return next((each for each in statements if isinstance(each, Communicate) and each.element is element), None)
+        return next((each for each in statements if isinstance(each, RosSend) and each.element is element), None)
 
 
 def _is_around(element: Element, offset: int) -> bool:

@@ -9,11 +9,12 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, UNKNOWN, Scalar, Type, resolve_type, unwrap
 from roaml.ide.completion.expressions import in_expression, initial_values
 from roaml.ide.completion.fields import field_names
-from roaml.ide.completion.item import Item, ItemKind, Rank
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.names import referred, undefined
 from roaml.ide.completion.paths import paths
 from roaml.ide.completion.ports import port_values
 from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.scripts import in_script
 from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
@@ -25,11 +26,13 @@ from roaml.text import Span
 _EXPRESSIONS = ("expression", "location")
 
 
-def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[Item]] | None:
+def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
     """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
     known = subject.type.attributes.get(name)
     if known is not None and known.value in _EXPRESSIONS:
         return in_expression(request, subject, name, span.start)
+    if (script := in_script(request, subject, name, span)) is not None:
+        return script
     if request.file.grammar.title == "BehaviorTree.CPP XML" and (ports := port_values(request, subject, name)):
         return span, ports
     if known is None:
@@ -37,13 +40,13 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
     return span, list(candidates(request, subject, known))
 
 
-def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[Item]:
+def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[CompletionItem]:
     """The possible whole values of an attribute."""
     for choice in attribute.simple.choices:
         about = Symbol(
             f"{subject.key}/{attribute.name}", SymbolKind.ENUMERATION_VALUE, choice.value, request.file.grammar.schema
         )
-        yield Item(choice.value, ItemKind.VALUE, about=about, deprecated=bool(choice.use))
+        yield CompletionItem(choice.value, ItemKind.VALUE, about=about, deprecated=bool(choice.use))
     for kind in attribute.refers:
         if kind is SymbolKind.FIELD:
             yield from field_names(request, subject)
@@ -54,7 +57,7 @@ def candidates(request: Request, subject: Subject, attribute: AttributeType) -> 
     yield from _of_value(request, subject, attribute.name, attribute.value, attribute.value_type)
 
 
-def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[Item]] | None:
+def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
     """The possible texts of an element."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
@@ -63,7 +66,7 @@ def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[
     return span, [*items, *_of_value(request, subject, type_.name, type_.value, type_.value_type)]
 
 
-def _of_value(request: Request, subject: Subject, name: str, value: str, value_type: str) -> Iterator[Item]:
+def _of_value(request: Request, subject: Subject, name: str, value: str, value_type: str) -> Iterator[CompletionItem]:
     match value:
         case "type":
             yield from types(request)
@@ -74,7 +77,7 @@ def _of_value(request: Request, subject: Subject, name: str, value: str, value_t
         case "constant":
             yield from _constants(request, subject)
         case "status":
-            yield from (Item(name, ItemKind.VALUE) for name in STATUSES)
+            yield from (CompletionItem(name, ItemKind.VALUE) for name in STATUSES)
         case "child-index":
             yield from _children(request)
         case "path":
@@ -86,10 +89,10 @@ def _of_value(request: Request, subject: Subject, name: str, value: str, value_t
 # ------------------------------------------------------------------------ types
 
 
-def types(request: Request) -> Iterator[Item]:
+def types(request: Request) -> Iterator[CompletionItem]:
     """Base types and the structs of the system."""
     for name in BASE_TYPES:
-        yield Item(name, ItemKind.TYPE, about=Symbol("", SymbolKind.BASE_TYPE, name))
+        yield CompletionItem(name, ItemKind.TYPE, about=Symbol("", SymbolKind.BASE_TYPE, name))
     structs = request.analysis.structs(request.system_path).types
     names = [name for system in request.systems for name in system.structs] or list(structs)
     if request.analysis.kind(request.path) is FileKind.STRUCTS:
@@ -97,10 +100,12 @@ def types(request: Request) -> Iterator[Item]:
         names += [each.outline.name for each in declared if each.outline is not None]
     for name in dict.fromkeys(names):
         owner = request.system_path or request.path
-        yield Item(name, ItemKind.TYPE, detail="struct", about=Symbol(owner, SymbolKind.STRUCT, name), rank=Rank.LIKELY)
+        yield CompletionItem(
+            name, ItemKind.TYPE, detail="struct", about=Symbol(owner, SymbolKind.STRUCT, name), rank=Rank.LIKELY
+        )
 
 
-def ros_types(request: Request, kind: str) -> Iterator[Item]:
+def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
     """All ROS types of a kind that can be found; those that the file's systems use, first."""
     if kind not in ("msg", "srv", "action"):
         return
@@ -111,19 +116,19 @@ def ros_types(request: Request, kind: str) -> Iterator[Item]:
         for name in kinds[ros_kind]:
             label = f"{package}/{name}"
             rank = Rank.LIKELY if label in used else Rank.USUAL
-            yield Item(label, ItemKind.TYPE, about=Symbol("", SymbolKind.ROS_TYPE, label, kind), rank=rank)
+            yield CompletionItem(label, ItemKind.TYPE, about=Symbol("", SymbolKind.ROS_TYPE, label, kind), rank=rank)
 
 
-def _constants(request: Request, subject: Subject) -> Iterator[Item]:
+def _constants(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """Typical initial values of a variable."""
     yield from initial_values(_data_type(request, subject))
 
 
-def _bounds(request: Request, subject: Subject) -> Iterator[Item]:
+def _bounds(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """The smallest and the greatest value of an integer type."""
     inner, _ = unwrap(_data_type(request, subject))
     for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
-        yield Item(str(number), ItemKind.VALUE, detail=str(inner))
+        yield CompletionItem(str(number), ItemKind.VALUE, detail=str(inner))
 
 
 def _data_type(request: Request, subject: Subject) -> Type:
@@ -140,7 +145,7 @@ def _data_type(request: Request, subject: Subject) -> Type:
 # ----------------------------------------------------------------------- others
 
 
-def _children(request: Request) -> Iterator[Item]:
+def _children(request: Request) -> Iterator[CompletionItem]:
     """The indices of the children of the plugin's nodes, and integer variables."""
     machine = request.machine
     if machine is None:
@@ -152,13 +157,13 @@ def _children(request: Request) -> Iterator[Item]:
         if machine.name and instance.plugin == machine.name.value
     ]
     for index in range(max(counts, default=1)):
-        yield Item(str(index), ItemKind.VALUE, detail="child", rank=Rank.BEST)
+        yield CompletionItem(str(index), ItemKind.VALUE, detail="child", rank=Rank.BEST)
     for data in request.chart.data if request.chart else ():
         if data.id is not None and data.type is not None and "int" in data.type.text:
-            yield Item(data.id.value, ItemKind.VARIABLE, detail=data.type.text)
+            yield CompletionItem(data.id.value, ItemKind.VARIABLE, detail=data.type.text)
 
 
-def _remaining_probability(subject: Subject) -> Iterator[Item]:
+def _remaining_probability(subject: Subject) -> Iterator[CompletionItem]:
     """The remaining probability to 1."""
     if not subject.parents:
         return
@@ -172,4 +177,4 @@ def _remaining_probability(subject: Subject) -> Iterator[Item]:
             return
     rest = round(1 - given, 9)
     if 0 < rest <= 1:
-        yield Item(f"{rest:g}", ItemKind.VALUE, detail="the remaining probability", rank=Rank.BEST)
+        yield CompletionItem(f"{rest:g}", ItemKind.VALUE, detail="the remaining probability", rank=Rank.BEST)

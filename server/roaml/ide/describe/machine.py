@@ -16,12 +16,12 @@ from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import uses
 from roaml.language import ElementType
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.system import Automaton, System, sanitise
-from roaml.model.value_types import TypedMachine, Use
+from roaml.model.system import System, SystemAutomaton, sanitise
+from roaml.model.value_types import TypedMachine, ValueUse
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
@@ -68,7 +68,7 @@ def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
     return tuple(found)
 
 
-def _action(automaton: Automaton, handle: str) -> str:
+def _action(automaton: SystemAutomaton, handle: str) -> str:
     found = (
         use for use in automaton.outline.interfaces if (use.kind, use.handle) == (SymbolKind.ACTION_SERVER, handle)
     )
@@ -129,7 +129,7 @@ def inferred_type(typed: TypedMachine, scope: str, name: str) -> Type:
     """The type that the values assigned to a variable have; unknown if there are none or they differ."""
     found: Type = UNKNOWN
     for value in typed.values:
-        if value.use is Use.ASSIGNED and value.place.chart.scope == scope and value.target == name:
+        if value.use is ValueUse.ASSIGNED and value.place.chart.scope == scope and value.target == name:
             joined = join(found, value.type)
             if joined is None:
                 return UNKNOWN
@@ -164,9 +164,9 @@ def _gets(typed: TypedMachine, symbol: Symbol) -> str:
     for value in typed.values:
         if value.place.chart.scope != symbol.scope:
             continue
-        if value.use is Use.LOCATION:
+        if value.use is ValueUse.LOCATION:
             target = value.value if isinstance(value.value, Expression) else None
-        elif value.use is Use.ASSIGNED and target is not None:
+        elif value.use is ValueUse.ASSIGNED and target is not None:
             path = access_path(target.tree)
             if path is not None and path[0] == symbol.name:
                 found[_source(value.value)] = None
@@ -356,12 +356,13 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
     for system in linked_systems(analysis, symbol.path):
         for automaton in system.automata_of(symbol.path):
             value = automaton.port(symbol.name)
-            shown = "" if value is None else value.text if isinstance(value, Constant) else f"{{{value.variable}}}"
+            shown = "" if value is None else value.text if isinstance(value, PortConstant) else f"{{{value.variable}}}"
             bound.setdefault(shown, []).append(node_id(automaton))
     found = [
-        f"{name(value) if value else 'not set'} in {names(nodes, 3)}" for value, nodes in list(bound.items())[:_MOST]
+        f"{name(value) if value else 'not set'} in {names(nodes, 3)}"
+        for value, nodes in list(bound.items())[:_MAX_VALUES]
     ]
-    rest = f" and {len(bound) - _MOST} other values" if len(bound) > _MOST else ""
+    rest = f" and {len(bound) - _MAX_VALUES} other values" if len(bound) > _MAX_VALUES else ""
     return paragraphs(
         code(f"{declared.direction} {symbol.name}{type_}"),
         _remark(analysis, symbol.path, declared.element),
@@ -372,10 +373,10 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
     )
 
 
-_MOST = 5
+_MAX_VALUES = 5
 
 
-def node_id(automaton: Automaton) -> str:
+def node_id(automaton: SystemAutomaton) -> str:
     """A node of the executed tree as its events name it, with its name."""
     assert automaton.instance is not None
     return f"bt_{automaton.instance.number}"
@@ -427,7 +428,7 @@ def _talk(outline: MachineOutline) -> Iterator[str]:
     yield f"Receives {found_names}" if (found_names := names(received)) else ""
 
 
-def _instances(nodes: list[Automaton]) -> str:
+def _instances(nodes: list[SystemAutomaton]) -> str:
     if not nodes:
         return "No node of the tree uses it"
     trees = names(dict.fromkeys(a.instance.source.tree for a in nodes if a.instance and a.instance.source.tree))

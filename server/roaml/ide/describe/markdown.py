@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_MOST = 6
+_MAX_NAMES = 6
 """The maximum number of names in a list; further names are counted."""
 
 _TICKS = re.compile(r"`+")
@@ -45,7 +45,7 @@ def name(text: str) -> str:
     return f"{ticks}{space}{text}{space}{ticks}"
 
 
-def names(found: Iterable[str], most: int = _MOST) -> str:
+def names(found: Iterable[str], most: int = _MAX_NAMES) -> str:
     """Names with commas, without duplicates; at the end of a long list the rest is only counted. "" if there are
     none."""
     different = list(dict.fromkeys(found))

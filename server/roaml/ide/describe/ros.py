@@ -11,7 +11,7 @@ from roaml.interfaces.registry import NotFound, Registry
 from roaml.interfaces.types import SECTION_NAMES, Constant, Definition, Field, Kind, Section
 
 LANGUAGE = "rosmsg"
-_MOST = 40
+_MAX_LINES = 40
 _WIDTH = 88
 
 
@@ -28,8 +28,8 @@ def definition(found: Definition) -> str:
         if title != SECTION_NAMES[found.kind][0]:
             rows.append("---")
         rows += _section(section)
-    if len(rows) > _MOST + 1:
-        rows = [*rows[:_MOST], f"# … {len(rows) - _MOST} more lines"]
+    if len(rows) > _MAX_LINES + 1:
+        rows = [*rows[:_MAX_LINES], f"# … {len(rows) - _MAX_LINES} more lines"]
     return code("\n".join(rows), LANGUAGE)
 
 

@@ -18,7 +18,7 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
-from roaml.model.system import CLOCK_TOPIC, Automaton, BoundPort, Channel, Endpoint, System, sanitise
+from roaml.model.system import CLOCK_TOPIC, BoundPort, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -27,7 +27,7 @@ from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 _NODE = re.compile(r"bt_(\d{1,9})_")
 
 
-def node_of(system: System, variable: str) -> Automaton | None:
+def node_of(system: System, variable: str) -> SystemAutomaton | None:
     """The node of the tree of a global variable."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
@@ -38,7 +38,7 @@ def _system(analysis: Analysis, symbol: Symbol) -> System | None:
     return analysis.system(symbol.path) if symbol.path in analysis.system_paths else None
 
 
-def _who(automata: Iterable[Automaton]) -> str:
+def _who(automata: Iterable[SystemAutomaton]) -> str:
     """Nodes by their names, nodes of the tree by their plugins."""
     return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
 
@@ -148,7 +148,7 @@ def is_clock(system: System, symbol: Symbol) -> bool:
     return symbol.kind is SymbolKind.TOPIC and symbol.name == CLOCK_TOPIC and system.has_timer
 
 
-def _ends(endpoints: Iterable[Endpoint]) -> str:
+def _ends(endpoints: Iterable[ChannelEndpoint]) -> str:
     return _who(endpoint.automaton for endpoint in endpoints) or "nobody"
 
 
@@ -254,14 +254,14 @@ def tree_node(analysis: Analysis, symbol: Symbol) -> str:
 def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
     """The names in the translation of a node of a file, where its tree is executed."""
     told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
-    rest = f"… and {len(told) - _MOST} more times" if len(told) > _MOST else ""
-    return paragraphs(*told[:_MOST], rest)
+    rest = f"… and {len(told) - _MAX_USES} more times" if len(told) > _MAX_USES else ""
+    return paragraphs(*told[:_MAX_USES], rest)
 
 
-_MOST = 3
+_MAX_USES = 3
 
 
-def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, Automaton]]:
+def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, SystemAutomaton]]:
     """The nodes of executed trees for a node of a file, in all systems of the file."""
     for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
@@ -271,7 +271,7 @@ def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterat
                 yield system, automaton
 
 
-def node(system: System, automaton: Automaton) -> str:
+def node(system: System, automaton: SystemAutomaton) -> str:
     """A node of the executed tree: its names, the bindings of its ports."""
     instance = automaton.instance
     assert instance is not None

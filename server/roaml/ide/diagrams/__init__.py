@@ -4,18 +4,18 @@
 `roaml.views` contains diagrams for documents, without positions.
 """
 
-from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
-from roaml.ide.diagrams.highlight import Highlight, highlights
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
 
 __all__ = [
-    "Edge",
+    "DiagramEdge",
+    "DiagramHighlight",
+    "DiagramNode",
+    "DiagramNodeKind",
     "EdgeKind",
-    "Highlight",
-    "Node",
-    "NodeKind",
     "Picture",
     "highlights",
     "machine_picture",

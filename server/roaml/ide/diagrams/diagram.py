@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from roaml.text import Location
 
 
-class NodeKind(enum.Enum):
+class DiagramNodeKind(enum.Enum):
     STATE = "state"
     THREAD = "thread"
     CONTROL = "control"
@@ -46,7 +46,7 @@ class EdgeKind(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class DiagramNode:
     """
     Attributes:
         details: lines below the label.
@@ -55,7 +55,7 @@ class Node:
     """
 
     id: str
-    kind: NodeKind
+    kind: DiagramNodeKind
     label: str
     details: tuple[str, ...] = ()
     parent: str = ""
@@ -64,7 +64,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class DiagramEdge:
     """`probabilistic` means that it is one of several randomly chosen edges."""
 
     source: str
@@ -78,5 +78,5 @@ class Edge:
 @dataclass(frozen=True, slots=True)
 class Picture:
     title: str
-    nodes: tuple[Node, ...]
-    edges: tuple[Edge, ...]
+    nodes: tuple[DiagramNode, ...]
+    edges: tuple[DiagramEdge, ...]

@@ -12,7 +12,7 @@ from roaml.text import Location
 
 
 @dataclass(frozen=True, slots=True)
-class Highlight:
+class DiagramHighlight:
     """A node of a diagram: `picture` is "machine" or "tree", `path` the file that it shows, `node` its id there."""
 
     picture: str
@@ -22,7 +22,7 @@ class Highlight:
 
 def highlights(
     analysis: Analysis, system: str, automaton: str, origin: Location, location: str
-) -> tuple[Highlight, ...]:
+) -> tuple[DiagramHighlight, ...]:
     """
     Args:
         automaton: its name in the translation.
@@ -32,7 +32,7 @@ def highlights(
     return (*_state(analysis, origin, location), *_tree_node(analysis, system, automaton))
 
 
-def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[Highlight]:
+def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[DiagramHighlight]:
     """The state of the machine; between two states, the one that it leaves."""
     machine = analysis.machine(origin.path)
     for chart in machine.charts if machine else ():
@@ -45,12 +45,12 @@ def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[High
         innermost = min(around, key=lambda state: state.element.span.end - state.element.span.start)
         reached = next((state for state in named if state.id and state.id.value == location), innermost)
         if reached.id is not None:
-            yield Highlight("machine", origin.path, state_id(chart, reached.id.value))
+            yield DiagramHighlight("machine", origin.path, state_id(chart, reached.id.value))
             return
 
 
-def _tree_node(analysis: Analysis, system: str, automaton: str) -> Iterator[Highlight]:
+def _tree_node(analysis: Analysis, system: str, automaton: str) -> Iterator[DiagramHighlight]:
     linked = analysis.system(system)
     for instance in linked.instances if linked else ():
         if instance.automaton == automaton:
-            yield Highlight("tree", system, str(instance.number))
+            yield DiagramHighlight("tree", system, str(instance.number))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.model.machine import Chart, Handler, State, Thread
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart
@@ -20,8 +20,8 @@ def machine_picture(analysis: Analysis, path: str) -> Picture | None:
     machine = analysis.machine(path)
     if machine is None:
         return None
-    nodes: list[Node] = []
-    edges: list[Edge] = []
+    nodes: list[DiagramNode] = []
+    edges: list[DiagramEdge] = []
     frames = {thread.chart: _frame(thread, path) for thread in machine.threads}
     for chart in machine.charts:
         frame = frames[chart].id if chart in frames else ""
@@ -35,11 +35,11 @@ def machine_picture(analysis: Analysis, path: str) -> Picture | None:
     return Picture(machine.name.value if machine.name else "", tuple(nodes), tuple(edges))
 
 
-def _frame(thread: Thread, path: str) -> Node:
+def _frame(thread: Thread, path: str) -> DiagramNode:
     server = thread.server.value if thread.server else ""
     count = (f"{thread.count} threads",) if thread.count and thread.count > 1 else ()
-    return Node(
-        f"thread {thread.chart.scope}", NodeKind.THREAD, server, count, place=Location(path, thread.element.span)
+    return DiagramNode(
+        f"thread {thread.chart.scope}", DiagramNodeKind.THREAD, server, count, place=Location(path, thread.element.span)
     )
 
 
@@ -48,7 +48,7 @@ def state_id(chart: Chart, name: str) -> str:
     return f"{chart.scope}/{name}"
 
 
-def _node(chart: Chart, state: State, frame: str, path: str) -> Node:
+def _node(chart: Chart, state: State, frame: str, path: str) -> DiagramNode:
     assert state.id is not None
     staying = [
         " ".join(trigger_label(handler))
@@ -57,10 +57,12 @@ def _node(chart: Chart, state: State, frame: str, path: str) -> Node:
     ]
     initial = chart.initial is not None and chart.initial.value == state.id.value
     place = Location(path, state.element.span)
-    return Node(state_id(chart, state.id.value), NodeKind.STATE, state.id.value, tuple(staying), frame, initial, place)
+    return DiagramNode(
+        state_id(chart, state.id.value), DiagramNodeKind.STATE, state.id.value, tuple(staying), frame, initial, place
+    )
 
 
-def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> Iterator[Edge]:
+def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> Iterator[DiagramEdge]:
     assert state.id is not None
     for handler in state.handlers:
         if not handler.effective:
@@ -70,7 +72,7 @@ def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> I
                 continue
             labels = (*trigger_label(handler), *chance_label(handler, target))
             element = target.element or handler.element
-            yield Edge(
+            yield DiagramEdge(
                 state_id(chart, state.id.value),
                 state_id(chart, target.state.value),
                 _kind(handler),

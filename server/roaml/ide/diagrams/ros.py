@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
-from roaml.model.system import Automaton, Channel, Endpoint, System
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 from roaml.text import Location
@@ -32,11 +32,11 @@ def ros_picture(analysis: Analysis, path: str) -> Picture | None:
         return None
     title = path.replace("\\", "/").rpartition("/")[2]
     nodes = dict(_machines(analysis, system))
-    edges: dict[Edge, None] = {}
+    edges: dict[DiagramEdge, None] = {}
     for kind, channels in (
-        (NodeKind.TOPIC, system.topics),
-        (NodeKind.SERVICE, system.services),
-        (NodeKind.ACTION_INTERFACE, system.actions),
+        (DiagramNodeKind.TOPIC, system.topics),
+        (DiagramNodeKind.SERVICE, system.services),
+        (DiagramNodeKind.ACTION_INTERFACE, system.actions),
     ):
         for channel in channels.values():
             ends = [each for each in channel.endpoints if _id(each.automaton) in nodes]
@@ -47,34 +47,34 @@ def ros_picture(analysis: Analysis, path: str) -> Picture | None:
     return Picture(title, tuple(nodes.values()), tuple(edges))
 
 
-def _id(automaton: Automaton) -> str:
+def _id(automaton: SystemAutomaton) -> str:
     kind = "node" if automaton.instance is None else "plugin"
     return f"{kind} {automaton.index} {automaton.path}"
 
 
-def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, Node]]:
+def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, DiagramNode]]:
     for automaton in system.automata:
         machine = analysis.machine(automaton.path) if automaton.path else None
         if machine is not None:
-            kind = NodeKind.ROS_NODE if automaton.instance is None else NodeKind.PLUGIN
+            kind = DiagramNodeKind.ROS_NODE if automaton.instance is None else DiagramNodeKind.PLUGIN
             place = Location(automaton.path, machine.element.span)
-            yield _id(automaton), Node(_id(automaton), kind, automaton.outline.name, place=place)
+            yield _id(automaton), DiagramNode(_id(automaton), kind, automaton.outline.name, place=place)
 
 
-def _channel(analysis: Analysis, kind: NodeKind, channel: Channel, ends: list[Endpoint]) -> Node:
+def _channel(analysis: Analysis, kind: DiagramNodeKind, channel: Channel, ends: list[ChannelEndpoint]) -> DiagramNode:
     names = [name for end in ends if (name := end.automaton.interface_name(end.use))]
     types = tuple(dict.fromkeys(end.use.type for end in ends if end.use.type))
     place = next((place for end in ends if (place := _declared(analysis, end))), None)
-    return Node(f"{kind.value} {channel.name}", kind, names[0] if names else channel.name, types, place=place)
+    return DiagramNode(f"{kind.value} {channel.name}", kind, names[0] if names else channel.name, types, place=place)
 
 
-def _edge(analysis: Analysis, channel: Node, end: Endpoint) -> Edge:
+def _edge(analysis: Analysis, channel: DiagramNode, end: ChannelEndpoint) -> DiagramEdge:
     role, machine = _ROLES[end.use.kind], _id(end.automaton)
     source, target = (machine, channel.id) if role in _TO_CHANNEL else (channel.id, machine)
-    return Edge(source, target, role, place=_declared(analysis, end))
+    return DiagramEdge(source, target, role, place=_declared(analysis, end))
 
 
-def _declared(analysis: Analysis, end: Endpoint) -> Location | None:
+def _declared(analysis: Analysis, end: ChannelEndpoint) -> Location | None:
     machine, wanted = analysis.machine(end.automaton.path), (end.use.kind, end.use.handle)
     for declaration in machine.declarations if machine else ():
         if wanted == (declaration.kind, declaration.handle.value if declaration.handle else ""):
@@ -82,7 +82,7 @@ def _declared(analysis: Analysis, end: Endpoint) -> Location | None:
     return None
 
 
-def _events(system: System, nodes: Mapping[str, Node]) -> Iterator[Edge]:
+def _events(system: System, nodes: Mapping[str, DiagramNode]) -> Iterator[DiagramEdge]:
     """Plain events from one machine to another; all of one pair are one edge."""
     between: dict[tuple[str, str], dict[str, None]] = {}
     for event in system.events.values():
@@ -92,4 +92,4 @@ def _events(system: System, nodes: Mapping[str, Node]) -> Iterator[Edge]:
                 if ends[0] != ends[1] and ends[0] in nodes and ends[1] in nodes:
                     between.setdefault(ends, {})[event.name] = None
     for (source, target), names in between.items():
-        yield Edge(source, target, EdgeKind.SENDS, tuple(names))
+        yield DiagramEdge(source, target, EdgeKind.SENDS, tuple(names))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from roaml.ide.diagrams.diagram import Edge, EdgeKind, Node, NodeKind, Picture
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.model.expand import Instance, Reference, expand, node_at
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
@@ -17,11 +17,11 @@ from roaml.project.analysis import Analysis
 from roaml.text import Location
 from roaml.views.tree import ports_of, title_of
 
-_KINDS: Mapping[str, NodeKind] = {
-    "control": NodeKind.CONTROL,
-    "decorator": NodeKind.DECORATOR,
-    "action": NodeKind.ACTION,
-    "condition": NodeKind.CONDITION,
+_KINDS: Mapping[str, DiagramNodeKind] = {
+    "control": DiagramNodeKind.CONTROL,
+    "decorator": DiagramNodeKind.DECORATOR,
+    "action": DiagramNodeKind.ACTION,
+    "condition": DiagramNodeKind.CONDITION,
 }
 
 
@@ -54,31 +54,31 @@ class _Tree:
         file = self.files.get(instance.source.path)
         return node_at(file, instance.source) if file else None
 
-    def nodes(self) -> Iterator[Node]:
+    def nodes(self) -> Iterator[DiagramNode]:
         for instance in self.instances:
             node = self.written[instance.number]
             place = Location(instance.source.path, node.element.span) if node else None
             initial = instance.parent is None
             kind = self.kind(instance, node)
-            yield Node(str(instance.number), kind, title_of(instance), ports_of(instance), "", initial, place)
+            yield DiagramNode(str(instance.number), kind, title_of(instance), ports_of(instance), "", initial, place)
         variables: dict[str, Location | None] = {}
         for instance, key, variable in self.bound():
             variables.setdefault(variable, self.place(instance, key))
         for variable, place in variables.items():
-            yield Node(f"{{{variable}}}", NodeKind.VARIABLE, variable, place=place)
+            yield DiagramNode(f"{{{variable}}}", DiagramNodeKind.VARIABLE, variable, place=place)
 
-    def edges(self) -> Iterator[Edge]:
+    def edges(self) -> Iterator[DiagramEdge]:
         for instance in self.instances:
             for child in instance.children:
-                yield Edge(str(instance.number), str(child), EdgeKind.CHILD)
+                yield DiagramEdge(str(instance.number), str(child), EdgeKind.CHILD)
         for instance, key, variable in self.bound():
             node, name = str(instance.number), f"{{{variable}}}"
             place = self.place(instance, key)
             direction = self.direction(instance, key)
             if direction != "in":
-                yield Edge(node, name, EdgeKind.WRITES, (key,), place=place)
+                yield DiagramEdge(node, name, EdgeKind.WRITES, (key,), place=place)
             if direction != "out":
-                yield Edge(name, node, EdgeKind.READS, (key,), place=place)
+                yield DiagramEdge(name, node, EdgeKind.READS, (key,), place=place)
 
     def bound(self) -> Iterator[tuple[Instance, str, str]]:
         """Every port that is bound to a variable: instance, port, variable."""
@@ -99,11 +99,11 @@ class _Tree:
         port = outline.port(key) if outline else None
         return port.direction if port else "in"
 
-    def kind(self, instance: Instance, node: TreeNode | None) -> NodeKind:
+    def kind(self, instance: Instance, node: TreeNode | None) -> DiagramNodeKind:
         written = node.element.name if node else ""
         described = self.described.get(instance.plugin, "")
         if node is not None and node.type is not None and node.type.node and node.type.name not in EXPLICIT:
             word = node.type.node
         else:
             word = (written if written in EXPLICIT else described).lower()
-        return _KINDS.get(word, NodeKind.CONTROL if instance.children else NodeKind.ACTION)
+        return _KINDS.get(word, DiagramNodeKind.CONTROL if instance.children else DiagramNodeKind.ACTION)

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 
 from roaml.ide.formatting import json as format_json
 from roaml.ide.formatting import xml as format_xml
-from roaml.ide.formatting.layout import Gap, Layout, edits
+from roaml.ide.formatting.layout import FileLayout, Spacing, edits
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.text import SourceFile, Span, TextEdit
 
-DEFAULT = Layout()
+DEFAULT = FileLayout()
 
 _XML = (FileKind.MACHINE, FileKind.SYSTEM, FileKind.TREE, FileKind.STRUCTS)
 _JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
@@ -33,7 +33,7 @@ def is_ours(analysis: Analysis, path: str) -> bool:
 
 
 def format_edits(
-    analysis: Analysis, path: str, layout: Layout = DEFAULT, within: Span | None = None
+    analysis: Analysis, path: str, layout: FileLayout = DEFAULT, within: Span | None = None
 ) -> tuple[TextEdit, ...]:
     """The edits that format a file, in the order of the text.
 
@@ -54,7 +54,7 @@ def format_edits(
     return tuple(found)
 
 
-def _gaps(analysis: Analysis, path: str, layout: Layout) -> Iterator[Gap]:
+def _gaps(analysis: Analysis, path: str, layout: FileLayout) -> Iterator[Spacing]:
     kind, source = analysis.kind(path), analysis.source(path)
     if kind in _XML and (document := analysis.document(path)) is not None:
         yield from format_xml.gaps(document, layout)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import accumulate, pairwise
 
-from roaml.ide.formatting.layout import Gap, Layout, breaks, new_line
+from roaml.ide.formatting.layout import FileLayout, Spacing, breaks, new_line
 from roaml.text import Span
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{},:]|[^\s\[\]{},:"]+')
@@ -20,7 +20,7 @@ _FIRST_INDENT = re.compile(r"[\n\r]([ ]+|\t+)\S")
 _WIDTHS = (2, 4)
 
 
-def gaps(text: str, layout: Layout) -> Iterator[Gap]:
+def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
     """The white space of a text without syntax errors."""
     spans = [Span(*match.span()) for match in _TOKEN.finditer(text)]
     if not spans:
@@ -31,7 +31,7 @@ def gaps(text: str, layout: Layout) -> Iterator[Gap]:
     flat = [0, *accumulate(len(token) + _flat_space(tokens, i) for i, token in enumerate(tokens))]
     spaces = [Span(before.end, after.start) for before, after in pairwise(spans)]
     lines = [0, *accumulate(breaks(text[space.start : space.end]) for space in spaces)]
-    yield Gap(Span(0, spans[0].start), "")
+    yield Spacing(Span(0, spans[0].start), "")
     open_flat: list[bool] = []
     column = 0
     for i, (token, space) in enumerate(zip(tokens, spaces, strict=False)):
@@ -49,15 +49,15 @@ def gaps(text: str, layout: Layout) -> Iterator[Gap]:
             wanted = new_line(text[space.start : space.end] if token == "," else "", layout.indent(len(open_flat)))
         else:
             wanted = _flat_gap(tokens, i)
-        yield Gap(space, wanted)
+        yield Spacing(space, wanted)
         if wanted.startswith("\n"):
             column = layout.column(len(open_flat))
         else:
             column += len(token) + len(wanted)
-    yield Gap(Span(spans[-1].end, len(text)), "\n")
+    yield Spacing(Span(spans[-1].end, len(text)), "\n")
 
 
-def _like(text: str, layout: Layout) -> Layout:
+def _like(text: str, layout: FileLayout) -> FileLayout:
     """The layout with the width of the first indented line, if that is one of the usual ones."""
     found = _FIRST_INDENT.search(text)
     if found is None or len(found[1]) not in _WIDTHS or found[1][0] == "\t":

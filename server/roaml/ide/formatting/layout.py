@@ -18,7 +18,7 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class FileLayout:
     """The layout of a file.
 
     Attributes:
@@ -39,7 +39,7 @@ class Layout:
         return self.width * depth
 
 
-class Gap(NamedTuple):
+class Spacing(NamedTuple):
     """White space, possibly empty, between two tokens, to be replaced by `text`."""
 
     span: Span
@@ -56,7 +56,7 @@ def new_line(before: str, indent: str) -> str:
     return f"\n\n{indent}" if breaks(before) > 1 else f"\n{indent}"
 
 
-def edits(text: str, gaps: Iterable[Gap]) -> Iterator[TextEdit]:
+def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
     """The smallest edits that fill the gaps."""
     gaps = list(gaps)
     line_end = next((found[0] for gap in gaps if (found := _LINE_END.search(text, *gap.span))), None)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from roaml.ide.formatting.layout import Gap, Layout, breaks, new_line
+from roaml.ide.formatting.layout import FileLayout, Spacing, breaks, new_line
 from roaml.text import Span
 from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Node, Text
 from roaml.xml_syntax.names import SPACE
@@ -23,24 +23,24 @@ _HARMLESS = {"duplicate-attribute", "undefined-entity", "document-type"}
 _MARKERS = {"else", "elseif"}
 
 
-def gaps(document: Document, layout: Layout) -> Iterator[Gap]:
+def gaps(document: Document, layout: FileLayout) -> Iterator[Spacing]:
     """The white space of a document; empty if it has syntax errors."""
     if document.root is not None and all(finding.code in _HARMLESS for finding in document.findings):
         yield from _Formatter(document.text, layout).document(document)
 
 
 class _Formatter:
-    def __init__(self, text: str, layout: Layout) -> None:
+    def __init__(self, text: str, layout: FileLayout) -> None:
         self.text = text
         self.layout = layout
 
-    def document(self, document: Document) -> Iterator[Gap]:
+    def document(self, document: Document) -> Iterator[Spacing]:
         items = _items(document.nodes)
-        yield Gap(Span(0, items[0].span.start), "")
+        yield Spacing(Span(0, items[0].span.start), "")
         yield from self.lines(items, 0)
-        yield Gap(Span(items[-1].span.end, len(self.text)), "\n")
+        yield Spacing(Span(items[-1].span.end, len(self.text)), "\n")
 
-    def lines(self, items: Sequence[Node], depth: int, markers: int | None = None) -> Iterator[Gap]:
+    def lines(self, items: Sequence[Node], depth: int, markers: int | None = None) -> Iterator[Spacing]:
         """The gaps between and inside of some siblings; `markers` is the depth of those that divide an `<if>`."""
         last = items[0]
         for item in items:
@@ -51,17 +51,17 @@ class _Formatter:
                 yield from self.element(item, here)
             last = item
 
-    def before(self, end: int, item: Node, depth: int) -> Gap:
+    def before(self, end: int, item: Node, depth: int) -> Spacing:
         """The gap between `end` and a child."""
         space = Span(end, item.span.start)
         written = self.text[space.start : space.end]
         if isinstance(item, Comment) and not breaks(written):
-            return Gap(space, " ")
-        return Gap(space, new_line(written, self.layout.indent(depth)))
+            return Spacing(space, " ")
+        return Spacing(space, new_line(written, self.layout.indent(depth)))
 
     # -------------------------------------------------------------- elements
 
-    def element(self, element: Element, depth: int) -> Iterator[Gap]:
+    def element(self, element: Element, depth: int) -> Iterator[Spacing]:
         flat = self.flat_length(element)
         if flat is not None and self.layout.column(depth) + flat <= self.layout.line_length:
             yield from self.flat(element)
@@ -72,19 +72,19 @@ class _Formatter:
             if not self.is_verbatim(element):
                 yield from self.content(element, depth, element.close_span)
 
-    def content(self, element: Element, depth: int, close: Span) -> Iterator[Gap]:
+    def content(self, element: Element, depth: int, close: Span) -> Iterator[Spacing]:
         items = _items(element.nodes)
         inside = element.content_span
         indent = self.layout.indent(depth)
         if not items:
-            yield Gap(inside, f"\n{indent}" if breaks(self.raw(inside)) else "")
+            yield Spacing(inside, f"\n{indent}" if breaks(self.raw(inside)) else "")
             return
         markers = depth if element.name == "if" and self.is_level(element) else None
         first = depth if markers is not None and _is_marker(items[0]) else depth + 1
         yield self.before(inside.start, items[0], first)
         yield from self.lines(items, depth + 1, markers)
         end = Span(items[-1].span.end, close.start)
-        yield Gap(end, new_line(self.raw(end), indent))
+        yield Spacing(end, new_line(self.raw(end), indent))
 
     def is_verbatim(self, element: Element) -> bool:
         """Whether white space inside an element is significant."""
@@ -112,7 +112,7 @@ class _Formatter:
 
     # ------------------------------------------------------------------ tags
 
-    def tag(self, element: Element, depth: int) -> Iterator[Gap]:
+    def tag(self, element: Element, depth: int) -> Iterator[Spacing]:
         """The gaps in a start tag."""
         attributes = element.attributes
         between = self.between(element)
@@ -127,27 +127,27 @@ class _Formatter:
             return
         indent = self.layout.indent(depth) + " " * below if aligned else self.layout.indent(depth + 1)
         for number, space in enumerate(between):
-            yield Gap(space, " " if aligned and number == 0 else f"\n{indent}")
+            yield Spacing(space, " " if aligned and number == 0 else f"\n{indent}")
         yield from self.tag_rest(element)
 
-    def flat_tag(self, element: Element) -> Iterator[Gap]:
+    def flat_tag(self, element: Element) -> Iterator[Spacing]:
         for space in self.between(element):
-            yield Gap(space, " ")
+            yield Spacing(space, " ")
         yield from self.tag_rest(element)
 
-    def tag_rest(self, element: Element) -> Iterator[Gap]:
+    def tag_rest(self, element: Element) -> Iterator[Spacing]:
         """The gaps around `=` and at the end of a start tag."""
         for attribute in element.attributes:
             equals = self.text.index("=", attribute.name_span.end)
-            yield Gap(Span(attribute.name_span.end, equals), "")
-            yield Gap(Span(equals + 1, attribute.value_span.start - 1), "")
+            yield Spacing(Span(attribute.name_span.end, equals), "")
+            yield Spacing(Span(equals + 1, attribute.value_span.start - 1), "")
         last = element.attributes[-1].span.end if element.attributes else element.name_span.end
         slash = " " if element.self_closing else ""
-        yield Gap(Span(last, element.open_span.end - (2 if element.self_closing else 1)), slash)
+        yield Spacing(Span(last, element.open_span.end - (2 if element.self_closing else 1)), slash)
 
-    def end_tag(self, element: Element) -> Iterator[Gap]:
+    def end_tag(self, element: Element) -> Iterator[Spacing]:
         if element.close_span is not None and element.close_name_span is not None:
-            yield Gap(Span(element.close_name_span.end, element.close_span.end - 1), "")
+            yield Spacing(Span(element.close_name_span.end, element.close_span.end - 1), "")
 
     def between(self, element: Element) -> list[Span]:
         """The gaps before the attributes."""
@@ -156,7 +156,7 @@ class _Formatter:
 
     # ----------------------------------------------------------- on one line
 
-    def flat(self, element: Element) -> Iterator[Gap]:
+    def flat(self, element: Element) -> Iterator[Spacing]:
         """The gaps of an element on one line."""
         yield from self.flat_tag(element)
         yield from self.end_tag(element)
@@ -164,11 +164,11 @@ class _Formatter:
             return
         at = element.open_span.end
         for item in _items(element.nodes):
-            yield Gap(Span(at, item.span.start), "")
+            yield Spacing(Span(at, item.span.start), "")
             if isinstance(item, Element):
                 yield from self.flat(item)
             at = item.span.end
-        yield Gap(Span(at, element.close_span.start), "")
+        yield Spacing(Span(at, element.close_span.start), "")
 
     def flat_length(self, element: Element) -> int | None:
         """The length of an element on one line, in columns; `None` if it is not on one line or has several children."""

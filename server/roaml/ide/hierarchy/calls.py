@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import interface_symbol
-from roaml.ide.names.lookup import Use, occurrences_at, thing
+from roaml.ide.names.lookup import SymbolUse, occurrences_at, thing
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import trees_of, uses
 from roaml.model.outline import InterfaceUse
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -28,7 +28,7 @@ _CALLABLE = (SymbolKind.EVENT, *_INTERFACES, SymbolKind.MACHINE, SymbolKind.TREE
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class CallHierarchyItem:
     """A node of the graph. `span` is the whole of it, `name_span` its name."""
 
     symbol: Symbol
@@ -38,14 +38,14 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class HierarchyCall:
     """An edge of the graph: its other end, and the places in the caller's file at which it calls."""
 
-    item: Item
+    item: CallHierarchyItem
     places: tuple[Span, ...]
 
 
-def items_at(analysis: Analysis, path: str, offset: int) -> tuple[Item, ...]:
+def items_at(analysis: Analysis, path: str, offset: int) -> tuple[CallHierarchyItem, ...]:
     """The items at a caret. A handle is resolved to its topic, service or action."""
     symbols: dict[Symbol, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
@@ -58,7 +58,7 @@ def items_at(analysis: Analysis, path: str, offset: int) -> tuple[Item, ...]:
     return tuple(item for item in found if item is not None)
 
 
-def incoming(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
+def incoming(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
     """The callers of an item."""
     calls = _calls(analysis, _edges(analysis, symbol, into=True))
     return tuple(
@@ -66,7 +66,7 @@ def incoming(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
     )
 
 
-def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[Call, ...]:
+def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
     """The items that an item calls."""
     calls = _calls(analysis, _edges(analysis, symbol, into=False))
     item = _item(analysis, symbol) if _is_message(symbol) else None
@@ -81,25 +81,25 @@ def _is_message(symbol: Symbol) -> bool:
 _Edge = tuple[Symbol, Span]
 
 
-def _calls(analysis: Analysis, edges: Iterable[_Edge]) -> tuple[Call, ...]:
+def _calls(analysis: Analysis, edges: Iterable[_Edge]) -> tuple[HierarchyCall, ...]:
     places: dict[Symbol, dict[Span, None]] = {}
     for symbol, span in edges:
         places.setdefault(symbol, {})[span] = None
     found = ((_item(analysis, symbol), tuple(sorted(spans))) for symbol, spans in places.items())
-    return tuple(Call(item, spans) for item, spans in found if item is not None)
+    return tuple(HierarchyCall(item, spans) for item, spans in found if item is not None)
 
 
-def _item(analysis: Analysis, symbol: Symbol) -> Item | None:
+def _item(analysis: Analysis, symbol: Symbol) -> CallHierarchyItem | None:
     found = thing(analysis, (symbol,))
     own = [use for use in found.uses if use.occurrence.symbol == symbol]
     use = next((use for use in own if use.occurrence.defines), own[0] if own else None)
     if use is None:
         return None
     span = use.occurrence.span
-    return Item(symbol, use.path, _whole(analysis, use), span)
+    return CallHierarchyItem(symbol, use.path, _whole(analysis, use), span)
 
 
-def _whole(analysis: Analysis, use: Use) -> Span:
+def _whole(analysis: Analysis, use: SymbolUse) -> Span:
     """The element that contains a name."""
     document = analysis.document(use.path) if analysis.kind(use.path).name in ("MACHINE", "TREE") else None
     around = document.path_at(use.occurrence.span.start) if document else []
@@ -149,7 +149,7 @@ def _systems(analysis: Analysis, path: str) -> tuple[System, ...]:
     return tuple(system for system in found if system is not None)
 
 
-def _interface(system: System, automaton: Automaton, use: InterfaceUse) -> Symbol | None:
+def _interface(system: System, automaton: SystemAutomaton, use: InterfaceUse) -> Symbol | None:
     name = automaton.interface_name(use)
     return None if name is None else interface_symbol(system.path, use.kind, name)
 
@@ -165,7 +165,7 @@ def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
                         yield symbol
 
 
-def _places(analysis: Analysis, system: str, automaton: Automaton, use: InterfaceUse) -> tuple[Span, ...]:
+def _places(analysis: Analysis, system: str, automaton: SystemAutomaton, use: InterfaceUse) -> tuple[Span, ...]:
     """The places where a machine uses a declaration; the declaration itself if there are none."""
     known = uses(analysis, automaton.path, system).by_symbol
     found = list(known.get(automaton.symbol(use), ()))
@@ -204,7 +204,7 @@ def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
             yield tree, use.occurrence.span
 
 
-def _tree_around(analysis: Analysis, symbol: Symbol, use: Use) -> Symbol | None:
+def _tree_around(analysis: Analysis, symbol: Symbol, use: SymbolUse) -> Symbol | None:
     file = analysis.tree(use.path)
     trees = trees_of(analysis, use.path, analysis.systems_of(use.path)[0])
     for tree in file.trees if file else ():

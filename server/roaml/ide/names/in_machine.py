@@ -26,7 +26,6 @@ from roaml.model.machine import (
     Assign,
     CallChild,
     Chart,
-    Communicate,
     Data,
     Declaration,
     Handler,
@@ -34,6 +33,7 @@ from roaml.model.machine import (
     Machine,
     Param,
     ReturnStatus,
+    RosSend,
     Send,
     SetOutput,
     Statement,
@@ -237,7 +237,7 @@ class _Machine:
                 for branch in statement.branches:
                     if branch.cond is not None:
                         yield from scope.names(branch.cond)
-            case Communicate():
+            case RosSend():
                 yield from self.communicate(scope, statement)
             case ReturnStatus():
                 if statement.status is not None and statement.status.value not in STATUSES:
@@ -260,7 +260,7 @@ class _Machine:
                 yield Occurrence(param.name.span, symbol, defines=True, access=Access.WRITE)
             yield from self.value(scope, param.value)
 
-    def communicate(self, scope: _Scope, statement: Communicate) -> Iterator[Occurrence]:
+    def communicate(self, scope: _Scope, statement: RosSend) -> Iterator[Occurrence]:
         declaration = find_handle(self.machine, statement)
         yield from self.handle(statement.handle, declaration, Access.WRITE)
         part = interface_part(statement.part, declaration, self.environment)

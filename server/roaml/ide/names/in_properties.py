@@ -17,7 +17,7 @@ from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Form, Occurrence, parameter, tree_node
 from roaml.jani.properties import Property, identifiers
 from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
-from roaml.model.system import Automaton, Channel, System, safe_name, sanitise
+from roaml.model.system import Channel, System, SystemAutomaton, safe_name, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
 from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
@@ -129,7 +129,7 @@ def _protocol(
             yield (*head, _plain(f"_{event}_client_"), *_automaton(client.automaton, trees)), fields
 
 
-def _automaton(automaton: Automaton, trees: Trees) -> tuple[Piece, ...]:
+def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
     """The name of an automaton as a part of an event name."""
     machine = Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name)
     instance = automaton.instance

@@ -10,7 +10,7 @@ from roaml.forest.scripts import parsed, script_attributes
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import System
@@ -188,7 +188,7 @@ class _Tree:
             if automaton.instance is None:
                 continue
             for use in automaton.outline.interfaces:
-                if use.port and isinstance(automaton.port(use.port), Constant):
+                if use.port and isinstance(automaton.port(use.port), PortConstant):
                     setting = self.trees.constant(automaton.instance.number, use.port)
                     if setting is not None and setting.path == self.path:
                         name = _stripped(setting.value)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a place to all places with the same meaning.
+"""From a place to all places that mean the same thing.
 
-A file may be part of several systems, and its names may have another meaning in each. Everything that any of them
-connects is one group: renaming one of its places renames all.
+A file may belong to several systems, and its characters may mean something else in each. Everything that any of them
+ties together is one `SymbolGroup`: whoever renames one of its places must rename them all.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class SymbolUse:
     """An occurrence in a file."""
 
     path: str
@@ -36,14 +36,14 @@ class Use:
 
 
 @dataclass(frozen=True, eq=False)
-class Thing:
+class SymbolGroup:
     """All that is tied together. `symbols` begins with what stands at the place that was asked about.
 
     `uses` are sorted by file and place, each place once.
     """
 
     symbols: tuple[Symbol, ...]
-    uses: tuple[Use, ...]
+    uses: tuple[SymbolUse, ...]
 
     @cached_property
     def definitions(self) -> tuple[Location, ...]:
@@ -67,17 +67,17 @@ def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurren
     return tuple(starting or found)
 
 
-def thing_at(analysis: Analysis, path: str, offset: int) -> Thing | None:
+def thing_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup | None:
     """All that means the same as the name at a caret; None if no name stands there."""
     found = occurrences_at(analysis, path, offset)
     return thing(analysis, (each.symbol for each in found)) if found else None
 
 
-def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
+def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
     """All uses of some symbols, and of the symbols that share a place with one of them."""
     seen = dict.fromkeys(symbols)
     todo = list(seen)
-    found: dict[tuple[str, Span], Use] = {}
+    found: dict[tuple[str, Span], SymbolUse] = {}
     while todo:
         symbol = todo.pop(0)
         for path, uses_ in where(analysis, symbol):
@@ -85,12 +85,12 @@ def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> Thing:
                 place = (path, occurrence.span)
                 # Of several at one place, the definition is the most specific, then the requested one.
                 if place not in found or (occurrence.defines and not found[place].occurrence.defines):
-                    found[place] = Use(path, occurrence)
+                    found[place] = SymbolUse(path, occurrence)
                 for other in _sharing(analysis, path, occurrence.span):
                     if other not in seen:
                         seen[other] = None
                         todo.append(other)
-    return Thing(tuple(seen), tuple(found[place] for place in sorted(found)))
+    return SymbolGroup(tuple(seen), tuple(found[place] for place in sorted(found)))
 
 
 def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:

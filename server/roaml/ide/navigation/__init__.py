@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, Type, unwrap
-from roaml.ide.names.lookup import Thing, Use, occurrences_at, thing, thing_at
+from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, thing, thing_at
 from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
 from roaml.lower.nodes import node_file
@@ -23,7 +23,7 @@ INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
 @dataclass(frozen=True, slots=True)
-class Highlight:
+class DocumentHighlight:
     """A use in the same file. `access` is its kind; a definition is a write access."""
 
     span: Span
@@ -75,16 +75,16 @@ def references(analysis: Analysis, path: str, offset: int, *, with_declaration: 
     return (*uses, *(_ros(analysis, found.symbols) if with_declaration else ()))
 
 
-def highlights(analysis: Analysis, path: str, offset: int) -> tuple[Highlight, ...]:
+def highlights(analysis: Analysis, path: str, offset: int) -> tuple[DocumentHighlight, ...]:
     """All uses of the symbol at a caret, in this file."""
     found = thing_at(analysis, path, offset)
-    uses: Iterable[Use] = found.uses if found else ()
+    uses: Iterable[SymbolUse] = found.uses if found else ()
     return tuple(_highlight(use) for use in uses if use.path == path)
 
 
-def _highlight(use: Use) -> Highlight:
+def _highlight(use: SymbolUse) -> DocumentHighlight:
     occurrence = use.occurrence
-    return Highlight(occurrence.span, Access.WRITE if occurrence.defines else occurrence.access)
+    return DocumentHighlight(occurrence.span, Access.WRITE if occurrence.defines else occurrence.access)
 
 
 def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
@@ -174,7 +174,7 @@ def _of_interface(analysis: Analysis, system: System, symbol: Symbol) -> Iterato
             yield place
 
 
-def _of_declarations(analysis: Analysis, found: Thing) -> Iterator[Location]:
+def _of_declarations(analysis: Analysis, found: SymbolGroup) -> Iterator[Location]:
     for use in found.uses:
         machine = analysis.machine(use.path)
         for each in machine.declarations if machine else ():

@@ -10,7 +10,7 @@ from roaml.ide.json_tree import members
 from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 
-_LONGEST = 80
+_MAX_CHARACTERS = 80
 
 
 def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
@@ -98,7 +98,7 @@ def _items(parts: dict[str, JsonValue], key: str) -> tuple[JsonValue, ...]:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+    return text if len(text) <= _MAX_CHARACTERS else f"{text[: _MAX_CHARACTERS - 1]}…"
 
 
 _SECTIONS: dict[str, Callable[[JsonValue], DocumentSymbol | None]] = {

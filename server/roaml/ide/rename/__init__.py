@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from roaml.ide.names.lookup import Thing, Use, occurrences_at, thing_at
+from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, thing_at
 from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Form
 from roaml.ide.rename.new_name import problem
 from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC, safe_name, sanitise
@@ -37,7 +37,7 @@ _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
+class RenameRefusal:
     """`reason` is a clause for the user."""
 
     reason: str
@@ -58,36 +58,36 @@ class Renaming:
     edits: Mapping[str, tuple[TextEdit, ...]]
 
 
-def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | Refusal:
+def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefusal:
     """Whether the symbol at a caret can be renamed."""
     found, source = thing_at(analysis, path, offset), analysis.source(path)
     if found is None or source is None:
-        return Refusal("there is no name here")
+        return RenameRefusal("there is no name here")
     reason = _fixed(found)
     if reason:
-        return Refusal(reason)
+        return RenameRefusal(reason)
     span = occurrences_at(analysis, path, offset)[0].span
     return Prepared(span, source.text[span.start : span.end])
 
 
-def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | Refusal:
+def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | RenameRefusal:
     """The edits that rename the symbol at a caret."""
     found = thing_at(analysis, path, offset)
     if found is None:
-        return Refusal("there is no name here")
+        return RenameRefusal("there is no name here")
     new = new.strip()
     if SymbolKind.TOPIC in found.kinds:
         new = new.removeprefix("/")
     reason = _fixed(found) or problem(analysis, found, new)
     if reason:
-        return Refusal(reason)
+        return RenameRefusal(reason)
     edits: dict[str, list[TextEdit]] = {}
     for use in found.uses:
         edits.setdefault(use.path, []).append(TextEdit(use.occurrence.span, _spelled(new, use)))
     return Renaming({each: tuple(sorted(changes)) for each, changes in edits.items()})
 
 
-def _spelled(new: str, use: Use) -> str:
+def _spelled(new: str, use: SymbolUse) -> str:
     match use.occurrence.form:
         case Form.AS_IS:
             return new
@@ -101,7 +101,7 @@ def _spelled(new: str, use: Use) -> str:
             return new.replace(".", "__")
 
 
-def _fixed(found: Thing) -> str:
+def _fixed(found: SymbolGroup) -> str:
     """Why a symbol cannot be renamed at all; "" if it can."""
     for symbol in found.symbols:
         name = symbol.name

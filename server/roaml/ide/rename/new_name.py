@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES
 from roaml.ide.names.in_machine import is_implicit
-from roaml.ide.names.lookup import Thing, where
+from roaml.ide.names.lookup import SymbolGroup, where
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
@@ -35,7 +35,7 @@ _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolK
 """Kinds of symbols whose names the translation joins with others by `__`."""
 
 
-def problem(analysis: Analysis, found: Thing, new: str) -> str:
+def problem(analysis: Analysis, found: SymbolGroup, new: str) -> str:
     """Why a symbol cannot be named `new`, as a clause; "" if it can."""
     for symbol in found.symbols:
         if symbol.name == new:
@@ -56,7 +56,7 @@ def problem(analysis: Analysis, found: Thing, new: str) -> str:
     return ""
 
 
-def _handle_called(analysis: Analysis, found: Thing, symbol: Symbol, new: str) -> Declaration | None:
+def _handle_called(analysis: Analysis, found: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
     """The declaration for which a handle, or an interface that is its own handle, would be mistaken."""
     if symbol.kind in HANDLES:
         machine = analysis.machine(symbol.path)
@@ -75,7 +75,7 @@ def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
     return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
 
 
-def _form(kind: SymbolKind, new: str, found: Thing) -> str:
+def _form(kind: SymbolKind, new: str, found: SymbolGroup) -> str:
     """Why `new` is not a valid name of a kind."""
     what = _article(kind)
     cannot = f"`{new}` cannot name {what}"

@@ -17,14 +17,14 @@ from roaml.lower.nodes.switch import switch
 from roaml.lower.program import TranslatableSystem
 from roaml.model.build_machine import build_machine
 from roaml.model.machine import Machine
-from roaml.model.system import CHILDREN_COUNT, Automaton
+from roaml.model.system import CHILDREN_COUNT, SystemAutomaton
 from roaml.xml_syntax import parse
 
 _SWITCHES = {f"Switch{cases}": cases for cases in range(2, 7)}
 _MILLISECONDS_PER_SECOND = 1000
 
 
-def builtin_machine(automaton: Automaton, program: TranslatableSystem) -> Machine:
+def builtin_machine(automaton: SystemAutomaton, program: TranslatableSystem) -> Machine:
     """The machine for a node of BehaviorTree.CPP."""
     name = automaton.outline.name
     if name in _SWITCHES:
@@ -35,7 +35,7 @@ def builtin_machine(automaton: Automaton, program: TranslatableSystem) -> Machin
     return _parsed(text.replace("SLOTS", str(slots)).replace("NONE_ENDED", none_ended))
 
 
-def builtin_ports(automaton: Automaton, program: TranslatableSystem) -> dict[str, str]:
+def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> dict[str, str]:
     """The ports of the node that the tree does not set: defaults of the schema, number of children, rate of the
     tree."""
     rate = Fraction(str(program.parameters.tick_rate))
@@ -62,7 +62,7 @@ def _current(name: str) -> str:
     return renamed.now if renamed else name
 
 
-def _children(automaton: Automaton) -> int:
+def _children(automaton: SystemAutomaton) -> int:
     return len(automaton.instance.children) if automaton.instance else 0
 
 

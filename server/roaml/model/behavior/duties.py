@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, Configuration, Duty, Step
+from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, ChartConfiguration, Duty
 from roaml.roles import ProtocolPart
 
-Possible: TypeAlias = Callable[[Step], bool]
+Possible: TypeAlias = Callable[[BehaviorStep], bool]
 
 TICK, HALT = Duty("tick", ""), Duty("halt", "")
 _TAKING = {
@@ -35,7 +35,7 @@ _FOLLOWING = (
 """Events that answer something that was sent; other events come spontaneously."""
 
 
-def always(_: Step) -> bool:
+def always(_: BehaviorStep) -> bool:
     return True
 
 
@@ -47,7 +47,7 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
     return owing - answered
 
 
-def _is_due(configuration: Configuration, duty: Duty) -> bool:
+def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
     """If there are several goals at once, it is unknown which one an answer is for."""
     if configuration.state == NOWHERE or configuration.phase(duty.kind, duty.handle) == "several":
         return False
@@ -79,16 +79,16 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
     return (lost - left) or lost
 
 
-def _follows(step: Step) -> bool:
+def _follows(step: BehaviorStep) -> bool:
     return step.event is None or step.event.part in _FOLLOWING
 
 
-def _moves(behavior: Behavior, step: Step) -> bool:
+def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
     """Whether a step leads to another state."""
     return behavior.configurations[step.source].state != behavior.configurations[step.target].state
 
 
-def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
+def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
     """The steps after which the answer never comes.
 
     If the answer was omitted early, but a further event was still to follow (the response to a request that was sent),
@@ -116,7 +116,7 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[Step]:
             yield step
 
 
-def waiting_behind(behavior: Behavior, duty: Duty, step: Step) -> set[int]:
+def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[int]:
     """The configurations to which a step leads, directly or by further steps, and which owe an answer that never
     comes."""
     lost = unfinished(behavior, duty)
@@ -141,7 +141,7 @@ def is_suspicious(behavior: Behavior) -> bool:
     return bool(known[behavior])
 
 
-def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Step]:
+def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[BehaviorStep]:
     """The steps that lead into a set of configurations from outside."""
     return (step for step in behavior.steps if step.target in configurations and step.source not in configurations)
 
@@ -162,12 +162,12 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
     return found
 
 
-def _back(goals: set[int], steps: Iterable[Step]) -> set[int]:
+def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
     """The configurations from which some of `steps` lead to `goals`, including these."""
     return _reached(goals, ((step.target, step.source) for step in steps))
 
 
-def _forward(first: set[int], steps: Iterable[Step]) -> set[int]:
+def _forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
     """The configurations to which some of `steps` lead from `first`, including these."""
     return _reached(first, ((step.source, step.target) for step in steps))
 

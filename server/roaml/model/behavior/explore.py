@@ -20,12 +20,11 @@ from typing import NamedTuple
 
 from roaml.expr.format import format_expr
 from roaml.expr.tree import Expr, Name, access_path
-from roaml.model.behavior.knowledge import NOTHING, Domain, Facts, Knowledge, is_literal, variables_in
+from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Domain, Knowledge, is_literal, variables_in
 from roaml.model.machine import (
     Assign,
     CallChild,
     Chart,
-    Communicate,
     Declaration,
     Handler,
     If,
@@ -33,6 +32,7 @@ from roaml.model.machine import (
     NoEffect,
     ReturnHalted,
     ReturnStatus,
+    RosSend,
     Send,
     State,
     Statement,
@@ -51,7 +51,7 @@ NOWHERE = "?"
 """Represents an unknown state, in which anything may happen."""
 
 
-class Event(NamedTuple):
+class ProtocolEvent(NamedTuple):
     """An event that a machine receives or sends: the part of an interface or of the tree protocol, with its name in the
     schema, and the handle or the name of the event ("" for the tree)."""
 
@@ -95,7 +95,7 @@ Phases = tuple[tuple[tuple[str, str], str], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Configuration:
+class ChartConfiguration:
     state: str
     phases: Phases = ()
     knowledge: Knowledge = NOTHING
@@ -118,7 +118,7 @@ class Configuration:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class BehaviorStep:
     """
     Attributes:
         source, target: configurations, as indexes.
@@ -134,11 +134,11 @@ class Step:
 
     source: int
     target: int
-    event: Event | None
+    event: ProtocolEvent | None
     handler: Handler
     choice: int
     ignored: bool
-    sent: tuple[Event, ...]
+    sent: tuple[ProtocolEvent, ...]
     faults: tuple[Fault, ...]
     certain: bool
 
@@ -157,10 +157,10 @@ class Behavior:
     """
 
     chart: Chart
-    configurations: tuple[Configuration, ...]
+    configurations: tuple[ChartConfiguration, ...]
     starts: int
-    steps: tuple[Step, ...]
-    at_start: tuple[Event, ...]
+    steps: tuple[BehaviorStep, ...]
+    at_start: tuple[ProtocolEvent, ...]
     statuses: Mapping[ReturnStatus, frozenset[str]]
     approximate: bool
 
@@ -168,8 +168,8 @@ class Behavior:
     def size(self) -> int:
         return len(self.configurations)
 
-    def outgoing(self) -> list[list[Step]]:
-        found: list[list[Step]] = [[] for _ in self.configurations]
+    def outgoing(self) -> list[list[BehaviorStep]]:
+        found: list[list[BehaviorStep]] = [[] for _ in self.configurations]
         for step in self.steps:
             found[step.source].append(step)
         return found
@@ -195,7 +195,7 @@ class _Path(NamedTuple):
 
     phases: Phases
     knowledge: Knowledge
-    sent: tuple[Event, ...] = ()
+    sent: tuple[ProtocolEvent, ...] = ()
     faults: tuple[Fault, ...] = ()
     certain: bool = True
 
@@ -227,10 +227,10 @@ def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[s
     return scalar, frozenset(whole), frozenset(name for name, base in scalar.items() if base == "bool")
 
 
-def condition_facts(chart: Chart) -> Facts:
+def condition_facts(chart: Chart) -> ConditionFacts:
     """The facts with which the conditions of a chart are compared."""
     _, whole, logical = _kinds(chart)
-    return Facts(whole, logical, constants=STATUSES)
+    return ConditionFacts(whole, logical, constants=STATUSES)
 
 
 class _TooLargeError(Exception):
@@ -247,7 +247,7 @@ class _Group(NamedTuple):
     """The handlers of a state for one event, with the phases that affect them."""
 
     state: State
-    event: Event | None
+    event: ProtocolEvent | None
     handlers: tuple[Handler, ...]
     touched: frozenset[tuple[str, str]]
 
@@ -278,8 +278,8 @@ class _Explorer:
     machine: Machine
     chart: Chart
     fine: bool
-    numbers: dict[Configuration, int] = field(default_factory=dict)
-    steps: dict[tuple[object, ...], Step] = field(default_factory=dict)
+    numbers: dict[ChartConfiguration, int] = field(default_factory=dict)
+    steps: dict[tuple[object, ...], BehaviorStep] = field(default_factory=dict)
     statuses: defaultdict[ReturnStatus, set[str]] = field(default_factory=lambda: defaultdict(set))
     approximate: bool = False
 
@@ -297,20 +297,20 @@ class _Explorer:
         counted = self._counted()
         self.relevant = self._relevant(scalar, logical) if self.fine else counted | self._statuses()
         followed = None if not self.fine else self.relevant | EVENT_VARIABLES
-        self.facts = Facts(whole, logical, followed, counted)
-        self.status_facts = Facts(whole, logical, followed, counted, STATUSES)
+        self.facts = ConditionFacts(whole, logical, followed, counted)
+        self.status_facts = ConditionFacts(whole, logical, followed, counted, STATUSES)
         self.counts_down = bool(self.counts) and self._counts_down()
         self.goal_ids = self._goal_ids()
         self.may_be_ids = self._may_be_ids() if self.goal_ids else frozenset()
-        self.declarations: dict[Handler | Communicate, Declaration | None] = {}
+        self.declarations: dict[Handler | RosSend, Declaration | None] = {}
         self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
         self.groups: dict[str, list[_Group]] = {}
-        self.reactions: dict[tuple[State, Event | None, Phases, Knowledge], list[_Found]] = {}
+        self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, Knowledge], list[_Found]] = {}
         self.found: list[_Found] = []
         self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
         self.goal_here = "any"  # the meaning of `_action.goal_id` in the current step
 
-    def declaration(self, user: Handler | Communicate) -> Declaration | None:
+    def declaration(self, user: Handler | RosSend) -> Declaration | None:
         if user not in self.declarations:
             self.declarations[user] = find_handle(self.machine, user)
         return self.declarations[user]
@@ -382,7 +382,7 @@ class _Explorer:
 
     def _counted(self) -> frozenset[str]:
         """The variables that hold thread numbers."""
-        started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, Communicate) and s.thread_id)
+        started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, RosSend) and s.thread_id)
         return variables_in(started)
 
     def _goal_ids(self) -> frozenset[str]:
@@ -390,7 +390,7 @@ class _Explorer:
         found = {
             s.goal_id.tree.name
             for s in self.chart.statements
-            if isinstance(s, Communicate) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
+            if isinstance(s, RosSend) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
         }
         if not found:
             return frozenset()
@@ -432,14 +432,14 @@ class _Explorer:
         initial = self.chart.initial.value if self.chart.initial else ""
         if initial not in self.states:
             return None
-        at_start: list[Event] = []
+        at_start: list[ProtocolEvent] = []
         try:
             entry = self.states[initial].entry
             path = _Path((), self._initial())
             paths = self._bodies([entry.statements if entry else ()], [path])
             for each in paths:
                 at_start += each.sent
-                self._number(Configuration(initial, each.phases, self._kept(each.knowledge)))
+                self._number(ChartConfiguration(initial, each.phases, self._kept(each.knowledge)))
             starts = len(self.numbers)
             done = 0
             while done < len(self.numbers):
@@ -467,7 +467,7 @@ class _Explorer:
                     knowledge = self.facts.know(knowledge, data.id.value, Domain(frozenset((value,))))
         return knowledge
 
-    def _number(self, configuration: Configuration) -> int:
+    def _number(self, configuration: ChartConfiguration) -> int:
         known = self.numbers.get(configuration)
         if known is not None:
             return known
@@ -485,7 +485,7 @@ class _Explorer:
     def _kept(self, knowledge: Knowledge) -> Knowledge:
         return knowledge.within(self.relevant)
 
-    def _from(self, configuration: Configuration, number: int) -> None:
+    def _from(self, configuration: ChartConfiguration, number: int) -> None:
         for group in self._groups(configuration.state):
             if group.event is None or self._may_come(configuration, group.event):
                 self._react(configuration, number, group)
@@ -494,7 +494,7 @@ class _Explorer:
         """The handlers of a state that wait for the same event."""
         if name not in self.groups:
             state = self.states.get(name)
-            found: dict[Event | None, list[Handler]] = {}
+            found: dict[ProtocolEvent | None, list[Handler]] = {}
             for handler in state.handlers if state else ():
                 if handler.effective:
                     found.setdefault(self.event(handler), []).append(handler)
@@ -502,7 +502,9 @@ class _Explorer:
             self.groups[name] = [_Group(state, e, tuple(hs), self._touched(state, e, hs)) for e, hs in groups if state]
         return self.groups[name]
 
-    def _touched(self, state: State, event: Event | None, handlers: Iterable[Handler]) -> frozenset[tuple[str, str]]:
+    def _touched(
+        self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
+    ) -> frozenset[tuple[str, str]]:
         """The phases that the steps of a group may read or change."""
         found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
         if event is not None:
@@ -514,28 +516,28 @@ class _Explorer:
                 entered = self.states.get(target.state.value) if target.state else None
                 bodies += [target.body, entered.entry.statements if entered and entered.entry else ()]
         for statement in (inner for body in bodies for inner in statements(body)):
-            if isinstance(statement, Communicate):
+            if isinstance(statement, RosSend):
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
                 found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
         return frozenset(found)
 
-    def event(self, handler: Handler) -> Event | None:
+    def event(self, handler: Handler) -> ProtocolEvent | None:
         """The event that a handler waits for; `None` if it waits for none."""
         match handler.trigger:
             case None:
                 return None
             case ProtocolPart.EVENT:
-                return Event(ProtocolPart.EVENT, handler.event.value if handler.event else "")
+                return ProtocolEvent(ProtocolPart.EVENT, handler.event.value if handler.event else "")
             case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return Event(handler.trigger, "")
+                return ProtocolEvent(handler.trigger, "")
             case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
-                return Event(handler.trigger, handler.child.value if handler.child else "")
+                return ProtocolEvent(handler.trigger, handler.child.value if handler.child else "")
         declaration = self.declaration(handler)
         handle = declaration.handle if declaration and declaration.handle else handler.handle
-        return Event(handler.trigger, handle.value if handle else "")
+        return ProtocolEvent(handler.trigger, handle.value if handle else "")
 
-    def _may_come(self, configuration: Configuration, event: Event) -> bool:
+    def _may_come(self, configuration: ChartConfiguration, event: ProtocolEvent) -> bool:
         match event.part:
             case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
                 return configuration.tree not in ("ticked", "halting")
@@ -549,7 +551,7 @@ class _Explorer:
                 return bool(configuration.phase(_ANSWERED[event.part], event.name))
         return True
 
-    def _react(self, configuration: Configuration, number: int, group: _Group) -> None:
+    def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
         """The result depends on few phases only, so it is shared by many configurations."""
         taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
         inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
@@ -560,10 +562,10 @@ class _Explorer:
         outside = tuple(e for e in taken.phases if not (e[0] in group.touched or e[0][0] == "id"))
         for state, path, handler, choice, ignored in self.reactions[key]:
             phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
-            target = self._number(Configuration(state, phases, path.knowledge))
+            target = self._number(ChartConfiguration(state, phases, path.knowledge))
             step = (number, target, group.event, handler, choice, ignored, path.sent, path.faults, path.certain)
             if step not in self.steps:
-                self.steps[step] = Step(*step)
+                self.steps[step] = BehaviorStep(*step)
 
     def _decide(self, group: _Group, taken: _Path) -> None:
         event, handlers = group.event, group.handlers
@@ -629,7 +631,7 @@ class _Explorer:
                     done = done.with_ids(f"earlier {event.name}", f"accepted {event.name}")
                 self.found.append((after, done, handler, choice, False))
 
-    def _received(self, path: _Path, event: Event | None) -> _Path:
+    def _received(self, path: _Path, event: ProtocolEvent | None) -> _Path:
         """The changes by an event before anything is executed."""
         if event is None:
             return path
@@ -689,18 +691,22 @@ class _Explorer:
             case ReturnHalted():
                 return (self._halted(statement, path),)
             case Send():
-                return (self._sent(path, Event(ProtocolPart.EVENT, statement.event.value if statement.event else "")),)
+                return (
+                    self._sent(
+                        path, ProtocolEvent(ProtocolPart.EVENT, statement.event.value if statement.event else "")
+                    ),
+                )
             case CallChild():
                 busy, called = path.phase("child"), "halted" if statement.halts else "ticked"
                 sent = self._sent(
-                    path, Event(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
+                    path, ProtocolEvent(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
                 )
                 return (sent.at("child", "", "several" if busy else called),)
-            case Communicate():
+            case RosSend():
                 return (self._communicate(statement, path),)
         return (path,)
 
-    def _sent(self, path: _Path, event: Event) -> _Path:
+    def _sent(self, path: _Path, event: ProtocolEvent) -> _Path:
         return path._replace(sent=(*path.sent, event))
 
     def _assign(self, statement: Assign, path: _Path) -> Iterable[_Path]:
@@ -763,7 +769,7 @@ class _Explorer:
             value = self.facts.value(path.knowledge, Name(Span(0, 0), word))
             answers = tuple(name for name, number in STATUSES.items() if number == value)
         self.statuses[statement].update(answers)
-        path = self._sent(path, Event(ProtocolPart.BT_STATUS, ""))
+        path = self._sent(path, ProtocolEvent(ProtocolPart.BT_STATUS, ""))
         if path.phase("tree") == "ticked":
             phases = {"running" if answer == "RUNNING" else "ended" for answer in answers} or {"running", "ended"}
             return [path.at("tree", "", phase) for phase in sorted(phases)]
@@ -772,18 +778,18 @@ class _Explorer:
         return (path.wrong("unasked", duty, statement),)
 
     def _halted(self, statement: ReturnHalted, path: _Path) -> _Path:
-        path = self._sent(path, Event(ProtocolPart.BT_HALTED, ""))
+        path = self._sent(path, ProtocolEvent(ProtocolPart.BT_HALTED, ""))
         if path.phase("tree") == "halting":
             return path.at("tree", "", "ended")
         kind = "wrong-kind" if path.phase("tree") == "ticked" else "unasked"
         return path.wrong(kind, Duty("tick" if kind == "wrong-kind" else "halt", ""), statement)
 
-    def _communicate(self, statement: Communicate, path: _Path) -> _Path:
+    def _communicate(self, statement: RosSend, path: _Path) -> _Path:
         declaration = self.declaration(statement)
         if declaration is None or declaration.handle is None:
             return path
         part, handle = statement.part, declaration.handle.value
-        path = self._sent(path, Event(part, handle))
+        path = self._sent(path, ProtocolEvent(part, handle))
         match part:
             case ProtocolPart.REQUEST:
                 return path.at("response", handle, "several" if path.phase("response", handle) else "awaited")
@@ -806,7 +812,7 @@ class _Explorer:
                 return self._started(statement, path, handle)
         return path
 
-    def _decided(self, statement: Communicate, path: _Path, handle: str, accepts: bool) -> _Path:
+    def _decided(self, statement: RosSend, path: _Path, handle: str, accepts: bool) -> _Path:
         duty = Duty("goal", handle)
         is_due = bool(path.phase("goal", handle))
         decided = () if is_due else ("accepted", "earlier", "rejected", "finished")
@@ -821,7 +827,7 @@ class _Explorer:
             path = path.at("result", handle, "several" if path.phase("result", handle) else "due")
         return path
 
-    def _finished(self, statement: Communicate, path: _Path, handle: str) -> _Path:
+    def _finished(self, statement: RosSend, path: _Path, handle: str) -> _Path:
         duty = Duty("result", handle)
         before = len(path.faults)
         path = self._checked_id(statement, path, handle, duty, ("accepted", "earlier"))
@@ -840,9 +846,7 @@ class _Explorer:
                 return path.wrong("unasked", duty, statement)
         return path
 
-    def _checked_id(
-        self, statement: Communicate, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]
-    ) -> _Path:
+    def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]) -> _Path:
         """A goal must be named by the id with which it arrived."""
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:
@@ -864,7 +868,7 @@ class _Explorer:
             return path.wrong(kind, duty, statement)
         return path
 
-    def _started(self, statement: Communicate, path: _Path, handle: str) -> _Path:
+    def _started(self, statement: RosSend, path: _Path, handle: str) -> _Path:
         count = self.counts.get(handle)
         if count is None or statement.thread_id is None:
             return path

@@ -14,10 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
-from roaml.model.behavior.explore import Event, Step
+from roaml.model.behavior.explore import BehaviorStep, ProtocolEvent
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import SENDS
-from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, Endpoint, System, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart, SymbolKind
 
 _PROMISED = {ProtocolPart.RESPONSE: "request", ProtocolPart.GOAL_RESPONSE: "goal", ProtocolPart.RESULT: "result"}
@@ -50,11 +50,11 @@ _ANSWERS = {
 }
 """The events that a server sends and a client receives."""
 
-_Fact = tuple[int, Event]
+_Fact = tuple[int, ProtocolEvent]
 
 
 @dataclass(frozen=True, slots=True)
-class Delay:
+class EventDelay:
     """Why an event takes time.
 
     Attributes:
@@ -64,11 +64,11 @@ class Delay:
         next: what that waits for in turn; `None` for a timer.
     """
 
-    automaton: Automaton
-    event: Event
-    server: Endpoint | None = None
+    automaton: SystemAutomaton
+    event: ProtocolEvent
+    server: ChannelEndpoint | None = None
     promise: Promise | None = None
-    next: Delay | None = None
+    next: EventDelay | None = None
 
 
 @dataclass(eq=False)
@@ -76,16 +76,16 @@ class _Solver:
     """The least solution of a system of facts "this event comes to this automaton", found by iteration."""
 
     system: System
-    holds: Callable[[_Solver, int, Event], bool]
+    holds: Callable[[_Solver, int, ProtocolEvent], bool]
     facts: dict[_Fact, bool] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.index = {id(automaton): n for n, automaton in enumerate(self.system.automata)}
 
-    def read(self, number: int, event: Event) -> bool:
+    def read(self, number: int, event: ProtocolEvent) -> bool:
         return self.facts.setdefault((number, event), False)
 
-    def solve(self, number: int, event: Event) -> bool:
+    def solve(self, number: int, event: ProtocolEvent) -> bool:
         self.read(number, event)
         changed = True
         while changed:
@@ -97,12 +97,14 @@ class _Solver:
             changed = changed or len(self.facts) > before
         return self.facts[number, event]
 
-    def number(self, automaton: Automaton) -> int:
+    def number(self, automaton: SystemAutomaton) -> int:
         return self.index[id(automaton)]
 
     # -------------------------------------------------------------- who sends
 
-    def senders(self, automaton: Automaton, event: Event) -> Iterator[tuple[Automaton, Event]]:
+    def senders(
+        self, automaton: SystemAutomaton, event: ProtocolEvent
+    ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
         """The automata that may send what arrives at `automaton` as `event`, with the event that they send."""
         if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
@@ -116,9 +118,9 @@ class _Solver:
         wanted = _SENDERS.get(event.part)
         for endpoint in channel.endpoints if channel else ():
             if endpoint.use.kind is wanted:
-                yield endpoint.automaton, Event(event.part, endpoint.use.handle)
+                yield endpoint.automaton, ProtocolEvent(event.part, endpoint.use.handle)
 
-    def causes(self, automaton: Automaton, sent: Event) -> Iterator[Event]:
+    def causes(self, automaton: SystemAutomaton, sent: ProtocolEvent) -> Iterator[ProtocolEvent]:
         """The events on which an automaton sends something."""
         for chart in automaton.outline.charts:
             for cause, event in chart.reactions:
@@ -126,7 +128,7 @@ class _Solver:
                     yield cause
 
 
-def channel_of(system: System, automaton: Automaton, event: Event) -> Channel | None:
+def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> Channel | None:
     """The topic, service or action of an event of an automaton."""
     for use in automaton.outline.interfaces:
         if use.handle == event.name and use.kind in _KINDS.get(event.part, ()):
@@ -142,18 +144,18 @@ class Instants:
     """What can happen after `plugin` has been ticked or halted, without any time passing."""
 
     system: System
-    plugin: Automaton
+    plugin: SystemAutomaton
 
     def __post_init__(self) -> None:
         self.solver = _Solver(self.system, self._holds)
         self.own = self.solver.number(self.plugin)
         self.below = {id(automaton) for automaton in _below(self.system, self.plugin)}
 
-    def comes(self, event: Event) -> bool:
+    def comes(self, event: ProtocolEvent) -> bool:
         """Whether an event that the plugin waits for can come."""
         return self.solver.solve(self.own, event)
 
-    def possible(self, step: Step) -> bool:
+    def possible(self, step: BehaviorStep) -> bool:
         """Whether the plugin can take a step. Some servers never reject a goal."""
         if step.event is None or step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT):
             return True
@@ -164,7 +166,7 @@ class Instants:
                 return False
         return self.comes(step.event)
 
-    def _holds(self, solver: _Solver, number: int, event: Event) -> bool:
+    def _holds(self, solver: _Solver, number: int, event: ProtocolEvent) -> bool:
         automaton = self.system.automata[number]
         match event.part:
             case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
@@ -190,46 +192,46 @@ class Instants:
                     return True
         return False
 
-    def _kept(self, server: Endpoint, event: Event) -> Iterator[Promise]:
+    def _kept(self, server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
         """The promises that the plugin may encounter: a single client does not find a server busy with its own goal."""
         channel = self.system.channel(server.automaton, server.use)
         alone = channel is not None and len(channel.users) == 1
         return (promise for promise in promises(server, event) if not (alone and promise.busy))
 
-    def _takes_time(self, server: Endpoint, promise: Promise) -> bool:
+    def _takes_time(self, server: ChannelEndpoint, promise: Promise) -> bool:
         number = self.solver.number(server.automaton)
         return not any(all(self.solver.read(number, event) for event in needs) for needs in promise.needs)
 
-    def delay(self, event: Event) -> Delay:
+    def delay(self, event: ProtocolEvent) -> EventDelay:
         """Why an event does not come."""
         self.comes(event)
         return self._delay(self.plugin, event, frozenset())
 
-    def _delay(self, automaton: Automaton, event: Event, seen: frozenset[_Fact]) -> Delay:
+    def _delay(self, automaton: SystemAutomaton, event: ProtocolEvent, seen: frozenset[_Fact]) -> EventDelay:
         fact = (self.solver.number(automaton), event)
         if fact in seen:
-            return Delay(automaton, event)
+            return EventDelay(automaton, event)
         seen |= {fact}
         if event.part in _PROMISED:
             server = server_of(self.system, automaton, event)
             for promise in self._kept(server, event) if server else ():
                 if server and self._takes_time(server, promise):
                     awaited = self._first(server.automaton, promise.needs)
-                    return Delay(automaton, event, server, promise, self._delay(server.automaton, awaited, seen))
+                    return EventDelay(automaton, event, server, promise, self._delay(server.automaton, awaited, seen))
         if event.part is not ProtocolPart.TICK and not is_clock(self.system, automaton, event):
             for sender, sent in self.solver.senders(automaton, event):
                 for cause in sorted(self.solver.causes(sender, sent)):
-                    return Delay(automaton, event, next=self._delay(sender, cause, seen))
-        return Delay(automaton, event)
+                    return EventDelay(automaton, event, next=self._delay(sender, cause, seen))
+        return EventDelay(automaton, event)
 
-    def _first(self, automaton: Automaton, needs: Needs) -> Event:
+    def _first(self, automaton: SystemAutomaton, needs: Needs) -> ProtocolEvent:
         """The first event that does not come, of the alternative with the fewest events."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
 
 
-def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
+def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
     """Whether an event may come from an unreadable part."""
     if event.part is ProtocolPart.EVENT:
         return system.may(SENDS, event.name)
@@ -246,12 +248,12 @@ def may_be_sent(system: System, automaton: Automaton, event: Event) -> bool:
     return any(system.may(act, name or "") for act in acts)
 
 
-def is_readable(system: System, automaton: Automaton) -> bool:
+def is_readable(system: System, automaton: SystemAutomaton) -> bool:
     """Whether everything that an automaton receives and sends can be read; the fields of sent messages are ignored."""
     return id(automaton) not in system.partly_read
 
 
-def promises(server: Endpoint, event: Event) -> Iterator[Promise]:
+def promises(server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
     """The answers of a server that a client receives as `event` and that do not come at once."""
     for chart in server.automaton.outline.charts:
         for promise in chart.promises:
@@ -259,12 +261,12 @@ def promises(server: Endpoint, event: Event) -> Iterator[Promise]:
                 yield promise
 
 
-def server_of(system: System, automaton: Automaton, event: Event) -> Endpoint | None:
+def server_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> ChannelEndpoint | None:
     channel = channel_of(system, automaton, event)
     return channel.sources[0] if channel and channel.sources else None
 
 
-def is_clock(system: System, automaton: Automaton, event: Event) -> bool:
+def is_clock(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
     if event.part is not ProtocolPart.MESSAGE:
         return False
     uses = (
@@ -273,7 +275,7 @@ def is_clock(system: System, automaton: Automaton, event: Event) -> bool:
     return any(sanitise(automaton.interface_name(use) or "") == CLOCK_TOPIC for use in uses)
 
 
-def _below(system: System, plugin: Automaton) -> Iterator[Automaton]:
+def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]:
     """The automata of the nodes below a node."""
     waiting = list(plugin.instance.children) if plugin.instance else []
     while waiting:
@@ -286,7 +288,9 @@ def _below(system: System, plugin: Automaton) -> Iterator[Automaton]:
 # -------------------------------------------------- while a machine stands still
 
 
-def comes_again(system: System, receiver: Automaton, chart: int, event: Event, sent: frozenset[Event]) -> bool:
+def comes_again(
+    system: System, receiver: SystemAutomaton, chart: int, event: ProtocolEvent, sent: frozenset[ProtocolEvent]
+) -> bool:
     """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
     `sent` since. Time may pass meanwhile (docs/spec/semantics.md#time).
 
@@ -296,12 +300,12 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
 
-    def sends(solver: _Solver, automaton: Automaton, what: Event) -> Iterator[Event]:
+    def sends(solver: _Solver, automaton: SystemAutomaton, what: ProtocolEvent) -> Iterator[ProtocolEvent]:
         for each in automaton.outline.charts:
             if automaton is not receiver or each is not frozen:
                 yield from (cause for cause, event in each.reactions if event == what)
 
-    def holds(solver: _Solver, number: int, awaited: Event) -> bool:
+    def holds(solver: _Solver, number: int, awaited: ProtocolEvent) -> bool:
         automaton = system.automata[number]
         if awaited == START or awaited.part in (
             ProtocolPart.TICK,
@@ -317,7 +321,7 @@ def comes_again(system: System, receiver: Automaton, chart: int, event: Event, s
             server = server_of(system, automaton, awaited)
             if server is None:
                 return False
-            answers = [(server.automaton, Event(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
+            answers = [(server.automaton, ProtocolEvent(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
         else:
             answers = list(solver.senders(automaton, awaited))
         for sender, what in answers:

@@ -150,7 +150,7 @@ class _Term(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Facts:
+class ConditionFacts:
     """Facts that hold for the variables of a chart on every path.
 
     Attributes:

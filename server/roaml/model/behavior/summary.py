@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, Duty, Event, Step, explore
+from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, Duty, ProtocolEvent, explore
 from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
-Needs: TypeAlias = frozenset[frozenset[Event]]
+Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
 """Alternatives: each is a set of events that together are sufficient. Without an alternative, it never comes."""
 
-AT_ONCE: frozenset[Event] = frozenset()
-START = Event(ProtocolPart.START, "")
+AT_ONCE: frozenset[ProtocolEvent] = frozenset()
+START = ProtocolEvent(ProtocolPart.START, "")
 """The time before the first event of a machine."""
 
 MOST_ALTERNATIVES = 6
@@ -62,8 +62,8 @@ class ChartOutline:
     """
 
     promises: tuple[Promise, ...]
-    reactions: frozenset[tuple[Event, Event]]
-    repeats: tuple[tuple[Event, Needs], ...]
+    reactions: frozenset[tuple[ProtocolEvent, ProtocolEvent]]
+    repeats: tuple[tuple[ProtocolEvent, Needs], ...]
 
 
 UNKNOWN = ChartOutline((), frozenset(), ())
@@ -90,8 +90,8 @@ class _Edge:
     source: int
     target: int
     event: int
-    taken: Event | None
-    sent: frozenset[Event]
+    taken: ProtocolEvent | None
+    sent: frozenset[ProtocolEvent]
 
 
 class _Summary:
@@ -99,11 +99,11 @@ class _Summary:
 
     def __init__(self, behavior: Behavior) -> None:
         self.behavior = behavior
-        self.events: dict[Event, int] = {}
+        self.events: dict[ProtocolEvent, int] = {}
         self.edges = list(dict.fromkeys(self._edge(step) for step in behavior.steps))
         self.names = {bit: event for event, bit in self.events.items()}
 
-    def _edge(self, step: Step) -> _Edge:
+    def _edge(self, step: BehaviorStep) -> _Edge:
         bit = 0 if step.event is None else self.events.setdefault(step.event, 1 << len(self.events))
         return _Edge(step.source, step.target, bit, step.event, frozenset(step.sent))
 
@@ -125,7 +125,7 @@ class _Summary:
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
         """The places where an answer is owed, and where a request is not even handled."""
-        taking, configurations = Event(ProtocolPart(duty.kind), duty.handle), self.behavior.configurations
+        taking, configurations = ProtocolEvent(ProtocolPart(duty.kind), duty.handle), self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
         answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
@@ -145,10 +145,10 @@ class _Summary:
         scope = self.behavior.chart.scope
         return Promise(duty, configuration.state, scope, taken, busy, frozenset(map(self._set, alternatives)))
 
-    def _set(self, mask: int) -> frozenset[Event]:
+    def _set(self, mask: int) -> frozenset[ProtocolEvent]:
         return frozenset(event for bit, event in self.names.items() if mask & bit)
 
-    def _repeats(self) -> Iterator[tuple[Event, Needs]]:
+    def _repeats(self) -> Iterator[tuple[ProtocolEvent, Needs]]:
         at_start = [event for event in self.behavior.at_start if event.part in REPEATED]
         twice = {e for step in self.behavior.steps for e in step.sent if step.sent.count(e) > 1}
         for event in dict.fromkeys([*(e for edge in self.edges for e in sorted(edge.sent)), *at_start]):
@@ -162,8 +162,8 @@ class _Summary:
             found = {mask for number in after for mask in needs.get(number, ())} | ({0} if event in twice else set())
             yield event, frozenset(map(self._set, _least(found)))
 
-    def _reactions(self) -> frozenset[tuple[Event, Event]]:
-        before: list[set[Event]] = [set() for _ in self.behavior.configurations]
+    def _reactions(self) -> frozenset[tuple[ProtocolEvent, ProtocolEvent]]:
+        before: list[set[ProtocolEvent]] = [set() for _ in self.behavior.configurations]
         for start in range(self.behavior.starts):
             before[start].add(START)
         changed = True

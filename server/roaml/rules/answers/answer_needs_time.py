@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.model.behavior.duties import HALT, TICK, distances, entering, unfinished
-from roaml.model.behavior.explore import Behavior, Duty, Event, Step
-from roaml.model.behavior.instants import Delay, Instants, channel_of, is_readable
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, ProtocolEvent
+from roaml.model.behavior.instants import EventDelay, Instants, channel_of, is_readable
 from roaml.model.machine import Handler
-from roaml.model.system import Automaton, System
+from roaml.model.system import System, SystemAutomaton
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place, plugins
@@ -43,7 +43,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                             yield _finding(context, system, handler, duty, instants.delay(awaited), automaton)
 
 
-def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
+def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[Handler]:
     """The handlers where the wait begins.
 
     This is the handler of the step. If the step is a decision on a goal, which has no content, these are the handlers
@@ -66,7 +66,7 @@ def _beginning(behavior: Behavior, step: Step, duty: Duty) -> Iterable[Handler]:
     return found
 
 
-def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], instants: Instants) -> Event | None:
+def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], instants: Instants) -> ProtocolEvent | None:
     """The first event on the way to the answer that needs time to arrive; if there are several, one that leads to the
     answer."""
     outgoing, left = behavior.outgoing(), distances(behavior, slow)
@@ -85,7 +85,7 @@ def _awaited(behavior: Behavior, first: Step, slow: frozenset[int], instants: In
 
 
 def _finding(
-    context: MachineContext, system: System, handler: Handler, duty: Duty, delay: Delay, automaton: Automaton
+    context: MachineContext, system: System, handler: Handler, duty: Duty, delay: EventDelay, automaton: SystemAutomaton
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
     message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
@@ -98,11 +98,11 @@ def _finding(
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
 
-def _not_taken(delay: Delay) -> bool:
+def _not_taken(delay: EventDelay) -> bool:
     return delay.promise is not None and not delay.promise.taken
 
 
-def _reasons(system: System, delay: Delay | None) -> Iterator[str]:
+def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
     """One phrase for each link of the chain of machines that wait for each other, without the first link."""
     while delay is not None and delay.next is not None:
         then = delay.next
@@ -137,12 +137,12 @@ _WHAT = {
 }
 
 
-def _channel(system: System, automaton: Automaton, event: Event) -> str:
+def _channel(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
     channel = channel_of(system, automaton, event)
     return f"`{channel.name if channel else event.name}`"
 
 
-def _named(system: System, automaton: Automaton, event: Event) -> str:
+def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
     """A phrase for the event that is waited for."""
     match event.part:
         case ProtocolPart.TICK:
@@ -160,8 +160,8 @@ def _named(system: System, automaton: Automaton, event: Event) -> str:
     return f"{_WHAT.get(event.part, event.part.value)} {_channel(system, automaton, event)}"
 
 
-def _related(delay: Delay) -> Iterator[Related]:
-    each: Delay | None = delay
+def _related(delay: EventDelay) -> Iterator[Related]:
+    each: EventDelay | None = delay
     while each is not None:
         if each.promise is not None and each.server is not None:
             path, promise = each.server.automaton.path, each.promise

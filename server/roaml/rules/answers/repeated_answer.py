@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
-from roaml.model.behavior.explore import Behavior, Duty, Event, Fault, Step
-from roaml.model.machine import Communicate, Handler, If, ReturnHalted, ReturnStatus, Statement, statements
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, Fault, ProtocolEvent
+from roaml.model.machine import Handler, If, ReturnHalted, ReturnStatus, RosSend, Statement, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -31,7 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield _finding(context, behavior, step, fault)
 
 
-def _counts(context: MachineContext, behavior: Behavior, step: Step, fault: Fault, in_tree: bool) -> bool:
+def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault, in_tree: bool) -> bool:
     if fault.kind not in KINDS:
         return False
     if fault.duty.kind in ("tick", "halt"):
@@ -53,17 +53,17 @@ def _is_asked(behavior: Behavior, duty: Duty) -> bool:
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
 
-def _owes_another(behavior: Behavior, step: Step, duty: Duty) -> bool:
+def _owes_another(behavior: Behavior, step: BehaviorStep, duty: Duty) -> bool:
     phases = behavior.configurations[step.target].phases
     return any(kind == duty.kind and handle != duty.handle for (kind, handle), _ in phases)
 
 
-def _twice(step: Step, fault: Fault) -> bool:
+def _twice(step: BehaviorStep, fault: Fault) -> bool:
     """Whether the answer is sent more than once in one step."""
     return sum(event in _answers(fault) for event in step.sent) > 1
 
 
-def _answers(fault: Fault) -> set[Event]:
+def _answers(fault: Fault) -> set[ProtocolEvent]:
     """The events that answer the duty of a fault."""
     if fault.duty.kind == "goal":
         parts = {ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED}
@@ -72,10 +72,10 @@ def _answers(fault: Fault) -> set[Event]:
     else:
         parts = {SENT[fault.duty.kind]}
     handle = "" if fault.duty.kind in ("tick", "halt") else fault.duty.handle
-    return {Event(part, handle) for part in parts}
+    return {ProtocolEvent(part, handle) for part in parts}
 
 
-def _finding(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Finding:
+def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Finding:
     where = place(step.handler, fault.statement)
     first = _first_answer(context, behavior, step, fault)
     related = [Related(first.element.name_span, "the first answer")] if first is not None else []
@@ -88,7 +88,7 @@ def _finding(context: MachineContext, behavior: Behavior, step: Step, fault: Fau
     return RULE.at(where, message, *_fixes(context, step, fault), severity=severity, related=related)
 
 
-def _message(behavior: Behavior, step: Step, fault: Fault, first: Statement | None) -> str:
+def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statement | None) -> str:
     what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
     if fault.kind == "wrong-kind":
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
@@ -109,7 +109,7 @@ def _message(behavior: Behavior, step: Step, fault: Fault, first: Statement | No
     return f"a {what} is {how} twice on one path, {by}: {tail}"
 
 
-def _first_answer(context: MachineContext, behavior: Behavior, step: Step, fault: Fault) -> Statement | None:
+def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
     """The statement that has answered the question before, in the same step or in the nearest step that leads to it."""
     if fault.kind == "wrong-kind":
         return None
@@ -119,7 +119,7 @@ def _first_answer(context: MachineContext, behavior: Behavior, step: Step, fault
         found = [s for s in earlier if _event(context, s) in events]
         if found:
             return found[-1]
-    incoming: dict[int, list[Step]] = {}
+    incoming: dict[int, list[BehaviorStep]] = {}
     for each in behavior.steps:
         incoming.setdefault(each.target, []).append(each)
     seen, waiting = {step.source}, [step.source]
@@ -135,7 +135,7 @@ def _first_answer(context: MachineContext, behavior: Behavior, step: Step, fault
     return None
 
 
-def _executed_before(behavior: Behavior, step: Step, statement: Statement | None) -> list[Statement]:
+def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statement | None) -> list[Statement]:
     """The statements that a step may execute before `last`, in order; if `last` is `None`, all statements that it may
     execute."""
     states = {state.id.value: state for state in behavior.chart.states if state.id}
@@ -168,14 +168,14 @@ def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement
     return True
 
 
-def _event(context: MachineContext, statement: Statement) -> Event | None:
+def _event(context: MachineContext, statement: Statement) -> ProtocolEvent | None:
     if isinstance(statement, ReturnStatus):
-        return Event(ProtocolPart.BT_STATUS, "")
+        return ProtocolEvent(ProtocolPart.BT_STATUS, "")
     if isinstance(statement, ReturnHalted):
-        return Event(ProtocolPart.BT_HALTED, "")
-    if isinstance(statement, Communicate):
+        return ProtocolEvent(ProtocolPart.BT_HALTED, "")
+    if isinstance(statement, RosSend):
         declaration = find_handle(context.machine, statement)
-        return Event(statement.part, declaration.handle.value) if declaration and declaration.handle else None
+        return ProtocolEvent(statement.part, declaration.handle.value) if declaration and declaration.handle else None
     return None
 
 
@@ -196,7 +196,7 @@ def _where(behavior: Behavior, statement: Statement) -> str:
 _QUESTION = {"tick": "tick", "halt": "halt", "request": "request", "goal": "goal", "result": "goal"}
 
 
-def _fixes(context: MachineContext, step: Step, fault: Fault) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterator[Fix]:
     element = fault.statement.element
     if fault.kind == "wrong-kind":
         right = (

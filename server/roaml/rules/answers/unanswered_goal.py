@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.behavior.explore import Behavior, Duty, Step
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
@@ -48,7 +48,7 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator
         yield RULE.at(place(step.handler), message, severity=severity, related=target_of(step))
 
 
-def _message(step: Step, duty: Duty, certain: bool) -> str:
+def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     tag, ends = f"<{step.handler.element.name}>", duty.kind == "result"
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
@@ -62,7 +62,7 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
     return f"{which} {how}, so its client waits for ever; {end} on every path"
 
 
-def _asks(step: Step) -> bool:
+def _asks(step: BehaviorStep) -> bool:
     return step.event is not None and step.event.part is ProtocolPart.GOAL
 
 

@@ -9,9 +9,9 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import halts, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import HALT
-from roaml.model.behavior.explore import Behavior, Step
+from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.machine import State
-from roaml.model.system import Automaton
+from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
@@ -48,7 +48,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield from _not_taken(context, behavior, [automaton for automaton, _ in halted])
 
 
-def _halted(context: MachineContext) -> Iterator[tuple[Automaton, Automaton]]:
+def _halted(context: MachineContext) -> Iterator[tuple[SystemAutomaton, SystemAutomaton]]:
     """The nodes of the plugin in the tree, each with its parent if the parent halts its children."""
     for automaton in plugins(context):
         number = automaton.instance.parent if automaton.instance else None
@@ -65,7 +65,7 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
         yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
 
 
-def _message(step: Step, certain: bool) -> str:
+def _message(step: BehaviorStep, certain: bool) -> str:
     if step.ignored:
         what = "events are dropped while this condition does not hold, so the halt is never answered"
         tag = f"<{step.handler.element.name}>"
@@ -76,7 +76,7 @@ def _message(step: Step, certain: bool) -> str:
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
 
 
-def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
+def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states in which the plugin waits and that have no `<bt_halt>`."""
     for waiting in deaf(context, behavior, automata, HALT):
         if waiting.needs_time:
@@ -105,7 +105,7 @@ def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
         yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
 
 
-def _answer(context: MachineContext, step: Step) -> Iterator[Fix]:
+def _answer(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
     """Add a `<bt_return_halted />` to the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     sent = {event.part for event in step.sent}

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import last_in
-from roaml.model.behavior.explore import Behavior, Duty, Step
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
@@ -39,7 +39,7 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Ha
         yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
 
 
-def _message(step: Step, duty: Duty, certain: bool) -> str:
+def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
     if step.ignored:
         what = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
@@ -52,7 +52,7 @@ def _message(step: Step, duty: Duty, certain: bool) -> str:
     return f"{where} {how}, so the client waits for ever; send one `<ros_service_send_response>` on every path"
 
 
-def _fixes(context: MachineContext, step: Step, asked: Handler) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep, asked: Handler) -> Iterator[Fix]:
     """Send a response with the zero of each field's type at the end of the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     declaration = find_handle(context.machine, asked)

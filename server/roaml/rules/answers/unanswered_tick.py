@@ -9,8 +9,8 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import TICK
-from roaml.model.behavior.explore import Behavior, Step
-from roaml.model.system import Automaton
+from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
@@ -57,7 +57,7 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
         )
 
 
-def _message(step: Step, certain: bool) -> str:
+def _message(step: BehaviorStep, certain: bool) -> str:
     ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
     if step.ignored:
         tag = f"<{step.handler.element.name}>"
@@ -70,7 +70,7 @@ def _message(step: Step, certain: bool) -> str:
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
 
 
-def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Automaton]) -> Iterator[Finding]:
+def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states in which the plugin waits and that have no `<bt_tick>`."""
     for waiting in deaf(context, behavior, automata, TICK):
         if waiting.needs_time:
@@ -97,7 +97,7 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
             yield Fix(f"Answer ticks in the state `{each.id.value}` with `RUNNING`", (edit,), preferred=False)
 
 
-def _fixes(context: MachineContext, step: Step) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
     """Return SUCCESS at the end of the handler, or RUNNING where none of its conditions holds."""
     document, element = context.document, step.handler.element
     if not element.complete or step.event is None:

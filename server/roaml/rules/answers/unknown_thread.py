@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.behavior.explore import Fault, Step
-from roaml.model.machine import Communicate, Statement
+from roaml.model.behavior.explore import BehaviorStep, Fault
+from roaml.model.machine import RosSend, Statement
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place
 
@@ -18,12 +18,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
         told: set[Statement] = set()
         for step in behavior.steps:
             for fault in step.faults:
-                if fault.kind == "thread" and fault.statement not in told and isinstance(fault.statement, Communicate):
+                if fault.kind == "thread" and fault.statement not in told and isinstance(fault.statement, RosSend):
                     told.add(fault.statement)
                     yield _finding(context, step, fault, fault.statement)
 
 
-def _finding(context: MachineContext, step: Step, fault: Fault, statement: Communicate) -> Finding:
+def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Finding:
     thread = next(t for t in context.machine.threads if t.server and t.server.value == fault.duty.handle)
     assert statement.thread_id is not None
     numbers = "the only number is 0" if thread.count == 1 else f"the numbers are 0 to {(thread.count or 1) - 1}"

@@ -9,9 +9,9 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import first_in
 from roaml.expr.infer import constant
 from roaml.expr.tree import access_path
-from roaml.model.behavior.explore import Behavior, Duty, Fault, Step
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, Fault
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Chart, Communicate, If, Statement
+from roaml.model.machine import Assign, Chart, If, RosSend, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
 from roaml.model.value_types import find_handle
@@ -41,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             statement = fault.statement
             if fault.kind == "undecided" and not is_spelled(context, Duty("goal", fault.duty.handle)):
                 continue
-            assert isinstance(statement, Communicate)
+            assert isinstance(statement, RosSend)
             assert statement.goal_id is not None
             variable = statement.goal_id.text.strip()
             if (variable, fault.kind) not in told:
@@ -50,10 +50,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
     yield from _constants(context)
 
 
-def _faults(behavior: Behavior) -> dict[Statement, tuple[Step, Fault]]:
+def _faults(behavior: Behavior) -> dict[Statement, tuple[BehaviorStep, Fault]]:
     """For each element that names a wrong goal, the most specific fault, with a step in which it happens."""
     order = list(_WHY)
-    found: dict[Statement, tuple[Step, Fault]] = {}
+    found: dict[Statement, tuple[BehaviorStep, Fault]] = {}
     for step in behavior.steps:
         for fault in step.faults:
             if fault.kind not in _WHY or (behavior.approximate and not fault.certain):
@@ -64,7 +64,7 @@ def _faults(behavior: Behavior) -> dict[Statement, tuple[Step, Fault]]:
     return found
 
 
-def _finding(context: MachineContext, step: Step, fault: Fault, statement: Communicate, variable: str) -> Finding:
+def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend, variable: str) -> Finding:
     advice = "use the variable in which `_action.goal_id` is stored"
     if fault.kind == "earlier":
         advice = (
@@ -78,7 +78,7 @@ def _finding(context: MachineContext, step: Step, fault: Fault, statement: Commu
     return RULE.at(place(step.handler, statement), message, *_fixes(context, step, fault, statement), related=related)
 
 
-def _fixes(context: MachineContext, step: Step, fault: Fault, statement: Communicate) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Iterator[Fix]:
     assert statement.goal_id is not None
     if fault.kind == "unstored":
         yield from _store(context, step, statement.goal_id.text.strip())
@@ -97,9 +97,9 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
         return
     for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER):
         for chart in context.machine.charts:
-            named: dict[float, list[Communicate]] = {}
+            named: dict[float, list[RosSend]] = {}
             for statement in chart.statements:
-                if isinstance(statement, Communicate) and statement.goal_id is not None:
+                if isinstance(statement, RosSend) and statement.goal_id is not None:
                     value = constant(statement.goal_id.tree)
                     if value is not None and find_handle(context.machine, statement) is declaration:
                         named.setdefault(value, []).append(statement)
@@ -109,7 +109,7 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
                     yield _constant_finding(statements, why)
 
 
-def _constant_finding(statements: list[Communicate], why: str) -> Finding:
+def _constant_finding(statements: list[RosSend], why: str) -> Finding:
     first, *others = statements
     assert first.goal_id is not None
     what = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
@@ -146,7 +146,7 @@ def _asks_for_ids(chart: Chart) -> bool:
     return not variables_in(read).isdisjoint(stored)
 
 
-def _store(context: MachineContext, step: Step, variable: str) -> Iterator[Fix]:
+def _store(context: MachineContext, step: BehaviorStep, variable: str) -> Iterator[Fix]:
     element = step.handler.targets[step.choice].element or step.handler.element
     if (
         step.event is not None

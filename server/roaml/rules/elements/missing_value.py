@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Array, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.language import HL_SCXML
-from roaml.model.machine import Assign, Communicate, Param, Send
+from roaml.model.machine import Assign, Param, RosSend, Send
 from roaml.model.syntax import Value
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case Assign(value=value) if is_missing(statement.element, value):
                     target = f" for `{statement.location.text}`" if statement.location else ""
                     yield RULE.at(statement.element.name_span, f"the value{target} is missing; add `expr`")
-                case Send(params=params) | Communicate(fields=params):
+                case Send(params=params) | RosSend(fields=params):
                     for param in params:
                         if param.name is not None and is_missing(param.element, param.value):
                             yield _param(param, param.name.value)

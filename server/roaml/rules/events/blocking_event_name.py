@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Communicate, Declaration, Handler, Machine, Send
+from roaml.model.machine import Declaration, Handler, Machine, RosSend, Send
 from roaml.model.syntax import Name
 from roaml.model.system import sanitise
 from roaml.model.value_types import find_handle
@@ -30,9 +30,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _with_feedback(machine: Machine) -> Iterator[Declaration]:
     """The declarations of actions whose feedback the machine sends or handles."""
-    users: list[Communicate | Handler] = []
+    users: list[RosSend | Handler] = []
     for chart in machine.charts:
-        users += [s for s in chart.statements if isinstance(s, Communicate) and s.type.sends is ProtocolPart.FEEDBACK]
+        users += [s for s in chart.statements if isinstance(s, RosSend) and s.type.sends is ProtocolPart.FEEDBACK]
         users += [h for state in chart.states for h in state.handlers if h.trigger is ProtocolPart.FEEDBACK]
     used = [find_handle(machine, user) for user in users]
     return (declaration for declaration in machine.declarations if declaration in used)

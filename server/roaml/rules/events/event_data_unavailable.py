@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownName
 from roaml.model.syntax import Expression
-from roaml.model.value_types import Place, TypedValue, Use
+from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
 from roaml.rules.support.event_data import known_here
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _is_target(value: TypedValue, problem: UnknownName) -> bool:
     """Whether the event variable is the target of an assignment; invalid-location reports this with more detail."""
     return (
-        value.use is Use.LOCATION
+        value.use is ValueUse.LOCATION
         and problem.name in EVENT_VARIABLES
         and isinstance(value.value, Expression)
         and problem.span.start == value.value.tree.span.start
@@ -78,7 +78,7 @@ def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> I
         yield Fix(f"Change to `{new}`", (TextEdit(Span(start, start + len(old)), new),))
 
 
-def place_tag(place: Place) -> str:
+def place_tag(place: ValuePlace) -> str:
     return place.handler.element.name if place.handler else place.part
 
 

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, is_kind, leaves, unwrap
-from roaml.model.machine import Communicate, Declaration, Param, Send
+from roaml.model.machine import Declaration, Param, RosSend, Send
 from roaml.model.outline import SentField
-from roaml.model.system import Event
-from roaml.model.value_types import TypedValue, Use, find_handle
+from roaml.model.system import PlainEvent
+from roaml.model.value_types import TypedValue, ValueUse, find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
@@ -21,7 +21,9 @@ ROUND = "; a number like `2.0` becomes an integer when it is sent; store it in a
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    values = {value.element: value for value in context.typed.values if value.use in (Use.PARAMETER, Use.FIELD)}
+    values = {
+        value.element: value for value in context.typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)
+    }
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and context.system:
@@ -34,7 +36,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         yield from _fields(sent, _real_elsewhere(context, declaration))
 
 
-def _parameter(event: Event, param: Param, value: TypedValue) -> Iterator[Finding]:
+def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[Finding]:
     """All senders of an event must use the same types for its parameters (docs/spec/machines.md#send)."""
     if param.name is None:
         return
@@ -97,7 +99,7 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPar
     found: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, Communicate) and (declaration := find_handle(context.machine, statement)):
+            if isinstance(statement, RosSend) and (declaration := find_handle(context.machine, statement)):
                 found[declaration, statement.part] += statement.fields
     return found
 

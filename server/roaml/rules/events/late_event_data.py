@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Expr, Name, walk
-from roaml.model.behavior.explore import Event
+from roaml.model.behavior.explore import ProtocolEvent
 from roaml.model.behavior.instants import comes_again
-from roaml.model.machine import CallChild, Communicate, Handler, Send, Statement, statements
+from roaml.model.machine import CallChild, Handler, RosSend, Send, Statement, statements
 from roaml.model.syntax import Expression
-from roaml.model.value_types import Place, TypedValue, Use, find_handle
+from roaml.model.value_types import TypedValue, ValuePlace, ValueUse, find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
@@ -42,31 +42,31 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield RULE.at(name.span, _message(value, name.name), severity=_severity(value))
 
 
-def _may_be_newer(context: MachineContext, place: Place, at: int) -> bool:
+def _may_be_newer(context: MachineContext, place: ValuePlace, at: int) -> bool:
     """Whether the event of a handler may be sent again before its data are read at an offset of the file."""
     handler = place.handler
     assert handler is not None
     sent = frozenset(_sent_before(context, place, handler, at))
     event = _event(context, handler)
     if handler.trigger in _ANSWERS:
-        return any(Event(part, event.name) in sent for part in _ANSWERS[handler.trigger])
+        return any(ProtocolEvent(part, event.name) in sent for part in _ANSWERS[handler.trigger])
     if context.system is None or not context.automata:
         return True
     chart = context.machine.charts.index(place.chart)
     return any(comes_again(context.system, automaton, chart, event, sent) for automaton in context.automata)
 
 
-def _event(context: MachineContext, user: Handler | Communicate) -> Event:
+def _event(context: MachineContext, user: Handler | RosSend) -> ProtocolEvent:
     """The event that a handler receives, or that an element sends."""
     part = user.trigger if isinstance(user, Handler) else user.part
     assert part is not None
     if isinstance(user, Handler) and user.trigger is ProtocolPart.EVENT:
-        return Event(part, user.event.value if user.event else "")
+        return ProtocolEvent(part, user.event.value if user.event else "")
     declaration = find_handle(context.machine, user)
-    return Event(part, declaration.handle.value if declaration and declaration.handle else "")
+    return ProtocolEvent(part, declaration.handle.value if declaration and declaration.handle else "")
 
 
-def _sent_before(context: MachineContext, place: Place, handler: Handler, at: int) -> Iterator[Event]:
+def _sent_before(context: MachineContext, place: ValuePlace, handler: Handler, at: int) -> Iterator[ProtocolEvent]:
     leave = place.state.exit.statements if place.state and place.state.exit else ()
     executed: list[Statement] = [*statements(leave)]
     for target in handler.targets:
@@ -74,10 +74,10 @@ def _sent_before(context: MachineContext, place: Place, handler: Handler, at: in
     for statement in executed:
         match statement:
             case Send(event=event) if event is not None:
-                yield Event(ProtocolPart.EVENT, event.value)
+                yield ProtocolEvent(ProtocolPart.EVENT, event.value)
             case CallChild():
-                yield Event(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
-            case Communicate() if not statement.element.span.end > at:
+                yield ProtocolEvent(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
+            case RosSend() if not statement.element.span.end > at:
                 yield _event(context, statement)
 
 
@@ -89,9 +89,9 @@ def _message(value: TypedValue, name: str) -> str:
     newer = f"when `{name}` may already hold the data of a newer event than the one that is handled"
     advice = f"store what you need of `{name}` in a variable at the beginning of the body"
     match value.use:
-        case Use.BRANCH:
+        case ValueUse.BRANCH:
             return f"this condition is evaluated in a later step, {newer}; {advice}"
-        case Use.ASSIGNED | Use.LOCATION:
+        case ValueUse.ASSIGNED | ValueUse.LOCATION:
             return f"this is read after a send or a test, {newer}; {advice}"
     return f"this value is read in a later step, {newer}; {advice}"
 
@@ -107,7 +107,9 @@ def _severity(value: TypedValue) -> Severity | None:
         ProtocolPart.BT_HALT,
     ):
         return Severity.HINT
-    return Severity.HINT if value.use in (Use.PARAMETER, Use.FIELD, Use.ARGUMENT, Use.OUTPUT) else None
+    return (
+        Severity.HINT if value.use in (ValueUse.PARAMETER, ValueUse.FIELD, ValueUse.ARGUMENT, ValueUse.OUTPUT) else None
+    )
 
 
 RULE = Rule(

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct
 from roaml.model.gaps import PARAMETER
-from roaml.model.system import Event
+from roaml.model.system import PlainEvent
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
@@ -30,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield from _check(problem, event, [name for name, _ in problem.owner.members])
 
 
-def _check(problem: UnknownMember, event: Event, params: list[str]) -> Iterator[Finding]:
+def _check(problem: UnknownMember, event: PlainEvent, params: list[str]) -> Iterator[Finding]:
     if any(name.startswith(f"{problem.name}.") for name in params):
         return  # the first part of a dotted name
     close = close_names(problem.name, params)

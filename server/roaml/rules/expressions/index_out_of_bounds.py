@@ -12,7 +12,7 @@ from roaml.expr.tree import Binary, Expr, Index, Member, Name, Unary, walk
 from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
 from roaml.model.syntax import Expression
-from roaml.model.value_types import Place, TypedValue, Use
+from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, message, *_more_room(value, problem))
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _unbounded(context, value.place, value.value.tree)
-            if value.use is Use.LOCATION:
+            if value.use is ValueUse.LOCATION:
                 yield from _append(context, value, value.value.tree)
                 yield from _length(context, value, value.value.tree)
 
@@ -47,7 +47,7 @@ def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
             yield Fix(f"Declare `{data.id.value}` as {new}", (TextEdit(data.type.span, new),), preferred=False)
 
 
-def _unbounded(context: MachineContext, place: Place, tree: Expr) -> Iterator[Finding]:
+def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterator[Finding]:
     """Indices beyond the size that arrays without a bound have in this system."""
     if context.system is None:
         return
@@ -87,7 +87,9 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     if not isinstance(tree, Member) or tree.name != "length":
         return
     array = _type_of(context, value.place, tree.object)
-    assigned = next((v for v in context.typed.values if v.use is Use.ASSIGNED and v.element is value.element), None)
+    assigned = next(
+        (v for v in context.typed.values if v.use is ValueUse.ASSIGNED and v.element is value.element), None
+    )
     if not isinstance(array, Array) or assigned is None or not isinstance(assigned.value, Expression):
         return
     number = constant(assigned.value.tree)
@@ -104,7 +106,7 @@ def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool
     names = (_text(context, array), f"{_text(context, array)}.length")
     return any(
         isinstance(other.value, Expression)
-        and other.use is Use.LOCATION
+        and other.use is ValueUse.LOCATION
         and (other.place.state, other.place.handler, other.place.part)
         == (value.place.state, value.place.handler, value.place.part)
         and other.value.span.start < value.value.span.start
@@ -122,12 +124,12 @@ def _text(context: MachineContext, expr: Expr) -> str:
     return "".join(context.source.text[expr.span.start : expr.span.end].split())
 
 
-def _type_of(context: MachineContext, place: Place, expr: Expr) -> Type:
+def _type_of(context: MachineContext, place: ValuePlace, expr: Expr) -> Type:
     variables = context.typed.variables.get(place.chart.scope, {})
     return infer(expr, variables.get)[0]
 
 
-def _has_room(context: MachineContext, place: Place, array: Expr, bound: int) -> bool:
+def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: int) -> bool:
     """Whether a condition that holds at this place keeps the length of the array below `bound`."""
     conditions = list(place.branch_conditions or ())
     if place.handler is not None and place.handler.cond is not None:

@@ -9,14 +9,14 @@ from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Index, Member, Name, access_path
 from roaml.expr.types import Type
 from roaml.model.syntax import Expression
-from roaml.model.value_types import TypedValue, Use
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if value.use is Use.LOCATION and isinstance(value.value, Expression) and not value.value.broken:
+        if value.use is ValueUse.LOCATION and isinstance(value.value, Expression) and not value.value.broken:
             reason = _reason(value, context.typed.variables.get(value.place.chart.scope, {}))
             if reason:
                 yield RULE.at(value.value.tree.span, reason)

@@ -7,16 +7,16 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import RandomUsed
-from roaml.model.value_types import Use
+from roaml.model.value_types import ValueUse
 from roaml.rules.rule import MachineContext, Rule
 
 WHERE = {
-    Use.CONDITION: "in a condition",
-    Use.BRANCH: "in a condition",
-    Use.LOCATION: "in a location",
-    Use.INITIAL: "in an initial value",
-    Use.BOUND: "in a bound",
-    Use.ARGUMENT: "in an id",
+    ValueUse.CONDITION: "in a condition",
+    ValueUse.BRANCH: "in a condition",
+    ValueUse.LOCATION: "in a location",
+    ValueUse.INITIAL: "in an initial value",
+    ValueUse.BOUND: "in a bound",
+    ValueUse.ARGUMENT: "in an id",
 }
 
 

@@ -12,15 +12,15 @@ from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, Str
 from roaml.expr.types import Array, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
-from roaml.model.value_types import TypedValue, Use
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
 
-CHECKED = (Use.ASSIGNED, Use.FIELD, Use.ARGUMENT, Use.OUTPUT)
-HOLDING = (Use.ASSIGNED, Use.FIELD, Use.OUTPUT, Use.INITIAL)
+CHECKED = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.ARGUMENT, ValueUse.OUTPUT)
+HOLDING = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.OUTPUT, ValueUse.INITIAL)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -102,13 +102,13 @@ def _longer(span: Span, holder: str, what: str, length: int, most: int | None) -
 def _what(value: TypedValue) -> str:
     target = f" `{value.target}`" if value.target else ""
     match value.use:
-        case Use.FIELD:
+        case ValueUse.FIELD:
             return f"the field{target}"
-        case Use.OUTPUT:
+        case ValueUse.OUTPUT:
             return f"the port{target}"
-        case Use.ARGUMENT | Use.ASSIGNED | Use.LOCATION:
+        case ValueUse.ARGUMENT | ValueUse.ASSIGNED | ValueUse.LOCATION:
             return target.strip() or "this"
-        case Use.BOUND:
+        case ValueUse.BOUND:
             return f"a bound of{target}"
     return f"the variable{target}"
 
@@ -124,7 +124,7 @@ def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type
         yield from as_type(context, value, given.name or DEFAULT_TYPES[given.kind])
 
 
-def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iterator[Fix]:
+def _other_value(value: Expression, use: ValueUse, given: Type, wanted: Type) -> Iterator[Fix]:
     span, text = value.span, value.text.strip()
     if isinstance(value.tree, String) and is_number(wanted) | is_kind(wanted, "bool"):
         written, pattern = value.tree.value, r"-?\d+" if is_kind(wanted, "int") else r"-?\d+(\.\d+)?"
@@ -133,7 +133,7 @@ def _other_value(value: Expression, use: Use, given: Type, wanted: Type) -> Iter
     if is_kind(given, "real") and is_kind(wanted, "int"):
         if text.endswith(".0") and text[:-2].isdigit():
             yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
-        elif use not in (Use.INITIAL, Use.BOUND):
+        elif use not in (ValueUse.INITIAL, ValueUse.BOUND):
             edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
             yield Fix(f"Change to `Math.floor({text})`", edits)
     elif is_kind(given, "int") and is_kind(wanted, "real") and text.removeprefix("-").isdigit():

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Severity
-from roaml.disk import Problem
+from roaml.disk import UnreadableReason
 from roaml.facts import Facts
 from roaml.rules.rule import Rule, SystemContext
 
 
 @dataclass(frozen=True, slots=True)
 class UnusableFile(Facts):
-    problem: Problem
+    problem: UnreadableReason
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
-from roaml.model.machine import Communicate, Param, Send
+from roaml.model.machine import Param, RosSend, Send
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule
 
@@ -16,7 +16,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
             match statement:
-                case Communicate():
+                case RosSend():
                     yield from _twice(context, statement.fields, "field")
                 case Send():
                     yield from _twice(context, statement.params, "parameter")

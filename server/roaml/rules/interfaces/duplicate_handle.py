@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
-from roaml.model.machine import Communicate, Declaration, Handler
+from roaml.model.machine import Declaration, Handler, RosSend
 from roaml.model.syntax import Name, PortRead
 from roaml.model.value_types import find_handle
 from roaml.roles import SymbolKind
@@ -57,10 +57,10 @@ def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> 
     """Rename a declaration and all its uses."""
     machine = context.machine
     new = unused(handle.value.strip("/").replace("/", "_"), (d.handle.value for d in machine.declarations if d.handle))
-    users: list[Handler | Communicate] = []
+    users: list[Handler | RosSend] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers]
-        users += [s for s in chart.statements if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, RosSend)]
     named = [user.handle.span for user in users if user.handle and find_handle(machine, user) is declaration]
     if declaration.element.get("name") is not None:
         edit = TextEdit(handle.span, new)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name, PortRead
 from roaml.roles import SymbolKind
@@ -46,7 +46,7 @@ def _port(context: MachineContext, read: PortRead) -> Iterator[Finding]:
     key = read.key.value if read.key else ""
     for automaton in context.automata:
         value = automaton.port(key)
-        if isinstance(value, Constant) and (reason := rate_problem(value.text)):
+        if isinstance(value, PortConstant) and (reason := rate_problem(value.text)):
             yield RULE.at(read.span, f'{reason}; the tree passes `{key}="{value.text}"`')
 
 

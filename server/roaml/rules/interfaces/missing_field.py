@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import last_in
 from roaml.expr.types import Struct, Type, leaves
 from roaml.expr.zero import zero_text
-from roaml.model.machine import Communicate
+from roaml.model.machine import RosSend
 from roaml.rules.rule import MachineContext, Rule, close_names, listing
 from roaml.rules.support.fields import sent_part
 
@@ -19,13 +19,13 @@ SHOWN = 6
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, Communicate):
+            if isinstance(statement, RosSend):
                 missing = _missing(context, statement)
                 if missing:
                     yield _finding(context, statement, missing)
 
 
-def _missing(context: MachineContext, statement: Communicate) -> list[tuple[str, Type]]:
+def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Type]]:
     """The fields that are required and not set, with their types."""
     unset = context.typed.unset.get(statement.element, ())
     part = sent_part(context, statement) if unset else None
@@ -44,7 +44,7 @@ def _meant(name: str, known: Iterable[str]) -> tuple[str, ...]:
     return inside or close_names(name, known, 1)
 
 
-def _finding(context: MachineContext, statement: Communicate, missing: list[tuple[str, Type]]) -> Finding:
+def _finding(context: MachineContext, statement: RosSend, missing: list[tuple[str, Type]]) -> Finding:
     element = statement.element
     part = sent_part(context, statement)
     assert isinstance(part, Struct)

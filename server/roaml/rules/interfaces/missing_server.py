@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.machine import Communicate, Declaration, Handler, Machine
+from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.system import System
 from roaml.model.value_types import find_handle
 from roaml.roles import SymbolKind
@@ -58,8 +58,8 @@ def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterab
 def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
     """The places where the rest of the machine refers to a declaration."""
     for chart in machine.charts:
-        users: list[Handler | Communicate] = [h for state in chart.states for h in state.handlers]
-        users += [s for s in chart.statements if isinstance(s, Communicate)]
+        users: list[Handler | RosSend] = [h for state in chart.states for h in state.handlers]
+        users += [s for s in chart.statements if isinstance(s, RosSend)]
         for user in users:
             if user.handle is not None and find_handle(machine, user) is declaration:
                 yield user.handle.span

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration
-from roaml.model.system import Automaton, Channel, Endpoint
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, name_span
@@ -23,7 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _finding(
-    declaration: Declaration, automaton: Automaton, channel: Channel, others: list[Endpoint], what: str
+    declaration: Declaration, automaton: SystemAutomaton, channel: Channel, others: list[ChannelEndpoint], what: str
 ) -> Finding:
     span, count = name_span(declaration), len(channel.sources)
     elsewhere = [e for e in others if e.automaton.path != automaton.path or e.automaton is automaton]

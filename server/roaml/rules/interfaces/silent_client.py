@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
-from roaml.model.machine import Communicate, Declaration
+from roaml.model.machine import Declaration, RosSend
 from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.roles import ProtocolPart, SymbolKind
@@ -65,7 +65,7 @@ def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
     """The elements that send something, with their declaration; `None` instead of a declaration that cannot be read."""
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, Communicate):
+            if isinstance(statement, RosSend):
                 yield find_handle(context.machine, statement), statement.element.name
     read = {statement.element for chart in context.machine.charts for statement in chart.statements}
     unread = [element for element in context.machine.element.walk() if element not in read]

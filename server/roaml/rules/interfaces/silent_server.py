@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import last_in
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Automaton, Channel, Endpoint, System
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield from _action(declaration, automaton, channel, clients)
 
 
-def _may_do_more(system: System, automaton: Automaton, kind: SymbolKind, channel: Channel) -> bool:
+def _may_do_more(system: System, automaton: SystemAutomaton, kind: SymbolKind, channel: Channel) -> bool:
     """Whether a server may answer in a part of its machine that cannot be read."""
     return any(system.may(f"{kind.value} {part.value}", channel.name, automaton) for part in _PARTS)
 
@@ -45,7 +45,11 @@ _PARTS = (
 
 
 def _service(
-    context: MachineContext, declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+    context: MachineContext,
+    declaration: Declaration,
+    automaton: SystemAutomaton,
+    channel: Channel,
+    clients: list[ChannelEndpoint],
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
     what = f"the service `{channel.name}` is called but"
@@ -58,7 +62,7 @@ def _service(
 
 
 def _action(
-    declaration: Declaration, automaton: Automaton, channel: Channel, clients: list[Endpoint]
+    declaration: Declaration, automaton: SystemAutomaton, channel: Channel, clients: list[ChannelEndpoint]
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
     if not sends(automaton, declaration, ProtocolPart.GOAL_ACCEPTED):
@@ -95,12 +99,12 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
     yield Fix("Answer each request with `<ros_service_send_response>`", edits, preferred=False)
 
 
-def sends(automaton: Automaton, declaration: Declaration, part: ProtocolPart) -> bool:
+def sends(automaton: SystemAutomaton, declaration: Declaration, part: ProtocolPart) -> bool:
     use = find_use(automaton, declaration)
     return use is not None and part in use.sends
 
 
-def receives(automaton: Automaton, declaration: Declaration, part: ProtocolPart) -> bool:
+def receives(automaton: SystemAutomaton, declaration: Declaration, part: ProtocolPart) -> bool:
     use = find_use(automaton, declaration)
     return use is not None and part in use.receives
 

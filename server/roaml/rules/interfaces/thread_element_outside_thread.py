@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.machine import Communicate
+from roaml.model.machine import RosSend
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
 from roaml.rules.rule import MachineContext, Rule
 
@@ -14,7 +14,7 @@ from roaml.rules.rule import MachineContext, Rule
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         elements = [h.element for state in chart.states for h in state.handlers]
-        elements += [s.element for s in chart.statements if isinstance(s, Communicate)]
+        elements += [s.element for s in chart.statements if isinstance(s, RosSend)]
         for element in elements:
             if not chart.scope and element.name in INSIDE_THREADS:
                 yield RULE.at(element.name_span, f"`<{element.name}>` is only allowed in a `<ros_action_thread>`")

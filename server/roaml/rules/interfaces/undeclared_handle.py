@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import after, first_in
 from roaml.language import HL_SCXML
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
-from roaml.model.machine import Communicate, Declaration, Handler, Machine
+from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.syntax import Name
 from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.roles import SymbolKind
@@ -113,10 +113,10 @@ def _may_be_declared(machine: Machine, name: str, kinds: tuple[SymbolKind, ...])
 def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[SymbolKind, ...]]]:
     """Every element that refers to a declaration, with the name that it uses and the kinds of declarations that it
     accepts."""
-    users: list[Handler | Communicate] = []
+    users: list[Handler | RosSend] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers if h.effective]
-        users += [s for s in chart.statements if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, RosSend)]
     for user in users:
         attribute = user.type.attributes.get("name")
         if attribute is not None and attribute.refers:

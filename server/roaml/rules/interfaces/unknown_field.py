@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import remove
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct, Unknown, leaves, unwrap
-from roaml.model.machine import Communicate, Param
+from roaml.model.machine import Param, RosSend
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.fields import is_ros, sent_part
 
@@ -25,11 +25,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, message, *replacements(problem.span, close))
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, Communicate):
+            if isinstance(statement, RosSend):
                 yield from _fields(context, statement)
 
 
-def _fields(context: MachineContext, statement: Communicate) -> Iterator[Finding]:
+def _fields(context: MachineContext, statement: RosSend) -> Iterator[Finding]:
     part = sent_part(context, statement)
     if part is None:
         return

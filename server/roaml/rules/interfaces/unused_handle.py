@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.edit.elements import remove
-from roaml.model.machine import Communicate, Handler
+from roaml.model.machine import Handler, RosSend
 from roaml.model.value_types import find_handle
 from roaml.model.vocabulary import DECLARING_ELEMENTS
 from roaml.roles import SymbolKind
@@ -16,10 +16,10 @@ from roaml.rules.rule import MachineContext, Rule
 
 def check(context: MachineContext) -> Iterator[Finding]:
     machine = context.machine
-    users: list[Handler | Communicate] = []
+    users: list[Handler | RosSend] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers]
-        users += [s for s in chart.statements if isinstance(s, Communicate)]
+        users += [s for s in chart.statements if isinstance(s, RosSend)]
     used = [find_handle(machine, user) for user in users if "name" in user.type.attributes]
     with_threads = [thread.server.value for thread in machine.threads if thread.server]
     for declaration in machine.declarations:

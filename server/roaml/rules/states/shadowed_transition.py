@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import indent_of, removal, remove
 from roaml.model.behavior.explore import condition_facts
-from roaml.model.behavior.knowledge import Facts
+from roaml.model.behavior.knowledge import ConditionFacts
 from roaml.model.machine import Chart, Handler, State
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.conditions import covered
@@ -53,7 +53,7 @@ def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iter
         yield from _in_order(context, condition_facts(chart), handlers)
 
 
-def _in_order(context: MachineContext, facts: Facts, handlers: list[Handler]) -> Iterator[Finding]:
+def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Handler]) -> Iterator[Finding]:
     for found in covered(facts, [handler.cond for handler in handlers]):
         handler = handlers[found.number]
         earlier = [handlers[n] for n in found.by or range(found.number)]

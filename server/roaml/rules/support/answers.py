@@ -10,10 +10,10 @@ from typing import NamedTuple
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
-from roaml.model.behavior.explore import Behavior, Duty, Step, explore
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, explore
 from roaml.model.behavior.instants import Instants, is_readable
-from roaml.model.machine import Communicate, Handler, Machine, State, Statement
-from roaml.model.system import Automaton, System
+from roaml.model.machine import Handler, Machine, RosSend, State, Statement
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext
@@ -52,7 +52,7 @@ def behaviors(context: MachineContext) -> Iterator[Behavior]:
             yield behavior
 
 
-def plugins(context: MachineContext) -> list[Automaton]:
+def plugins(context: MachineContext) -> list[SystemAutomaton]:
     """The automata that the machine is in the tree; none if it still uses the removed events."""
     if uses_removed_events(context.machine):
         return []
@@ -73,19 +73,19 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
     for chart in machine.charts:
         for statement in chart.executed:
             if statement.element.name in names:
-                declaration = find_handle(machine, statement) if isinstance(statement, Communicate) else None
+                declaration = find_handle(machine, statement) if isinstance(statement, RosSend) else None
                 if not duty.handle or (declaration and declaration.handle and declaration.handle.value == duty.handle):
                     found.add(chart.scope)
     return found
 
 
-def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[Step, bool]]:
+def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
     """The steps after which an answer never follows, one for each handler, with whether it follows on no path.
 
     Steps that another finding explains are left out: an element that cannot be read might be the answer, and if one of
     two conditions never decides (shadowed-transition), it was probably meant to be different.
     """
-    steps: dict[Handler, list[Step]] = {}
+    steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):
         wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
@@ -111,7 +111,7 @@ def _within(inner: Span, outer: Span) -> bool:
     return outer.start <= inner.start and inner.end <= outer.end
 
 
-def target_of(step: Step) -> Iterator[Related]:
+def target_of(step: BehaviorStep) -> Iterator[Related]:
     """The target that a step leads to, if its handler has several."""
     if step.handler.is_probabilistic and not step.ignored:
         element = step.handler.targets[step.choice].element
@@ -119,7 +119,7 @@ def target_of(step: Step) -> Iterator[Related]:
             yield Related(element.name_span, "on this way")
 
 
-def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: Step) -> bool:
+def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: BehaviorStep) -> bool:
     """Whether an element that cannot be read might be the missing answer after a step, or handle an event that leads to
     it. Such an element is in the handler, in a state that waits for the answer, or in a state that ignores an event."""
     states = {state.id.value: state.element for state in behavior.chart.states if state.id}
@@ -132,7 +132,7 @@ def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: Step)
         user.element
         for chart in machine.charts
         for user in (*chart.executed, *(handler for state in chart.states for handler in state.handlers))
-        if isinstance(user, Communicate | Handler) and "name" in user.type.attributes
+        if isinstance(user, RosSend | Handler) and "name" in user.type.attributes
         if find_handle(machine, user) is None
     }
     return any(e in unresolved or _is_misspelled(e) for element in elements for e in element.walk())
@@ -165,14 +165,14 @@ _INTERRUPTS_LATER = frozenset(("ReactiveSequence", "ReactiveFallback", "WhileDoE
 """Nodes that tick their first child at every tick, and halt running later children depending on its status."""
 
 
-def is_ticked_again(system: System, automaton: Automaton) -> bool:
+def is_ticked_again(system: System, automaton: SystemAutomaton) -> bool:
     """Whether a node may be ticked again after it has ended."""
     if system.parameters.tick_if_not_running:
         return True
     return any(above.path or above.outline.name not in _ASKS_ONCE for above in ancestors(system, automaton))
 
 
-def is_halted(system: System, automaton: Automaton, *, running: bool) -> bool:
+def is_halted(system: System, automaton: SystemAutomaton, *, running: bool) -> bool:
     """Whether a node may be halted while it is running, or while it is not."""
     child = automaton
     for parent in ancestors(system, automaton):
@@ -187,13 +187,13 @@ def is_halted(system: System, automaton: Automaton, *, running: bool) -> bool:
     return False
 
 
-def _is_first(parent: Automaton, child: Automaton) -> bool:
+def _is_first(parent: SystemAutomaton, child: SystemAutomaton) -> bool:
     assert parent.instance is not None
     assert child.instance is not None
     return parent.instance.children[0] == child.instance.number
 
 
-def ancestors(system: System, automaton: Automaton) -> Iterator[Automaton]:
+def ancestors(system: System, automaton: SystemAutomaton) -> Iterator[SystemAutomaton]:
     """The nodes above a node, the nearest first."""
     number = automaton.instance.parent if automaton.instance else None
     while number is not None and (above := system.by_instance.get(number)) is not None:
@@ -217,7 +217,9 @@ class Deaf(NamedTuple):
     needs_time: bool
 
 
-def deaf(context: MachineContext, behavior: Behavior, automata: Iterable[Automaton], duty: Duty) -> Iterator[Deaf]:
+def deaf(
+    context: MachineContext, behavior: Behavior, automata: Iterable[SystemAutomaton], duty: Duty
+) -> Iterator[Deaf]:
     """The states in which at least one node of the plugin does not handle a tick or halt, without duplicates."""
     seen: set[State] = set()
     for automaton in automata:
@@ -232,7 +234,7 @@ def deaf(context: MachineContext, behavior: Behavior, automata: Iterable[Automat
 
 
 def deaf_states(
-    context: MachineContext, behavior: Behavior, automaton: Automaton, duty: Duty, possible: Possible = always
+    context: MachineContext, behavior: Behavior, automaton: SystemAutomaton, duty: Duty, possible: Possible = always
 ) -> Iterator[tuple[State, str]]:
     """The states in which a tick or halt may arrive and is not handled, with the status of the node there: "" (not yet
     ticked), "running" or "ended"."""
@@ -267,7 +269,7 @@ def _is_for_errors(behavior: Behavior, state: State) -> bool:
     return bool(entering) and all(step.handler.cond is not None or not step.certain for step in entering)
 
 
-def _coming(system: System, automaton: Automaton, duty: Duty) -> frozenset[str]:
+def _coming(system: System, automaton: SystemAutomaton, duty: Duty) -> frozenset[str]:
     """The statuses that a node may have when a tick or halt arrives."""
     if duty.kind == "tick":
         again = is_ticked_again(system, automaton)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.expr.tree import Expr, is_draw, walk
-from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, Facts, Knowledge
+from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, ConditionFacts, Knowledge
 from roaml.model.syntax import Expression
 
 
@@ -25,7 +25,7 @@ class Covered(NamedTuple):
     same: bool
 
 
-def covered(facts: Facts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
+def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
     """The conditions that never decide, in order.
 
     Conditions that can never hold by themselves are left out. `None`, a condition that cannot be read and one that
@@ -48,6 +48,6 @@ def covered(facts: Facts, conditions: Sequence[Expression | None]) -> Iterator[C
             return
 
 
-def _beside(facts: Facts, one: Expr, other: Expr) -> bool:
+def _beside(facts: ConditionFacts, one: Expr, other: Expr) -> bool:
     """Whether `other` may hold where `one` does not."""
     return any(facts.assume(known, other) for known in facts.assume(NOTHING, one, False))

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from roaml.model.value_types import Place, bound_in
+from roaml.model.value_types import ValuePlace, bound_in
 
 
-def known_here(place: Place) -> list[str]:
+def known_here(place: ValuePlace) -> list[str]:
     """The event variables that are known at a place."""
     if place.handler is None:
         return []

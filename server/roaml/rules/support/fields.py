@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.expr.types import Struct
-from roaml.model.machine import Communicate
+from roaml.model.machine import RosSend
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS, find_handle, section_of
 from roaml.rules.rule import MachineContext
@@ -17,7 +17,7 @@ def is_ros(struct: Struct) -> bool:
     return struct.what.partition(" ")[0] in ROS_PARTS
 
 
-def sent_part(context: MachineContext, statement: Communicate) -> Struct | None:
+def sent_part(context: MachineContext, statement: RosSend) -> Struct | None:
     """The fields that a sending element may set; None if its type is not known."""
     declaration = find_handle(context.machine, statement)
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.model.system import Automaton
+from roaml.model.system import SystemAutomaton
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import TreeContext
 
 
-def instances(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton]]:
+def instances(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton]]:
     """Every node of the file with each automaton that it becomes: none if it is not executed, several in a repeated
     subtree."""
     if context.system is None:

@@ -14,7 +14,7 @@ from roaml.model.machine import Declaration
 from roaml.model.outline import InterfaceUse
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Automaton, Channel, System
+from roaml.model.system import CLOCK_TOPIC, Channel, System, SystemAutomaton
 from roaml.model.tree import TreeNode
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
@@ -64,7 +64,7 @@ def other_kind(kind: SymbolKind) -> SymbolKind:
     return OTHER_SIDE[kind]
 
 
-def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, Automaton, Channel]]:
+def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, SystemAutomaton, Channel]]:
     """The declarations of a kind, in each automaton of the machine, with the topic, service or action that is named."""
     if context.system is None:
         return
@@ -78,7 +78,7 @@ def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declar
                 yield declaration, automaton, channel
 
 
-def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, Automaton, InterfaceUse]]:
+def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton, InterfaceUse]]:
     """The nodes of a file whose ports name topics, services or actions, with their automata in the executed tree."""
     for node, automaton in instances(context):
         for use in automaton.outline.interfaces:
@@ -94,7 +94,7 @@ def port_span(node: TreeNode, key: str) -> Span:
     return node.plugin.span if node.plugin else node.element.name_span
 
 
-def find_use(automaton: Automaton, declaration: Declaration) -> InterfaceUse | None:
+def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceUse | None:
     """The outline of a declaration."""
     handle = declaration.handle.value if declaration.handle else ""
     for use in automaton.outline.interfaces:

@@ -10,7 +10,7 @@ from roaml.expr.tree import Name
 from roaml.expr.types import INTEGER_RANGES
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression
-from roaml.model.value_types import TypedValue, Use
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.rules.rule import MachineContext
 from roaml.text import TextEdit
 
@@ -18,12 +18,12 @@ from roaml.text import TextEdit
 def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
     """The declaration of the variable that receives a value; `None` if only a part of the variable receives it."""
     data = value.place.chart.data
-    if value.use is Use.INITIAL:
+    if value.use is ValueUse.INITIAL:
         return next((each for each in data if each.element is value.element), None)
-    if value.use is not Use.ASSIGNED:
+    if value.use is not ValueUse.ASSIGNED:
         return None
     for other in context.typed.values:
-        if other.use is Use.LOCATION and other.element is value.element and isinstance(other.value, Expression):
+        if other.use is ValueUse.LOCATION and other.element is value.element and isinstance(other.value, Expression):
             tree = other.value.tree
             name = tree.name if isinstance(tree, Name) else ""
             return next((each for each in data if each.id and each.id.value == name), None)

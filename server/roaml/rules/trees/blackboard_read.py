@@ -10,12 +10,12 @@ from roaml.expr.tree import Name, walk
 from roaml.model.expand import Reference
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
-from roaml.model.value_types import TypedValue, Use
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 
-CONSTANT = (Use.INITIAL, Use.BOUND)
+CONSTANT = (ValueUse.INITIAL, ValueUse.BOUND)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

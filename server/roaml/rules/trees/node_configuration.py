@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.expr.infer import constant
 from roaml.expr.parse import parse
-from roaml.model.expand import Constant, Reference
+from roaml.model.expand import PortConstant, Reference
 from roaml.model.tree import PortSetting, TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.instances import instances
@@ -69,7 +69,7 @@ def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
         executed.add(node)
         for port in automaton.outline.ports:
             value = automaton.port(port.key)
-            if isinstance(value, Constant):
+            if isinstance(value, PortConstant):
                 yield node, port.key, value.text
     for tree in context.file.trees:
         for node in nodes(tree):

@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
-from roaml.model.expand import Constant, Reference
+from roaml.model.expand import PortConstant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
 from roaml.model.system import ANY_TYPE
@@ -116,7 +116,12 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
     for node, automaton in instances(context):
         for setting in node.ports:
             port, value = automaton.outline.port(setting.key.value), automaton.port(setting.key.value)
-            if setting.variable is None or port is None or port.direction == "out" or not isinstance(value, Constant):
+            if (
+                setting.variable is None
+                or port is None
+                or port.direction == "out"
+                or not isinstance(value, PortConstant)
+            ):
                 continue
             problem = problem_of(value.text.strip(), port)
             if problem is not None:
@@ -139,7 +144,7 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
         if values and not variables:
             yield from _literal_choice(node)
         for port, value in values:
-            if isinstance(value, Constant):
+            if isinstance(value, PortConstant):
                 problem = problem_of(value.text.strip(), replace(port, type=wanted))
                 if problem is not None and not looks_like_reference(value.text):
                     yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
@@ -177,7 +182,7 @@ def _place(node: TreeNode, port: PortOutline) -> Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class ConstantProblem:
     """Why a port cannot hold a constant; `replacement` is the constant that was probably meant."""
 
     message: str
@@ -185,13 +190,13 @@ class Problem:
     replacement: str = ""
 
 
-def problem_of(text: str, port: PortOutline) -> Problem | None:
+def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
     wanted = BASE_TYPES.get(port.type)
     if wanted is None or is_kind(wanted, "string"):
         return None
     if not text:
-        return Problem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
+        return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
     tree, findings = parse(Decoded(text, 0))
     given, problems = infer(tree, lambda _: None)
     sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
@@ -201,21 +206,21 @@ def problem_of(text: str, port: PortOutline) -> Problem | None:
         close = {"1": "true", "0": "false"}.get(text, text.lower())
         known = (close,) if close in ("true", "false") else ()
         message = f"the port `{port.key}` must be `true` or `false`, not `{text}`{did_you_mean(known)}"
-        return Problem(message, replacement="".join(known))
+        return ConstantProblem(message, replacement="".join(known))
     if not sound or not is_number(given):
-        return Problem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
+        return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
     value = constant(tree)
     if not fits(given, wanted):
         if value is None or not float(value).is_integer():
-            return Problem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
+            return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
         new = str(int(value))
-        return Problem(
+        return ConstantProblem(
             f"the port `{port.key}` is `{port.type}`; write `{new}` instead of `{text}`", Severity.WARNING, new
         )
     low, high = INTEGER_RANGES.get(port.type, (None, None))
     if value is not None and low is not None and high is not None and not low <= value <= high:
         message = f"{text} does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
-        return Problem(message, Severity.WARNING)
+        return ConstantProblem(message, Severity.WARNING)
     return None
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.instances import instances
 
@@ -20,7 +20,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if port is None or port.direction == "in" or setting.variable is None:
                 continue
             value = automaton.port(port.key)
-            if isinstance(value, Constant):
+            if isinstance(value, PortConstant):
                 message = f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written"
                 yield RULE.at(setting.value.span, message)
 

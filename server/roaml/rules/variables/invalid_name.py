@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.expand import Constant
+from roaml.model.expand import PortConstant
 from roaml.model.gaps import is_interface_name
 from roaml.model.machine import Declaration, Send
 from roaml.model.name_forms import EVENT, VARIABLE, variable_problem
@@ -67,7 +67,7 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
     found: dict[Finding, None] = {}
     for node, automaton, use in named_by_ports(context):
         value = automaton.port(use.port)
-        text = value.text.strip() if isinstance(value, Constant) else None
+        text = value.text.strip() if isinstance(value, PortConstant) else None
         if text is not None and not is_interface_name(text):
             what = CHANNEL_KINDS[use.kind].value
             empty = f"`{use.port}` names {_a(what)} and cannot be empty"

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.types import BASE_TYPES
 from roaml.model.name_forms import VARIABLE
-from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS, Extent
+from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS, TypeExtent
 from roaml.model.structs import StructDeclaration, struct_cycles, struct_extents
 from roaml.model.syntax import Name
 from roaml.rules.rule import Rule, StructsContext
@@ -61,7 +61,7 @@ def _cycles(
             yield RULE.at(member.type.span, f"a struct cannot contain itself: {' → '.join(cycle)}")
 
 
-def _too_large(declaration: StructDeclaration, sizes: Mapping[str, Extent]) -> Iterator[Finding]:
+def _too_large(declaration: StructDeclaration, sizes: Mapping[str, TypeExtent]) -> Iterator[Finding]:
     """Report the member that makes a struct too large, in the innermost struct that is too large."""
     assert declaration.name is not None
     types = (m.type for m in declaration.members if m.type and m.type.name)

@@ -14,7 +14,7 @@ from roaml.expr.types import BOOL, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
-from roaml.model.value_types import STATUSES, TypedValue, Use
+from roaml.model.value_types import STATUSES, TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
@@ -40,7 +40,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if name in NO_VALUES:
         return RULE.at(problem.span, f"there is no `{name}`: every variable always has a value of its type")
     variables = context.typed.variables.get(value.place.chart.scope, {})
-    if value.use in (Use.INITIAL, Use.BOUND):
+    if value.use in (ValueUse.INITIAL, ValueUse.BOUND):
         what = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
         return RULE.at(problem.span, f"an initial value must be constant; it cannot use {what}")
     if name in STATUSES:
@@ -59,7 +59,9 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
 def _answers(value: TypedValue) -> Iterable[str]:
     """The names of the statuses of a child, where they are available."""
     handler = value.place.handler
-    is_known = value.use is Use.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
+    is_known = (
+        value.use is ValueUse.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
+    )
     return STATUSES if is_known else ()
 
 
@@ -77,12 +79,14 @@ def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scal
         return None
     tree = value.value.tree
     if isinstance(tree, Name) and tree.name == name:
-        if value.use is not Use.LOCATION:
+        if value.use is not ValueUse.LOCATION:
             return _named(value.wanted)
-        assigned = (v for v in context.typed.values if v.use is Use.ASSIGNED and v.element is value.element)
+        assigned = (v for v in context.typed.values if v.use is ValueUse.ASSIGNED and v.element is value.element)
         return next((_named(v.type) for v in assigned), None)
     variables = context.typed.variables.get(value.place.chart.scope, {})
-    return _beside(tree, name, variables.get, BOOL if value.use in (Use.CONDITION, Use.BRANCH) else value.wanted)
+    return _beside(
+        tree, name, variables.get, BOOL if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) else value.wanted
+    )
 
 
 def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], wanted: Type | None) -> Scalar | None:
