@@ -22,7 +22,7 @@ from as2fm_lsp.cli import explain, init, migrate, simulate, translate, verify
 from as2fm_lsp.cli import format as layout
 from as2fm_lsp.cli.main import COMMANDS, EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
@@ -38,6 +38,7 @@ LANGUAGES = {
     "systems": (SYSTEM, "The system file"),
     "trees": (BEHAVIOR_TREE, "Behavior trees"),
     "structs": (STRUCTS, "Struct declarations"),
+    "xml-properties": (XML_PROPERTIES, "Properties in XML"),
 }
 
 
@@ -56,7 +57,7 @@ def contents() -> str:
     rows = [f"- [{title}]({name}.md)" for name, (_, title) in LANGUAGES.items()]
     rows += [
         "- [Expressions](expressions.md)",
-        "- [Properties](properties.md)",
+        "- [Properties in JANI](properties.md)",
         "- [Rules](rules.md)",
         "- [Command line](command-line.md)",
     ]

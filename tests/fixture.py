@@ -40,6 +40,7 @@ _NAMES = {
     FileKind.TREE: "tree.xml",
     FileKind.STRUCTS: "types.xml",
     FileKind.PROPERTIES: "properties.jani",
+    FileKind.XML_PROPERTIES: "properties.xml",
 }
 
 

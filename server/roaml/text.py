@@ -112,8 +112,12 @@ class Decoded:
         """The text without surrounding white space."""
         text = self.text.strip()
         start = self.text.index(text)
-        sources = None if self.sources is None else self.sources[start : start + len(text) + 1]
-        return Decoded(text, self.base + start, sources)
+        return self.part(start, start + len(text))
+
+    def part(self, start: int, end: int) -> Decoded:
+        """The characters from `start` to `end`."""
+        sources = None if self.sources is None else self.sources[start : end + 1]
+        return Decoded(self.text[start:end], self.offset(start), sources)
 
 
 def joined(pieces: Sequence[Decoded]) -> Decoded:

@@ -548,7 +548,7 @@ def test_in_properties(case: str) -> None:
     ("name", "text", "expected"),
     [
         ("new.ascxml", "‸", ["state machine", "behavior tree plugin"]),
-        ("new.xml", "‸", ["system", "behavior tree", "struct declarations"]),
+        ("new.xml", "‸", ["system", "behavior tree", "struct declarations", "properties"]),
         ("new.xml", "<‸", ["system"]),
         ("new.xml", '<?xml version="1.0"?>‸', None),
         ("main.xml", '<roaml><node_models><input type="‸', ["node-ascxml"]),

@@ -10,14 +10,16 @@ import pytest
 from lxml import etree
 
 import conformance
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.resources import schema_path
 from roaml.language.validate import validate
 from roaml.text import decode
 from roaml.xml_syntax import parse
 
 SCXML = "http://www.w3.org/2005/07/scxml"
-GRAMMARS = {root: grammar for grammar in (HL_SCXML, SYSTEM, BEHAVIOR_TREE, STRUCTS) for root in grammar.roots}
+GRAMMARS = {
+    root: grammar for grammar in (HL_SCXML, SYSTEM, BEHAVIOR_TREE, STRUCTS, XML_PROPERTIES) for root in grammar.roots
+}
 
 
 def reached(mains: tuple[Path, ...]) -> list[Path]:

@@ -11,13 +11,13 @@ import pytest
 import xmlschema
 from lxml import etree
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity
 from roaml.language.resources import schema_path
 from roaml.libraries import UNBOUNDED
 from roaml.roles import SymbolKind
 
-GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE]
+GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 
 each_grammar = pytest.mark.parametrize("grammar", GRAMMARS, ids=lambda grammar: grammar.schema)
@@ -173,11 +173,19 @@ def test_roles_are_those_that_tools_know() -> None:
     assert all(attribute.value_type for attribute in attributes if attribute.value in ("expression", "ros-type"))
 
 
+SENT = ("ros_topic", "ros_service", "ros_action", "scxml_event_send")
 PORT_MODEL = ("type", "default", "description")
 PLAIN = {
     "ascxml.xsd": {"log@expr", "log@label"},
     "roaml.xsd": set(),
     "structs.xsd": set(),
+    "properties.xsd": {
+        *(f"{name}@id" for name in ("property", "state_var", "event_var", "goal_id", "result_code", "accepted")),
+        *(f"{port}@{end}" for port in SENT for end in ("origin", "target")),
+        *("ros_topic@topic_name", "ros_service@service_name", "ros_action@action_name", "bt_node@node"),
+        *("scxml_event_send@event", "state_var@field", "state_var@param", "property@expr"),
+        *("clock@topic_name", "clock@type"),
+    },
     "behaviortree.xsd": {
         *("root@BTCPP_format", "include@ros_pkg"),
         *(f"{port}@{name}" for port in ("input_port", "output_port", "inout_port") for name in PORT_MODEL),
@@ -246,7 +254,16 @@ def test_find_and_parents() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["ascxml.xsd", "ascxml-namespace.xsd", "roaml.xsd", "behaviortree.xsd", "structs.xsd", "scxml.xsd"]
+    "name",
+    [
+        "ascxml.xsd",
+        "ascxml-namespace.xsd",
+        "roaml.xsd",
+        "behaviortree.xsd",
+        "structs.xsd",
+        "properties.xsd",
+        "scxml.xsd",
+    ],
 )
 def test_plain_lxml_reads_the_schema(name: str) -> None:
     etree.XMLSchema(etree.parse(str(schema_path(name))))

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from lxml import etree
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, Grammar, SimpleType, ValueChoice
 from roaml.language.validate import (
     InvalidValue,
@@ -211,7 +211,7 @@ def test_unmet(simple: SimpleType, value: str, wanted: str) -> None:
 
 ATTRIBUTES = [
     (grammar, element.name, attribute)
-    for grammar in (HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE)
+    for grammar in (HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE)
     for element in grammar.elements.values()
     for attribute in element.attributes.values()
     if ":" not in attribute.name
@@ -262,7 +262,7 @@ def value(draw: st.DrawFn, attribute: AttributeType) -> str:
     return draw(values)
 
 
-GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE]
+GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE]
 MOSTLY = st.integers(0, 14).map(bool)
 ANY = ["state", "transition", "assign", "input", "Sequence", "struct", "member", "nonsense"]
 

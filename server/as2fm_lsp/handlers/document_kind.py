@@ -18,6 +18,7 @@ _KINDS = {
     FileKind.STRUCTS: "structs",
     FileKind.JSON_STRUCTS: "structs",
     FileKind.PROPERTIES: "properties",
+    FileKind.XML_PROPERTIES: "properties",
     FileKind.INTERFACE: "interface",
     FileKind.JANI_MODEL: "model",
 }

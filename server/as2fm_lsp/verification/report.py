@@ -13,6 +13,7 @@ from as2fm_lsp import junit
 from as2fm_lsp.junit import Case, CaseOutcome
 from as2fm_lsp.verification import ends, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
+from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import Result
@@ -131,9 +132,15 @@ def _remarks(answer: Answer) -> list[str]:
         )
     if answer.is_anytime and answer.tally.traces:
         lines.append("  the interval is valid at any stopping time: it is one of a confidence sequence")
-    if answer.tally.undecided:
+    cut = answer.tally.ended(End.CUT)
+    if cut:
         steps = f"{answer.options.max_steps:,}"
-        lines.append(f"  undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
+        lines.append(f"  {cut:,} undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
+    if answer.tally.undecided > cut:
+        lines.append(
+            f"  {answer.tally.undecided - cut:,} traces are open: the time ends (max_time) before a deadline of the "
+            "property; they widen the interval"
+        )
     return lines
 
 

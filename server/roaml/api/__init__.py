@@ -39,6 +39,7 @@ from roaml.project.settings import Settings
 from roaml.project.source_map import SourceMap
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
+from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
@@ -142,6 +143,7 @@ __all__ = [
     "NoThresholdError",
     "NodeState",
     "NodeStatus",
+    "ObservedProperty",
     "Options",
     "Origin",
     "Outcome",

@@ -19,9 +19,10 @@ from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.project.source_map import SourceMap
 from roaml.project.source_map import source_map as _source_map
-from roaml.project.translation import program_of, properties_of
+from roaml.project.translation import observed_properties_of, program_of, properties_of
 from roaml.project.workspace import Snapshot
 from roaml.scxml.model import Network
+from roaml.scxml.observed import ObservedProperty
 from roaml.to_jani import translate
 
 
@@ -37,17 +38,19 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class LoadedSystem:
-    """A system without errors, with its files as they were when it was loaded.
+    """A system without errors, as its files were when it was loaded.
 
     Attributes:
-        path: the system file.
-        properties: those in its property files, in their order.
+        path: of the system file.
+        properties: those in its property files in JANI, in their order.
+        observed: those in its property files in XML, in their order.
         analysis: the models behind it.
     """
 
     path: str
     properties: tuple[Property, ...]
     analysis: Analysis
+    observed: tuple[ObservedProperty, ...] = ()
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -96,7 +99,7 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     errors = snapshot.checker.errors(path)
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
-    return LoadedSystem(path, properties_of(analysis, path), analysis)
+    return LoadedSystem(path, properties_of(analysis, path), analysis, observed_properties_of(analysis, path))
 
 
 def to_scxml(system: LoadedSystem) -> Network:
@@ -113,8 +116,14 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
     Raises:
         PropertyError: the system has no property with one of the names.
     """
-    chosen = system.properties if properties is None else select(system.properties, properties, "system")
-    return translate(to_scxml(system), chosen)
+    if properties is None:
+        return translate(to_scxml(system), system.properties, system.observed)
+    chosen: tuple[Property | ObservedProperty, ...] = select(
+        (*system.properties, *system.observed), properties, "system"
+    )
+    in_jani = tuple(property_ for property_ in chosen if isinstance(property_, Property))
+    in_xml = tuple(property_ for property_ in chosen if isinstance(property_, ObservedProperty))
+    return translate(to_scxml(system), in_jani, in_xml)
 
 
 def source_map(system: LoadedSystem, model: Model) -> SourceMap:

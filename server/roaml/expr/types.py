@@ -7,6 +7,7 @@ so no lookup is needed; ROS messages and event data are structs as well.
 
 from __future__ import annotations
 
+import enum
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -36,13 +37,33 @@ class Array:
         return f"{inner}{''.join('[]' if bound is None else f'[{bound}]' for bound in bounds)}"
 
 
+class StructKind(enum.Enum):
+    """What the members of a struct belong to."""
+
+    DECLARED = enum.auto()
+    """A struct of the models."""
+    ROS = enum.auto()
+    """A message, or a part of a service or action."""
+    EVENT = enum.auto()
+    """The parameters of an event."""
+    HANDLER = enum.auto()
+    """What a handler knows besides."""
+
+
 @dataclass(frozen=True, slots=True)
 class Struct:
-    """Named members in order. `what` is a phrase for the kind of struct: struct, message, event data, ..."""
+    """Named members in order.
+
+    Attributes:
+        what: the kind of thing in the words of messages: struct, message, event data, …
+        event: for `StructKind.EVENT`, the event whose parameters the members are.
+    """
 
     name: str
     members: tuple[tuple[str, Type], ...]
     what: str = "struct"
+    kind: StructKind = StructKind.DECLARED
+    event: str = ""
 
     def __str__(self) -> str:
         return self.name or self.what

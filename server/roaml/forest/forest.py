@@ -53,7 +53,7 @@ class Forest:
     """Attributes:
     path: the file that is looked at.
     files: that file and those that it is seen with, by path: what it includes, projects, models.
-    beside: the names of trees in other files of its folder, which a program may load together with it.
+    beside: the names of the trees in its folder, whose files a program may load together.
     complete: all includes could be read.
     """
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
+from roaml.expr.types import UNKNOWN, Struct, StructKind, Type, unwrap
 from roaml.ide.describe import describe
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe.machine import inferred_type
@@ -265,7 +265,7 @@ class _Machine:
 
     def type_part(self, type_: Type) -> InlayHintLabelPart:
         inner, _ = unwrap(type_)
-        is_ours = isinstance(inner, Struct) and inner.what == "struct"
+        is_ours = isinstance(inner, Struct) and inner.kind is StructKind.DECLARED
         return InlayHintLabelPart(str(type_), Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_ours else None)
 
     def port_read(self, read: PortRead) -> Iterator[InlayHint]:

@@ -4,8 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Protocol, TypeVar
 
-from roaml.jani.properties import Property
+
+class Named(Protocol):
+    """A property in any form."""
+
+    @property
+    def name(self) -> str: ...
+
+
+NamedT = TypeVar("NamedT", bound=Named)
 
 
 class PropertyError(ValueError):
@@ -13,8 +22,8 @@ class PropertyError(ValueError):
 
 
 def select(
-    properties: Sequence[Property], names: Iterable[str], owner: str, others: Sequence[str] = ()
-) -> tuple[Property, ...]:
+    properties: Sequence[NamedT], names: Iterable[str], owner: str, others: Sequence[str] = ()
+) -> tuple[NamedT, ...]:
     """The properties of some names, in the order of the names.
 
     Args:

@@ -231,6 +231,7 @@ class Grammar:
 HL_SCXML = Grammar("ascxml.xsd", ("ascxml", "scxml"), "HL-SCXML")
 PLAIN_SCXML = Grammar("scxml.xsd", ("scxml",), "plain SCXML")
 SYSTEM = Grammar("roaml.xsd", ("roaml", "convince_mc_tc"), "system file")
+XML_PROPERTIES = Grammar("properties.xsd", ("properties",), "properties in XML")
 STRUCTS = Grammar("structs.xsd", ("types",), "struct declarations")
 BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
 

@@ -7,7 +7,7 @@ import enum
 import re
 from collections.abc import Mapping
 
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, Grammar
 
 
 class FileKind(enum.Enum):
@@ -17,6 +17,7 @@ class FileKind(enum.Enum):
     STRUCTS = "struct declarations"
     JSON_STRUCTS = "struct declarations in JSON"
     PROPERTIES = "property file"
+    XML_PROPERTIES = "property file in XML"
     JANI_MODEL = "JANI model"
     INTERFACE = "ROS interface definition"
     CONFIGURATION = "configuration of as2fm"
@@ -29,6 +30,7 @@ GRAMMARS: Mapping[FileKind, Grammar] = {
     FileKind.SYSTEM: SYSTEM,
     FileKind.TREE: BEHAVIOR_TREE,
     FileKind.STRUCTS: STRUCTS,
+    FileKind.XML_PROPERTIES: XML_PROPERTIES,
 }
 
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
@@ -48,6 +50,7 @@ _ROOTS = {
     **dict.fromkeys(HL_SCXML.roots, FileKind.MACHINE),
     **dict.fromkeys(SYSTEM.roots, FileKind.SYSTEM),
     **dict.fromkeys(STRUCTS.roots, FileKind.STRUCTS),
+    **dict.fromkeys(XML_PROPERTIES.roots, FileKind.XML_PROPERTIES),
     "specification": FileKind.SPECIFICATION,
 }
 

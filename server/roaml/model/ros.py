@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, leaves, unwrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, leaves, unwrap
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, FieldType, Kind, Section
 from roaml.model.nesting import TypeExtent, extents
@@ -76,7 +76,7 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
         title = definition.full_name if definition.kind == "msg" else f"{definition.full_name} {name}"
         if definition.kind == "msg":
             reader.inside.append(definition.full_name)
-        parts.append((name, Struct(title, reader.members(section), what)))
+        parts.append((name, Struct(title, reader.members(section), what, StructKind.ROS)))
         optional.append((name, frozenset(_optional(section, (), parts[-1][1], find))))
     return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
 
@@ -113,7 +113,7 @@ class _Reader:
             if isinstance(definition, NotFound) or type_.name in self.inside:
                 return UNKNOWN
             self.inside.append(type_.name)
-            self.known[type_.name] = Struct(type_.name, self.members(definition.sections[0]), "message")
+            self.known[type_.name] = Struct(type_.name, self.members(definition.sections[0]), "message", StructKind.ROS)
             self.inside.pop()
         return self.known[type_.name]
 

@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, join
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference
 from roaml.model.gaps import (
@@ -143,7 +143,7 @@ class PlainEvent:
             for param in sent.params:
                 known = params.get(param.name, UNKNOWN)
                 params[param.name] = join(known, param.type) or known
-        return Struct("", tuple(params.items()), f"data of event {self.name}")
+        return Struct("", tuple(params.items()), f"data of event {self.name}", StructKind.EVENT, self.name)
 
 
 @dataclass(frozen=True, slots=True)

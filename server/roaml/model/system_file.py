@@ -78,6 +78,8 @@ def wanted_kind(entry: SystemInput) -> FileKind | None:
     """The kind of file that a system expects; if its type is misspelled, that of the intended type."""
     if entry.type is None:
         return None
+    if entry.type.value == "xml" and entry.section == "properties":
+        return FileKind.XML_PROPERTIES
     close = close_names(entry.type.value, _WANTED, 1) if entry.type.value not in _WANTED else (entry.type.value,)
     return _WANTED[close[0]] if close else None
 

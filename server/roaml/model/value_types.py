@@ -14,7 +14,19 @@ from typing import Protocol
 
 from roaml.expr.infer import Problem, RandomUsed, infer
 from roaml.expr.tree import Number, walk
-from roaml.expr.types import BASE_TYPES, BOOL, INT, UNKNOWN, Struct, Type, leaves, resolve_type, unwrap, wrap
+from roaml.expr.types import (
+    BASE_TYPES,
+    BOOL,
+    INT,
+    UNKNOWN,
+    Struct,
+    StructKind,
+    Type,
+    leaves,
+    resolve_type,
+    unwrap,
+    wrap,
+)
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_bound, check_initial
@@ -184,27 +196,27 @@ def event_variable(binding: Binding, handler: Handler, machine: Machine, environ
         return UNKNOWN
     match binding.name:
         case "_action":
-            return Struct("", (("goal_id", GOAL_ID),), "goal handle")
+            return Struct("", (("goal_id", GOAL_ID),), "goal handle", StructKind.HANDLER)
         case "_bt":
-            return Struct("", (("status", STATUS),), "answer of the child")
+            return Struct("", (("status", STATUS),), "answer of the child", StructKind.HANDLER)
         case "_event":
-            return Struct("", (("data", _event_data(handler, environment)),), "event")
+            return Struct("", (("data", _event_data(handler, environment)),), "event", StructKind.HANDLER)
         case "_wrapped_result":
             part = interface_part(handler.trigger, find_handle(machine, handler), environment)
-            return Struct("", (("code", STATUS), ("result", part)), "wrapped result")
+            return Struct("", (("code", STATUS), ("result", part)), "wrapped result", StructKind.HANDLER)
     return interface_part(handler.trigger, find_handle(machine, handler), environment)
 
 
 def _event_data(handler: Handler, environment: Environment) -> Type:
     match handler.trigger:
         case ProtocolPart.CHILD_STATUS:
-            return Struct("", (("status", STATUS),), "event data")
+            return Struct("", (("status", STATUS),), "event data", StructKind.HANDLER)
         case ProtocolPart.THREAD_FREE:
-            return Struct("", (("thread_id", GOAL_ID),), "event data")
+            return Struct("", (("thread_id", GOAL_ID),), "event data", StructKind.HANDLER)
         case ProtocolPart.EVENT:
             data = environment.event_data(handler.event.value) if handler.event else None
             return UNKNOWN if data is None else data
-    return Struct("", (), "event data")
+    return Struct("", (), "event data", StructKind.HANDLER)
 
 
 def section_of(part: ProtocolPart) -> str:

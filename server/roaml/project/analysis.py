@@ -37,6 +37,8 @@ from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION,
 from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
+from roaml.model.property_file import PropertyFile, build_property_file
+from roaml.model.property_links import LinkedFile, link
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
@@ -105,8 +107,8 @@ class _MachineEnvironment:
         return self._published.get(sanitise(topic), ())
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
-        found = self._analysis.interface(kind, name)
-        return found if isinstance(found, InterfaceType) else None
+        definition = self._analysis.interface(kind, name)
+        return definition if isinstance(definition, InterfaceType) else None
 
 
 class Analysis:
@@ -133,6 +135,7 @@ class Analysis:
         listed: Iterable[str] = (),
     ) -> None:
         self._listed_files = tuple(listed)
+        self._folder_names: dict[str, frozenset[str]] = {}
         self.overrides = overrides
         self.tree_settings = trees
         self.files = files
@@ -185,8 +188,10 @@ class Analysis:
 
     def violations(self, path: str, grammar: Grammar) -> tuple[Violation, ...]:
         """The places where a file violates a grammar."""
-        found = self._of_document(f"violations {grammar.schema}", path, lambda document: validate(document, grammar))
-        return found or ()
+        violations = self._of_document(
+            f"violations {grammar.schema}", path, lambda document: validate(document, grammar)
+        )
+        return violations or ()
 
     def misfits(self, path: str, grammar: Grammar) -> tuple[Misfit, ...]:
         """The elements of a file that the grammar does not know or does not allow where they are."""
@@ -201,6 +206,32 @@ class Analysis:
 
     def tree(self, path: str) -> TreeFile | None:
         return self._of_document("tree", path, build_tree_file)
+
+    def property_file(self, path: str) -> PropertyFile | None:
+        return self._of_document("property file", path, build_property_file)
+
+    def linked_properties(self, path: str, system: str) -> LinkedFile | None:
+        """The properties in an XML file, as a part of a system."""
+        file, linked = self.property_file(path), self.system(system)
+        if file is None or linked is None:
+            return None
+        taken = tuple(self.names_before(path, system))
+        variables = self.globals(system)
+        compute = functools.partial(link, file, linked, self.interface, variables, dict(taken), path)
+        return self.memo.get("linked properties", (path, system), (file, linked, taken), compute)
+
+    def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
+        """The names of the properties in the files that a system lists before a file, each with the file's name."""
+        for listed in self.listed(system):
+            if listed.path == path:
+                return
+            if not listed.usable:
+                continue
+            file = f"`{listed.input.src.value}`" if listed.input.src else "another file"
+            if listed.wanted is FileKind.PROPERTIES:
+                yield from ((property_.name, file) for property_ in self.properties(listed.path)[0])
+            elif listed.wanted is FileKind.XML_PROPERTIES and (before := self.property_file(listed.path)) is not None:
+                yield from ((written.id.value, file) for written in before.properties if written.id is not None)
 
     def system_file(self, path: str) -> SystemFile | None:
         return self._of_document("system file", path, lambda document: build_system_file(document, self.overrides))
@@ -258,7 +289,7 @@ class Analysis:
 
     def repeated_types(self, machine: Machine) -> tuple[RepeatedType, ...]:
         """The ROS types of a machine, including those of their fields, that other files define differently."""
-        found: dict[tuple[str, str], RepeatedType] = {}
+        repeated_types: dict[tuple[str, str], RepeatedType] = {}
         for declaration in machine.declarations:
             if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
                 continue
@@ -268,22 +299,22 @@ class Analysis:
                 other = self.registry.other_definition(part.kind, part.package, part.name)
                 if other is not None:
                     repeated = RepeatedType(written, part.package, part.name, part.path, other.path)
-                    found.setdefault((written, part.full_name), repeated)
-        return tuple(found.values())
+                    repeated_types.setdefault((written, part.full_name), repeated)
+        return tuple(repeated_types.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
         """The definition and all nested messages."""
-        found = [definition]
+        definitions = [definition]
         names = {definition.full_name}
-        for each in found:
-            for section in each.sections:
+        for outer in definitions:
+            for section in outer.sections:
                 for field in section.fields:
                     if not field.type.is_primitive and field.type.name not in names:
                         names.add(field.type.name)
                         nested = self.registry.resolve("msg", field.type.name)
                         if not isinstance(nested, NotFound):
-                            found.append(nested)
-        return found
+                            definitions.append(nested)
+        return definitions
 
     # --------------------------------------------------------------- systems
 
@@ -311,12 +342,12 @@ class Analysis:
             return ListedFile(entry, path, source, wanted, FileKind.UNKNOWN)
         if len(source.text) > MAX_CHARACTERS:
             return ListedFile(entry, path, UnreadableReason.TOO_LONG, wanted, self.kind(path))
-        found = self.kind(path)
-        if found is FileKind.MACHINE and self.machine(path) is None:
-            found = FileKind.UNKNOWN
-        if wanted is FileKind.JSON_STRUCTS and found is FileKind.UNKNOWN and path.endswith(".json"):
-            found = FileKind.JSON_STRUCTS
-        return ListedFile(entry, path, None, wanted, found)
+        kind = self.kind(path)
+        if kind is FileKind.MACHINE and self.machine(path) is None:
+            kind = FileKind.UNKNOWN
+        if wanted is FileKind.JSON_STRUCTS and kind is FileKind.UNKNOWN and path.endswith(".json"):
+            kind = FileKind.JSON_STRUCTS
+        return ListedFile(entry, path, None, wanted, kind)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
         """The tree files of a system: the listed one, then the included ones, without duplicates."""
@@ -336,13 +367,13 @@ class Analysis:
         """The outlines of `trees_from`. If names in projects are equal, the first is used."""
         paths = self.trees_from(path)
         own = len(self._trees[path][0])
-        found = [self.tree_outline(each) for each in paths[:own]]
-        for each in paths[own:]:
-            known = {tree.id for outline in found for tree in outline.trees}
-            outline = self.tree_outline(each)
+        outlines = [self.tree_outline(tree_path) for tree_path in paths[:own]]
+        for tree_path in paths[own:]:
+            known = {tree.id for outline in outlines for tree in outline.trees}
+            outline = self.tree_outline(tree_path)
             trees = tuple(tree for tree in outline.trees if tree.id not in known)
-            found.append(replace(outline, trees=trees, from_project=True))
-        return tuple(found)
+            outlines.append(replace(outline, trees=trees, from_project=True))
+        return tuple(outlines)
 
     def tree_outlines(self, system: str) -> tuple[TreeFileOutline, ...]:
         """The outlines of the tree files of a system."""
@@ -350,11 +381,11 @@ class Analysis:
         return self.outlines_from(first) if first else ()
 
     def _with_included(self, paths: list[str]) -> tuple[str, ...]:
-        found = [path for path in paths if self.tree(path) is not None]
-        for each in found:
-            included = dict.fromkeys(self.includes(each))
-            found += [p for p in included if p not in found and self.tree(p) is not None]
-        return tuple(found)
+        trees = [path for path in paths if self.tree(path) is not None]
+        for tree_path in trees:
+            included = dict.fromkeys(self.includes(tree_path))
+            trees += [p for p in included if p not in trees and self.tree(p) is not None]
+        return tuple(trees)
 
     def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
         """The projects of Groot2 that list a tree file, and those of their files that contain missing subtrees."""
@@ -362,23 +393,31 @@ class Analysis:
             return ()
         projects = [p for p in self.files.beside(path, PROJECT_EXTENSION) if path in self.includes(p)]
         listed = dict.fromkeys(p for project in projects for p in self.includes(project))
-        found: list[str] = list(projects)
+        more: list[str] = list(projects)
         while True:
-            known = {name for each in (*own, *found) for name in self._tree_names(each)}
-            wanted = {name for each in (*own, *found) for name in self._subtrees(each)} - known
-            new = next((p for p in listed if p not in (*own, *found) and wanted & self._tree_names(p)), None)
+            known = {name for tree_path in (*own, *more) for name in self._tree_names(tree_path)}
+            wanted = {name for tree_path in (*own, *more) for name in self._subtrees(tree_path)} - known
+            new = next((p for p in listed if p not in (*own, *more) and wanted & self._tree_names(p)), None)
             if new is None:
-                return tuple(found)
-            found += [p for p in self._with_included([new]) if p not in (*own, *found)]
+                return tuple(more)
+            more += [p for p in self._with_included([new]) if p not in (*own, *more)]
+
+    def _names_in_folder(self, path: str) -> frozenset[str]:
+        """The names of the trees in the folder of a file."""
+        folder = os.path.dirname(path)
+        if folder not in self._folder_names:
+            files = (p for p in (path, *self.files.beside(path, ".xml")) if self.kind(p) is FileKind.TREE)
+            self._folder_names[folder] = frozenset(name for p in files for name in self._tree_names(p))
+        return self._folder_names[folder]
 
     def _tree_names(self, path: str) -> set[str]:
         tree = self.tree(path)
-        return {each.id.value for each in tree.trees if each.id} if tree else set()
+        return {behavior_tree.id.value for behavior_tree in tree.trees if behavior_tree.id} if tree else set()
 
     def _subtrees(self, path: str) -> set[str]:
         """The names of the trees that a file uses as subtrees."""
         tree = self.tree(path)
-        used = (node for each in tree.trees for node in nodes(each)) if tree else ()
+        used = (node for behavior_tree in tree.trees for node in nodes(behavior_tree)) if tree else ()
         return {node.plugin.value for node in used if node.is_subtree and node.plugin}
 
     def includes(self, path: str) -> tuple[str, ...]:
@@ -435,16 +474,16 @@ class Analysis:
                 linked.setdefault(file, set()).add(target)
                 linked.setdefault(target, set()).add(file)
                 included.add(target)
-        found: dict[str, tuple[str, ...]] = {}
+        families: dict[str, tuple[str, ...]] = {}
         for file in linked:
-            if file not in found:
+            if file not in families:
                 members, pending = {file}, [file]
                 while pending:
                     new = linked.get(pending.pop(), set()) - members
                     members |= new
                     pending += new
-                found.update(dict.fromkeys(members, tuple(sorted(members - included) or sorted(members))))
-        return found
+                families.update(dict.fromkeys(members, tuple(sorted(members - included) or sorted(members))))
+        return families
 
     def forest(self, path: str) -> Forest | None:
         """A tree file that belongs to no system, with what it is seen with."""
@@ -453,8 +492,7 @@ class Analysis:
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
         paths = tuple(dict.fromkeys((*self.trees_from(path), *models)))
         files = tuple((p, tree) for p in paths if (tree := self.tree(p)) is not None)
-        others = [p for p in self.files.beside(path, ".xml") if p not in paths and self.kind(p) is FileKind.TREE]
-        beside = frozenset(name for p in others for name in self._tree_names(p))
+        beside = self._names_in_folder(path)
         targets = (self.include_path(p, i) for p, tree in files for i in tree.includes if i.path)
         complete = all(target is not None and self.tree(target) is not None for target in targets)
         key = (files, beside, complete, self.tree_settings)
@@ -476,11 +514,11 @@ class Analysis:
     @cached_property
     def memberships(self) -> Mapping[str, tuple[str, ...]]:
         """File -> its systems."""
-        found: dict[str, list[str]] = {}
+        systems_by_file: dict[str, list[str]] = {}
         for system in self.system_paths:
             for path in self.files_of(system):
-                found.setdefault(path, []).append(system)
-        return {path: tuple(systems) for path, systems in found.items()}
+                systems_by_file.setdefault(path, []).append(system)
+        return {path: tuple(systems) for path, systems in systems_by_file.items()}
 
     def structs(self, system: str | None) -> Structs:
         """The structs that a system declares. A struct file in no system declares structs only for itself."""
@@ -494,7 +532,7 @@ class Analysis:
         section = "data_declarations"
         files = [f.path for f in self.listed(system) if f.usable and f.input.section == section]
         declared = [declaration.outline for path in files for declaration in self.struct_declarations(path)]
-        outlines = tuple(found for found in declared if found is not None)
+        outlines = tuple(outline for outline in declared if outline is not None)
         complete = self.lists_all(system, section) and None not in declared and all(map(self._is_well_formed, files))
         make = functools.partial(self._make_structs, outlines, complete)
         return self.memo.get("struct types", system, (outlines, complete), make)
@@ -550,8 +588,8 @@ class Analysis:
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
         paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
-        properties = [each for path in paths for each in self.properties(path)[0]]
-        return frozenset(name for each in properties for name, _ in identifiers(each.expression))
+        properties = [declared for path in paths for declared in self.properties(path)[0]]
+        return frozenset(name for declared in properties for name, _ in identifiers(declared.expression))
 
     def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
         """The facts that a system file, its trees and the unreadable files may contain: file, gap and place."""
@@ -571,9 +609,9 @@ class Analysis:
             yield path, PlacedGap(Gap(ANYTHING), root)
         if "behavior_tree" in file.unread:
             yield path, PlacedGap(Gap(NODE), root)
-        for each in listed:
-            if each.input.section == "node_models" and not each.usable:
-                yield from ((path, PlacedGap(gap, each.span)) for gap in self._of_missing_node(path, each, listed))
+        for entry in listed:
+            if entry.input.section == "node_models" and not entry.usable:
+                yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         outlines = self.tree_outlines(path)
         for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
@@ -587,7 +625,7 @@ class Analysis:
 
     def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
         """The facts of a node whose file cannot be used: those of the file in its folder that is probably meant."""
-        taken = {each.path for each in listed}
+        taken = {file.path for file in listed}
         beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
         by_name = {_stem(p): p for p in beside}
         close = close_names(_stem(missing.path), by_name, 1) if missing.path else ()
@@ -595,11 +633,11 @@ class Analysis:
         if not meant or self.machine(meant) is None:
             yield Gap(ANYTHING)
             return
-        found = self.outline(meant, system, self.structs(system), {})
-        yield from found.gaps
-        yield from (Gap(use.kind.value, use.name or None) for use in found.interfaces)
-        yield from (Gap(SENDS, sent.event) for sent in found.sent)
-        yield from (Gap(RECEIVES, received.event) for received in found.received)
+        outline = self.outline(meant, system, self.structs(system), {})
+        yield from outline.gaps
+        yield from (Gap(use.kind.value, use.name or None) for use in outline.interfaces)
+        yield from (Gap(SENDS, sent.event) for sent in outline.sent)
+        yield from (Gap(RECEIVES, received.event) for received in outline.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why some nodes of the executed tree are unknown, if the system should have a tree: file and place."""
@@ -609,7 +647,7 @@ class Analysis:
             if section is not None:
                 yield path, section.name_span
             return
-        yield from ((path, each.span) for each in listed_trees if not each.usable)
+        yield from ((path, file.span) for file in listed_trees if not file.usable)
         paths = self.tree_paths(path)
         clear = True
         for tree_path in paths:
@@ -617,7 +655,7 @@ class Analysis:
             assert tree is not None
             spans = [] if broken is None else [broken]
             spans += [misfit.element.name_span for misfit in self.misfits(tree_path, BEHAVIOR_TREE)]
-            spans += [each.element.name_span for each in tree.trees if len(each.roots) != 1]
+            spans += [behavior_tree.element.name_span for behavior_tree in tree.trees if len(behavior_tree.roots) != 1]
             for include in () if tree_path.endswith(PROJECT_EXTENSION) else tree.includes:
                 target = self.include_path(tree_path, include)
                 if include.path and (target is None or self.tree(target) is None):
@@ -651,10 +689,10 @@ class Analysis:
         file = self.system_file(path)
         if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
             return False
-        for each in listed:
-            if each.input.section == "behavior_tree" and each.wanted is not FileKind.TREE:
-                machine = self.machine(each.path) if each.wanted is FileKind.MACHINE and each.usable else None
-                if machine is None or machine.name is None or not self._is_well_formed(each.path):
+        for entry in listed:
+            if entry.input.section == "behavior_tree" and entry.wanted is not FileKind.TREE:
+                machine = self.machine(entry.path) if entry.wanted is FileKind.MACHINE and entry.usable else None
+                if machine is None or machine.name is None or not self._is_well_formed(entry.path):
                     return False
         return True
 
@@ -680,9 +718,9 @@ class Analysis:
         """The facts in the unreadable parts of a machine, with the places."""
         document = self.document(path)
         assert document is not None
-        found = machine_gaps(machine, typed, document.namespaces, self._has_type)
+        gaps = machine_gaps(machine, typed, document.namespaces, self._has_type)
         broken = self._broken(path)
-        return found if broken is None else (*found, PlacedGap(Gap(ANYTHING), broken))
+        return gaps if broken is None else (*gaps, PlacedGap(Gap(ANYTHING), broken))
 
     def _has_type(self, kind: str, name: str) -> bool:
         return isinstance(self.interface(kind, name), InterfaceType)
@@ -706,21 +744,21 @@ class Analysis:
     def _published(self, system: str) -> Mapping[str, tuple[str, ...]]:
         """The types, as written, with which the machines of a system publish on each topic."""
         if system not in self._published_types:
-            found: dict[str, dict[str, None]] = {}
+            types_by_topic: dict[str, dict[str, None]] = {}
             for listed in self.listed(system):
                 machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
                 for declaration in machine.declarations if machine else ():
                     topic, type_ = declaration.interface, declaration.type
                     if declaration.kind is SymbolKind.PUBLISHER and isinstance(topic, Name) and type_ is not None:
-                        found.setdefault(sanitise(topic.value), {})[type_.value] = None
-            self._published_types[system] = {topic: tuple(types) for topic, types in found.items()}
+                        types_by_topic.setdefault(sanitise(topic.value), {})[type_.value] = None
+            self._published_types[system] = {topic: tuple(types) for topic, types in types_by_topic.items()}
         return self._published_types[system]
 
     def _published_for(self, machine: Machine, system: str | None) -> dict[str, tuple[InterfaceType, ...]]:
         """The topics that a machine subscribes to and that are published with other types, with these types."""
         if system is None:
             return {}
-        found: dict[str, tuple[InterfaceType, ...]] = {}
+        types_by_topic: dict[str, tuple[InterfaceType, ...]] = {}
         for declaration in machine.declarations:
             if (
                 declaration.kind is SymbolKind.SUBSCRIBER
@@ -730,13 +768,13 @@ class Analysis:
                 topic = sanitise(declaration.interface.value)
                 types = self._published(system).get(topic, ())
                 if others := self._messages(t for t in types if t != declaration.type.value):
-                    found[topic] = others
-        return found
+                    types_by_topic[topic] = others
+        return types_by_topic
 
     def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
         """Those of the message types that exist."""
-        found = (self.interface("msg", name) for name in names)
-        return tuple(type_ for type_ in found if isinstance(type_, InterfaceType))
+        definitions = (self.interface("msg", name) for name in names)
+        return tuple(type_ for type_ in definitions if isinstance(type_, InterfaceType))
 
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
         """The ROS types that a machine declares, in order."""

@@ -76,7 +76,7 @@ class RuleRunner:
         if source is None:
             return ()
         systems = self.analysis.memberships.get(path, ())
-        found = dict.fromkeys(
+        findings = dict.fromkeys(
             finding
             for system in (systems or (None,))
             for finding in self.findings(path, system)
@@ -84,11 +84,13 @@ class RuleRunner:
         )
         hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
         if hidden:
-            found.update(dict.fromkeys(each for each in self._unused(source, systems, hidden) if self._wanted(each)))
+            findings.update(
+                dict.fromkeys(finding for finding in self._unused(source, systems, hidden) if self._wanted(finding))
+            )
         around = covering(hidden)
         diagnostics = [
             self._publish(path, finding)
-            for finding in _without_repetition(found)
+            for finding in _without_repetition(findings)
             if finding.code == _CRASH or not any(_hides(comment, finding) for comment in around(finding.span.start))
         ]
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
@@ -96,21 +98,23 @@ class RuleRunner:
     def _unused(self, source: SourceFile, systems: tuple[str, ...], hidden: Iterable[Suppression]) -> Iterator[Finding]:
         """The unused suppressions. A file alone, or one with syntax errors, is not checked for them."""
         linked = [self.analysis.system(system) for system in systems]
-        found = [finding for system in systems for finding in self.findings(source.path, system)]
+        findings = [finding for system in systems for finding in self.findings(source.path, system)]
         known = linked and all(system is not None and system.complete for system in linked)
-        if not known or any(finding.code in _FORM for finding in found):
+        if not known or any(finding.code in _FORM for finding in findings):
             return
         around = covering(hidden)
         used: dict[object, set[str]] = {}
-        for finding in found:
-            for each in around(finding.span.start):
-                if each.hides(finding):
-                    used.setdefault((each.span, each.codes), set()).add(finding.code)
-        for each in itertools.islice(hidden, MAX_FINDINGS):
-            key = (each.span, each.codes)
-            if each.codes is None or unused_suppression.RULE.code not in each.codes:
-                codes = None if each.codes is None else sorted(each.codes)
-                yield from unused_suppression.finding(source.text, each.comment, codes, used.get(key, ()), BY_CODE)
+        for finding in findings:
+            for suppression in around(finding.span.start):
+                if suppression.hides(finding):
+                    used.setdefault((suppression.span, suppression.codes), set()).add(finding.code)
+        for suppression in itertools.islice(hidden, MAX_FINDINGS):
+            key = (suppression.span, suppression.codes)
+            if suppression.codes is None or unused_suppression.RULE.code not in suppression.codes:
+                codes = None if suppression.codes is None else sorted(suppression.codes)
+                yield from unused_suppression.finding(
+                    source.text, suppression.comment, codes, used.get(key, ()), BY_CODE
+                )
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """The errors that prevent the translation of a system, by the rules' own severities. No setting and no comment
@@ -149,7 +153,7 @@ class RuleRunner:
         return self._diagnostic(path, finding, _own_severity(finding) if severity is None else severity)
 
     def _diagnostic(self, path: str, finding: Finding, severity: Severity) -> Diagnostic:
-        related = tuple(place for each in finding.related if (place := self._related(path, each)) is not None)
+        related = tuple(place for other in finding.related if (place := self._related(path, other)) is not None)
         source = self.analysis.source(path) if finding.fixes else None
         fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
         return Diagnostic(
@@ -165,11 +169,11 @@ class RuleRunner:
 
 def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
     """The findings of one rule in one file, limited to the first ones."""
-    found = list(itertools.islice(findings, MAX_FINDINGS + 1))
-    if len(found) > MAX_FINDINGS:
+    kept = list(itertools.islice(findings, MAX_FINDINGS + 1))
+    if len(kept) > MAX_FINDINGS:
         message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
-        found[-1] = rule.at(found[-1].span, message, severity=found[-1].severity)
-    return found
+        kept[-1] = rule.at(kept[-1].span, message, severity=kept[-1].severity)
+    return kept
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
@@ -235,6 +239,10 @@ class _Run:
             case FileKind.TREE:
                 forest = None if self.system_path else self.analysis.forest(self.path)
                 return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()), forest)
+            case FileKind.PROPERTIES if self.system_path:
+                return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
+            case FileKind.XML_PROPERTIES if self.system_path:
+                return (*parts, self.analysis.linked_properties(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.analysis.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
@@ -243,11 +251,11 @@ class _Run:
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
-        found = tuple(self._all())
-        if any(finding.code in _FORM for finding in found):
+        findings = tuple(self._all())
+        if any(finding.code in _FORM for finding in findings):
             # Something that seems unused may be used in the unreadable part.
-            return tuple(finding for finding in found if Tag.UNNECESSARY not in finding.tags)
-        return found
+            return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
+        return findings
 
     def _all(self) -> Iterator[Finding]:
         file = self._file_context()
@@ -278,6 +286,11 @@ class _Run:
                 case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                     structs = self._structs_context()
                     return [(r, functools.partial(r.structs, structs)) for r in RULES if r.structs]
+                case FileKind.XML_PROPERTIES:
+                    linked = self.analysis.linked_properties(self.path, self.system_path) if self.system_path else None
+                    return [
+                        (r, functools.partial(r.xml_properties, linked)) for r in RULES if r.xml_properties and linked
+                    ]
                 case FileKind.PROPERTIES:
                     properties = self._properties_context()
                     return [
@@ -407,27 +420,27 @@ class _Run:
     def _missing_includes(self) -> dict[str, str]:
         """The includes that cannot be used, with the reasons."""
         file = self.analysis.tree(self.path)
-        found: dict[str, str] = {}
+        problems: dict[str, str] = {}
         for include in file.includes if file else ():
             target = self.analysis.include_path(self.path, include)
             if include.path is None:
                 continue
             if target is None:
                 if self.system is not None and include.package is not None:
-                    found[include.path.value] = (
+                    problems[include.path.value] = (
                         f"no folder around this file has the ROS package `{include.package.value}`"
                     )
                 continue
             source = self.analysis.files.read(target)
             if isinstance(source, UnreadableReason):
-                found[include.path.value] = source.value
+                problems[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
-                found[include.path.value] = "it is not a file of behavior trees"
+                problems[include.path.value] = "it is not a file of behavior trees"
             elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
-                found[include.path.value] = (
+                problems[include.path.value] = (
                     "it includes this file in turn" if target != self.path else "it is this file"
                 )
-        return found
+        return problems
 
     def _system_context(self) -> SystemContext | None:
         file, document = self.analysis.system_file(self.path), self.analysis.document(self.path)
@@ -449,12 +462,13 @@ class _Run:
         return StructsContext(self.source, declarations, structs.outlines, structs.complete)
 
     def _properties_context(self) -> PropertiesContext | None:
-        found = self.analysis.json(self.path)
-        if found is None:
+        json = self.analysis.json(self.path)
+        if json is None:
             return None
         properties, _ = self.analysis.properties(self.path)
         variables = self.analysis.globals(self.system_path) if self.system_path else None
-        return PropertiesContext(self.source, found[0], properties, self.system, variables)
+        taken = dict(self.analysis.names_before(self.path, self.system_path)) if self.system_path else {}
+        return PropertiesContext(self.source, json[0], properties, self.system, variables, taken)
 
 
 def internal_error(where: str, error: Exception) -> Finding:

@@ -62,9 +62,9 @@ def read_configuration(source: SourceFile) -> Configuration:
         message = "`tool.as2fm` must be a table of settings"
         return Configuration(None, (INVALID_SETTING.at(_span(source, known, prefix), message),))
     _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
-    found = tuple(_finding(source, known, prefix, each) for each in mistakes)
+    findings = tuple(_finding(source, known, prefix, mistake) for mistake in mistakes)
     folders = folders_in(table, os.path.dirname(source.path))
-    return Configuration(table, found, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
+    return Configuration(table, findings, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
 
 
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
@@ -120,11 +120,13 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
             if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:
                 words = f"the file is too large to be read (up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
                 return Settings(origin=file), (f"{file}: {words}",)
-            found = read_configuration(source)
-            if name == PROJECT_FILE and found.table is None and not found.findings:
+            configuration = read_configuration(source)
+            if name == PROJECT_FILE and configuration.table is None and not configuration.findings:
                 continue
-            settings, _ = settings_from(found.table or {}, folder, Settings())
-            return replace(settings, origin=file), tuple(_sentence(source, finding) for finding in found.findings)
+            settings, _ = settings_from(configuration.table or {}, folder, Settings())
+            return replace(settings, origin=file), tuple(
+                _sentence(source, finding) for finding in configuration.findings
+            )
     return Settings(), ()
 
 

@@ -91,6 +91,6 @@ class SystemIndex:
         head = read(path, head=_HEAD)
         if isinstance(head, UnreadableReason) or not files.roots.hold(path):
             return False
-        found = kind_of(path, decode(path, head).text) is FileKind.SYSTEM
-        self._known[path] = (stamp, found)
-        return found
+        is_system = kind_of(path, decode(path, head).text) is FileKind.SYSTEM
+        self._known[path] = (stamp, is_system)
+        return is_system

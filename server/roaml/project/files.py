@@ -76,9 +76,9 @@ class Files:
         folder = os.path.dirname(path)
         if folder not in self._folders:
             self._folders[folder] = self._disk.listing(folder)
-        found = {os.path.join(folder, name) for name in self._folders[folder] if name.endswith(extension)}
-        found |= {p for p in self.open_files if os.path.dirname(p) == folder and p.endswith(extension)}
-        return tuple(sorted(found - {path}))
+        paths = {os.path.join(folder, name) for name in self._folders[folder] if name.endswith(extension)}
+        paths |= {p for p in self.open_files if os.path.dirname(p) == folder and p.endswith(extension)}
+        return tuple(sorted(paths - {path}))
 
     def text(self, path: str) -> SourceFile | None:
         source = self.read(path)

@@ -47,10 +47,10 @@ def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful
     texts: dict[str, str] = {}
     for path in dict.fromkeys(paths):
         for _ in range(MAX_PASSES):
-            found = _pass(snapshot, path, choose, careful=careful)
-            if found is None:
+            mended = _pass(snapshot, path, choose, careful=careful)
+            if mended is None:
                 break
-            texts[path], snapshot = found
+            texts[path], snapshot = mended
     return texts
 
 
@@ -91,4 +91,4 @@ def _errors(snapshot: Snapshot, path: str) -> int:
 def _touches_one_of(made: list[TextEdit], edit: TextEdit) -> bool:
     at = bisect.bisect(made, edit)
     near = made[max(0, at - 1) : at + 1]
-    return any(each.span.start <= edit.span.end and edit.span.start <= each.span.end for each in near)
+    return any(other.span.start <= edit.span.end and edit.span.start <= other.span.end for other in near)

@@ -134,9 +134,9 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
         if isinstance(value, str):
             yield Folder((key,), value, full(folder, value))
         elif isinstance(value, list):
-            for index, each in enumerate(value):
-                if isinstance(each, str):
-                    yield Folder((key, index), each, full(folder, each))
+            for index, entry in enumerate(value):
+                if isinstance(entry, str):
+                    yield Folder((key, index), entry, full(folder, entry))
 
 
 _Reader = Callable[[Path, Any, list[SettingMistake]], Any]
@@ -146,7 +146,7 @@ _Reader = Callable[[Path, Any, list[SettingMistake]], Any]
 def _strings(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     if isinstance(value, str):
         return (value,)
-    if isinstance(value, list) and all(isinstance(each, str) for each in value):
+    if isinstance(value, list) and all(isinstance(entry, str) for entry in value):
         return tuple(value)
     mistakes.append(SettingMistake(path, f"`{path[0]}` must be a list of strings"))
     return None
@@ -187,18 +187,18 @@ def _severities(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[
     if not isinstance(value, dict):
         mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table of rule codes and severities"))
         return None
-    found = {}
+    severities = {}
     for code, label in value.items():
         if code not in BY_CODE:
             mistakes.append(_no_rule((*path, code), code, is_key=True))
         elif not isinstance(label, str) or label not in SEVERITIES:
-            known = ", ".join(f"`{each}`" for each in SEVERITIES)
+            known = ", ".join(f"`{severity}`" for severity in SEVERITIES)
             close = close_names(label, SEVERITIES) if isinstance(label, str) else ()
             text = f"the severity of `{code}` must be one of {known}{did_you_mean(close)}"
             mistakes.append(SettingMistake((*path, code), text, instead=close))
         else:
-            found[code] = SEVERITIES[label]
-    return found
+            severities[code] = SEVERITIES[label]
+    return severities
 
 
 def _boolean(path: Path, value: Any, mistakes: list[SettingMistake]) -> bool | None:

@@ -67,8 +67,8 @@ def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
         file = relative(origin.path, folder)
         return {"file": file, "line": start.line + 1, "column": start.column + 1}
 
-    def variables(found: tuple[Variable, ...]) -> list[VariablePlace]:
-        return [{"name": variable.name, **place(variable.origin)} for variable in found]
+    def variables(declared: tuple[Variable, ...]) -> list[VariablePlace]:
+        return [{"name": variable.name, **place(variable.origin)} for variable in declared]
 
     automata: list[AutomatonPlaces] = [
         {

@@ -37,13 +37,13 @@ def suppressions(document: Document | None) -> tuple[Suppression, ...]:
     """All suppression comments of a document."""
     if document is None or "as2fm:" not in document.text:
         return ()
-    found: list[Suppression] = []
-    _collect(document, document.nodes, found)
+    suppressions: list[Suppression] = []
+    _collect(document, document.nodes, suppressions)
     for root in document.nodes:
         if isinstance(root, Element):
             for element in root.walk():
-                _collect(document, element.nodes, found)
-    return tuple(found)
+                _collect(document, element.nodes, suppressions)
+    return tuple(suppressions)
 
 
 def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppression, ...]]:
@@ -51,7 +51,9 @@ def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppressi
     indexed in a table, as there may be many."""
     opening: dict[int, list[Suppression]] = {}
     closing: dict[int, list[Suppression]] = {}
-    for comment in {(each.span, each.codes): each for each in reversed(tuple(comments))}.values():
+    for comment in {
+        (suppression.span, suppression.codes): suppression for suppression in reversed(tuple(comments))
+    }.values():
         opening.setdefault(comment.span.start, []).append(comment)
         closing.setdefault(comment.span.end, []).append(comment)
     starts = sorted({*opening, *closing})
@@ -65,7 +67,7 @@ def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppressi
     return lambda offset: table[bisect.bisect_right(starts, offset)]
 
 
-def _collect(document: Document, nodes: Iterable[Node], found: list[Suppression]) -> None:
+def _collect(document: Document, nodes: Iterable[Node], suppressions: list[Suppression]) -> None:
     waiting: list[tuple[Span, frozenset[str] | None]] = []
     for node in nodes:
         match node:
@@ -75,9 +77,9 @@ def _collect(document: Document, nodes: Iterable[Node], found: list[Suppression]
                 if document.text[line.start : line.end].strip() == document.text[node.span.start : node.span.end]:
                     waiting.append((node.span, codes))
                 else:
-                    found.append(Suppression(line, codes, node.span))
+                    suppressions.append(Suppression(line, codes, node.span))
             case Element():
-                found += [Suppression(node.span, codes, comment) for comment, codes in waiting]
+                suppressions += [Suppression(node.span, codes, comment) for comment, codes in waiting]
                 waiting.clear()
             case Text() if node.value.strip():
                 waiting.clear()

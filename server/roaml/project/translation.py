@@ -9,17 +9,41 @@ from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
+from roaml.model.property_file import EVENT
+from roaml.model.property_links import LinkedProperty
+from roaml.model.property_ports import LinkedVariable
 from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
+from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.text import Location
 
 
 def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     """The properties in the files that a system lists, in their order."""
     files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.PROPERTIES and f.usable)
-    return tuple(each for file in files for each in analysis.properties(file)[0])
+    return tuple(declared for file in files for declared in analysis.properties(file)[0])
+
+
+def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedProperty, ...]:
+    """The properties in XML in the files that a system lists, in their order."""
+    files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.XML_PROPERTIES and f.usable)
+    linked = (analysis.linked_properties(file, path) for file in files)
+    return tuple(_observed(property_) for file in linked if file is not None for property_ in file.properties)
+
+
+def _observed(property_: LinkedProperty) -> ObservedProperty:
+    ports = tuple(ObservedPort(p.events, tuple(map(_observed_variable, p.variables))) for p in property_.ports)
+    conditions = {name: condition.tree for name, condition in property_.conditions.items()}
+    origin = Location(property_.path, property_.written.element.name_span)
+    return ObservedProperty(property_.name, property_.property, conditions, ports, origin)
+
+
+def _observed_variable(variable: LinkedVariable) -> ObservedVariable:
+    initial = None if variable.kind == EVENT else variable.written.initial
+    tree = None if initial is None else initial.tree
+    return ObservedVariable(variable.id, variable.kind, variable.type, variable.parameter, tree)
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:

@@ -52,13 +52,13 @@ class Snapshot:
         """All files of the workspace that are checked: those of systems, and other supported ones, without
         duplicates."""
         analysis = self.analysis
-        found = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
+        files = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
         for path in self._listed:
-            if path not in found and analysis.kind(path) not in _NOT_BY_THEMSELVES:
-                found[path] = None
+            if path not in files and analysis.kind(path) not in _NOT_BY_THEMSELVES:
+                files[path] = None
         if origin := self.checker.settings.origin:  # wherever it lies
-            found[origin] = None
-        return tuple(path for path in found if analysis.source(path) is not None)
+            files[origin] = None
+        return tuple(path for path in files if analysis.source(path) is not None)
 
     def candidates(self) -> tuple[str, ...]:
         """The files of the workspace that may be supported according to their names, and those of systems, without

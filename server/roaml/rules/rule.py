@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
@@ -25,6 +25,7 @@ from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.globals import GlobalVariable
 from roaml.model.machine import Dialect, Machine
+from roaml.model.property_links import LinkedFile
 from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
@@ -126,13 +127,15 @@ class StructsContext:
 
 @dataclass(frozen=True, slots=True)
 class PropertiesContext:
-    """A property file. `variables` is `None` if the file is not part of a system."""
+    """A property file in JANI. `variables` is None if it belongs to no system; `taken` are the names of properties in
+    the files that the system lists before it, with these files."""
 
     source: SourceFile
     value: JsonValue
     properties: tuple[Property, ...]
     system: System | None
     variables: Mapping[str, GlobalVariable] | None
+    taken: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -140,7 +143,7 @@ class Rule:
     """Attributes:
     code: kebab-case, reads well after "ignore".
     summary: one sentence on what is wrong.
-    file, machine, tree, system, structs, properties: the checks for files of these kinds.
+    file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
     plain: the machine check also holds for plain SCXML.
     facts: the type of the facts of its findings, for rules whose fixes read facts.
     """
@@ -154,6 +157,7 @@ class Rule:
     system: Callable[[SystemContext], Iterable[Finding]] | None = None
     structs: Callable[[StructsContext], Iterable[Finding]] | None = None
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
+    xml_properties: Callable[[LinkedFile], Iterable[Finding]] | None = None
     plain: bool = False
     facts: type[Facts] | None = None
 

@@ -111,6 +111,12 @@ _ON_RECEIVE = "_on_receive"
 # --------------------------------------------------------------------- variables
 
 
+def open_variable(property_: str) -> str:
+    """Whether what a property says of a trace is still open when the time of the model ends
+    (docs/spec/jani.md#observers)."""
+    return f"{property_}__open"
+
+
 def is_length(variable: str) -> bool:
     """Whether a variable is the length of an array (docs/spec/jani.md#array-storage)."""
     return _LENGTH.search(variable) is not None

@@ -120,7 +120,7 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
             return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards, TraceProblem(trace, *kernel.problem()))
         length, _, reward = kernel.outcome()
         verdicts.append(verdict)
-        ends.append(End.CUT if verdict == UNKNOWN else kernel.ending())
+        ends.append(kernel.ending() or End.CUT if verdict == UNKNOWN else kernel.ending())
         steps.append(length)
         rewards.append(reward)
     return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards)

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, UnaryOperator
@@ -26,6 +27,7 @@ from roaml.jani.properties import (
     StatePredicate,
     UnaryFormula,
     UnaryPath,
+    UnaryPathOperator,
     walk,
 )
 from roaml.smc.fault import FaultError
@@ -36,8 +38,8 @@ BOUNDS = "ignored-bounds"
 """The same for bounds on time and rewards."""
 
 ANSWERED = (
-    "supported are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds and combined by ¬, ∧, ∨ "
-    "and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+    "answered are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds, of `F G` and `G F`, all "
+    "joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
 )
 COMPARISONS = frozenset(
     (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
@@ -70,6 +72,29 @@ def check_form(property_: Property) -> None:
     """
     for fault in faults_in(property_):
         raise fault
+
+
+@dataclass(frozen=True, slots=True)
+class Lasting:
+    """`F G condition`, or its negation `G F ¬condition`."""
+
+    condition: Formula
+    is_negated: bool
+
+
+def lasting_part(formula: Formula) -> Lasting | None:
+    """What `formula` says about the state in which a path stays; None if it is of another form."""
+    if not isinstance(formula, UnaryPath) or not isinstance(formula.operand, UnaryPath):
+        return None
+    outer, inner = formula, formula.operand
+    if any(part.step_bounds or part.time_bounds or part.reward_bounds for part in (outer, inner)):
+        return None
+    match outer.operator, inner.operator:
+        case UnaryPathOperator.FINALLY, UnaryPathOperator.GLOBALLY:
+            return Lasting(inner.operand, False)
+        case UnaryPathOperator.GLOBALLY, UnaryPathOperator.FINALLY:
+            return Lasting(UnaryFormula(UnaryOperator.NOT, inner.operand, origin=inner.origin), True)
+    return None
 
 
 def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
@@ -113,6 +138,10 @@ def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
     waiting = [path]
     while waiting:
         formula = waiting.pop()
+        lasting = lasting_part(formula)
+        if lasting is not None:
+            yield from _in_state(lasting.condition)
+            continue
         match formula:
             case UnaryPath():
                 yield from _in_bounds(formula)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property -> the question about each trace, and the question about all traces together.
+"""A property -> what is asked about each trace, and what is asked about all of them together.
 
 Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
-exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only.
+exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only. `F G b` asks for the
+state in which a trace stays.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ from roaml.jani.properties import (
 from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.smc.compile import Compilation
 from roaml.smc.fault import FaultError
-from roaml.smc.forms import check_form
-from roaml.smc.program import Goal
+from roaml.smc.forms import Lasting, check_form, lasting_part
+from roaml.smc.program import AT_END, Goal
 from roaml.smc.registers import Operand
 
 TRUE, FALSE, DEADLOCK, NO_DEADLOCK, STUCK = -1, -2, -3, -4, -5
@@ -100,14 +101,17 @@ class CompiledProperty:
     goal: Goal
 
 
-def ask(compilation: Compilation, property_: Property) -> CompiledProperty:
+def ask(compilation: Compilation, property_: Property, open_: Expression | None = None) -> CompiledProperty:
     """Compile a property.
 
+    Args:
+        open_: where this holds at the end of the model's time, `F G` is undecided.
+
     Raises:
-        FaultError: it is of an unsupported form, or compares with something that is not a number.
+        FaultError: it is of a form that sampling cannot answer, or compares with what is not a number.
     """
     check_form(property_)
-    return _Writer(compilation, property_).asked()
+    return _Writer(compilation, property_, open_).asked()
 
 
 STUCK_PROPERTY = "stuck"
@@ -137,8 +141,9 @@ def ask_stuck(compilation: Compilation) -> CompiledProperty:
 
 
 class _Writer:
-    def __init__(self, compilation: Compilation, property_: Property) -> None:
+    def __init__(self, compilation: Compilation, property_: Property, open_: Expression | None) -> None:
         self.compilation = compilation
+        self.open = open_
         self.names = compilation.layout.names
         self.property = property_
         self.left: list[int] = []
@@ -212,6 +217,10 @@ class _Writer:
 
     def path(self, formula: Formula) -> None:
         """Write a formula over paths; its value is then on top of the stack."""
+        lasting = lasting_part(formula)
+        if lasting is not None:
+            self.at_end(lasting)
+            return
         match formula:
             case UnaryPath(operator=operator, operand=operand):
                 lower, upper = self.bounds(formula)
@@ -247,6 +256,18 @@ class _Writer:
                 self.formula.append(_COMBINE[operator])
             case _:
                 self.until(TRUE, self.condition(formula), 0, 0)
+
+    def at_end(self, lasting: Lasting) -> None:
+        """`F G b` is true if b holds in the state in which a trace stays."""
+        left = FALSE if self.open is None else self.condition(self.open)
+        right = self.condition(lasting.condition)
+        self.formula.append(len(self.left))
+        self.left.append(left)
+        self.right.append(right)
+        self.lower.append(AT_END)
+        self.upper.append(-1)
+        if lasting.is_negated:
+            self.formula.append(NOT)
 
     def until(self, left: int, right: int, lower: int, upper: int | None) -> None:
         if upper is not None and upper < lower:

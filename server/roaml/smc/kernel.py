@@ -844,6 +844,8 @@ class Kernel:
                     self.holds_right[i] = self._holds(self.right[i])
                     if self.fault != 0:
                         return FAULTY
+                if self.lower[i] < 0:
+                    continue
                 if self.holds_right[i] != 0 and self.steps >= self.lower[i]:
                     self.verdict[i] = TRUE
                 elif self.holds_left[i] == 0 or (self.upper[i] >= 0 and self.steps >= self.upper[i]):
@@ -879,15 +881,19 @@ class Kernel:
             if self.verdict[i] == UNKNOWN:
                 if self.right[i] == -5:
                     self.verdict[i] = TRUE if self.end == STUCK else FALSE
+                elif self.lower[i] < 0:
+                    if self.end != TIME or self.holds_left[i] == 0:
+                        self.verdict[i] = TRUE if self.holds_right[i] != 0 else FALSE
                 else:
                     self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
         return self._combined()
 
     def _goes_round(self) -> int:
-        """The trace repeats for ever what it has done: what did not hold in it never will."""
+        """The trace repeats for ever what it has done: what did not hold in it never will. Whether something holds at
+        every step of the round is not known."""
         self.end = IDLE
         for i in range(self.leaves):
-            if self.verdict[i] == UNKNOWN:
+            if self.verdict[i] == UNKNOWN and self.lower[i] >= 0:
                 self.verdict[i] = FALSE
         return self._combined()
 

@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
+from roaml.jani.expressions import Expression
 from roaml.jani.model import Model
+from roaml.jani.passive import without_passive
 from roaml.jani.properties import Property
 from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, look_at_choices
@@ -31,6 +34,7 @@ class ModelChecker:
 
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        open_: property -> condition under which it is undecided at the end of time; see `goal.ask`.
         asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
@@ -49,20 +53,23 @@ class ModelChecker:
         marks: Marks = MappingProxyType({}),
         *,
         asks_stuck: bool = False,
+        open_: Mapping[str, Expression] = MappingProxyType({}),
     ) -> None:
         self.model = model
+        self.open_ = open_
+        self._marks = marks
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
             check_size(model, chosen)
-            self._compilation = Compilation(model, [property_.expression for property_ in chosen])
+            self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *open_.values()])
             self.asked: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    self.asked += (ask(self._compilation, property_),)
+                    self.asked += (ask(self._compilation, property_, open_.get(property_.name)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
             self.stuck: CompiledProperty = ask_stuck(self._compilation)
@@ -81,6 +88,20 @@ class ModelChecker:
 
     def compiled(self, asked: CompiledProperty) -> Compiled:
         return Compiled(self.program, asked.goal)
+
+    def reduced(self, asked: CompiledProperty) -> ModelChecker:
+        """The same for one question, without the automata that only matter to others: it has fewer states and the same
+        probabilities. Its traces have other numbers."""
+        model = without_passive(self.model, asked.property.expression, *self._open(asked).values())
+        if model is self.model:
+            return self
+        properties = () if asked.question.is_stuck else (asked.property,)
+        model = replace(model, properties=properties)
+        return ModelChecker(model, properties, self._marks, asks_stuck=asked.question.is_stuck, open_=self._open(asked))
+
+    def _open(self, asked: CompiledProperty) -> Mapping[str, Expression]:
+        name = asked.property.name
+        return {name: self.open_[name]} if name in self.open_ else {}
 
     def payload(self, asked: CompiledProperty) -> Payload:
         """The data that workers need for a question."""
@@ -133,9 +154,10 @@ class ModelChecker:
         Raises:
             FaultError: a trace under some scheduler failed.
         """
-        compiled, payload = self.compiled(asked), self.payload(asked)
+        reduced = self.reduced(asked)
+        compiled = reduced.compiled(asked if reduced is self else reduced.asked[0])
         try:
-            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse)
+            return look_at_choices(self.model, compiled, self.payload(asked), answer, self.automata, pool, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

@@ -18,6 +18,9 @@ FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The verdict on a trace. The kernel has the same numbers; UNKNOWN: it can continue, and is undecided if it does
 not."""
 
+AT_END = -1
+"""A lower bound; see `Goal`."""
+
 Ints: TypeAlias = "array[int]"
 Reals: TypeAlias = "array[float]"
 
@@ -102,7 +105,9 @@ class Goal:
         seen: for each watched variable, whether a condition reads it.
         left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite; on the right
             side, -5 that the trace gets stuck.
-        lower, upper: its step bounds, both inclusive; -1 is none.
+        lower, upper: its step bounds, both inclusive; -1 is none. With the lower bound `AT_END`, it is decided where
+            the trace ends: it is true if the right side holds there; it stays undecided if the time is over and the
+            left side holds.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
         is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.
         step_reward, exit_reward: code that gives the register of the reward of a step.

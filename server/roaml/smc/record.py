@@ -195,7 +195,7 @@ class Recorder:
 
     def _finish(self, recording: Recording, verdict: int) -> None:
         recording.verdict = verdict
-        recording.end = End.CUT if verdict == UNKNOWN else End(self._kernel.ending())
+        recording.end = End(self._kernel.ending() or End.CUT) if verdict == UNKNOWN else End(self._kernel.ending())
         if verdict == FAULTY:
             recording.problem = TraceProblem(recording.trace, *self._kernel.problem())
 

@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from roaml.smc.explore import ExploredState, Explorer, StateFaultError, TooManyChoicesError
 from roaml.smc.goal import NOT, STUCK
-from roaml.smc.program import FALSE, TRUE, Compiled
+from roaml.smc.program import AT_END, FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
 
 LIMIT = 4000
@@ -67,7 +67,8 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
     """
     goal = compiled.goal
     is_reward = goal.step_reward >= 0 or goal.exit_reward >= 0
-    is_solvable = not goal.is_bounded and len(goal.left) == 1 and not is_reward and goal.right[0] != STUCK
+    is_until = len(goal.left) == 1 and goal.right[0] != STUCK and goal.lower[0] != AT_END
+    is_solvable = is_until and not goal.is_bounded and not is_reward
     try:
         graph = _explored(compiled, limit, work, is_solvable)
     except (StateFaultError, TooManyChoicesError):

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
 from roaml.scxml.model import Data, EventRole, Network, Role
+from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
 from roaml.to_jani.edges import flow_of
 from roaml.to_jani.events import EventUsage, event_table
 from roaml.to_jani.moves import AutomatonMoves, behavior_of
+from roaml.to_jani.observers import observed
 from roaml.to_jani.properties import expanded
 from roaml.to_jani.shapes import ArrayShape, constructed_zero, jani_type, shape_of
 from roaml.to_jani.values import JaniScope, elements_as, lengths_as
@@ -22,8 +24,14 @@ FEATURES = ("arrays", "trigonometric-functions")
 DESCRIPTION = "Translated from HL-SCXML by roaml"
 
 
-def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
-    """The JANI model of a network: its automata, one for each event, and the given properties."""
+def translate(
+    network: Network, properties: Iterable[Property] = (), observed_properties: Sequence[ObservedProperty] = ()
+) -> Model:
+    """The JANI model of a network: its automata, one for each event, and the given properties.
+
+    Args:
+        observed_properties: those for which observers are added.
+    """
     behaviors = [behavior_of(automaton) for automaton in network.automata]
     table = event_table(behaviors)
     has_clock = any(automaton.role is Role.CLOCK for automaton in network.automata)
@@ -36,7 +44,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
     globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}
     shapes = {name: shape for name, (shape, _) in globals_.items()}
     actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})
-    return Model(
+    model = Model(
         ModelType.MDP,
         tuple(automata),
         compose(automata, buffers, table),
@@ -49,6 +57,7 @@ def translate(network: Network, properties: Iterable[Property] = ()) -> Model:
         actions=tuple(Action(action) for action in actions),
         properties=tuple(expanded(each, shapes) for each in properties),
     )
+    return observed(model, observed_properties, shapes, network.max_array_size)
 
 
 def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], network: Network) -> Automaton:

@@ -12,6 +12,7 @@ from typing import Any
 
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
+from roaml.scxml.names import open_variable
 from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
 from roaml.smc.goal import CompiledProperty, Question
 from roaml.smc.model import ModelChecker
@@ -43,6 +44,9 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
         raise ExactError("--exact needs the package stormpy: pip install 'stormpy>=2'") from None
     if asked.goal.is_bounded:
         raise ExactError("step bounds cannot be computed exactly; omit --exact")
+    reduced = checker.reduced(asked)
+    if reduced is not checker:
+        checker, asked = reduced, reduced.asked[0]
     try:
         states = len(Explorer(checker.compiled(asked)).reachable(limit))
     except TooManyStatesError:
@@ -60,18 +64,35 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
     (property_,) = (row for row in document["properties"] if row["name"] == asked.question.name)
     extremes = []
     for operator in ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax"):
-        expression = _inner(property_["expression"])
-        expression["op"] = operator
-        whole = {"op": "filter", "fun": "values", "values": expression, "states": {"op": "initial"}}
-        document["properties"] = [{"name": property_["name"], "expression": whole}]
-        try:
-            model, properties = stormpy.parse_jani_model_from_string(json.dumps(document))
-            built = stormpy.build_model(model, properties)
-            result = stormpy.model_checking(built, properties[0], only_initial_states=True)
-            extremes.append(float(result.get_value(built.initial_states[0])))
-        except (RuntimeError, IndexError) as error:
-            raise ExactError(f"Storm failed: {error}") from None
+        extremes.append(_value(stormpy, document, {**_inner(property_["expression"]), "op": operator}))
+    if asked.property.name in checker.open_:
+        stays = {"op": "F", "exp": {"op": "G", "exp": open_variable(asked.property.name)}}
+        share = _value(stormpy, document, {"op": "Pmax", "exp": stays})
+        if share > _SLACK:
+            raise ExactError(
+                "the time ends (max_time) before a deadline of the property; the probability of such traces is up to "
+                f"{share:.6g}; leave --exact out to estimate"
+            )
     return Exact(extremes[0], extremes[1], states)
+
+
+def _value(stormpy: Any, document: dict[str, Any], expression: dict[str, Any]) -> float:
+    """The value of a formula in the initial state of a model in JANI.
+
+    Raises:
+        ExactError: Storm cannot answer.
+    """
+    whole = {"op": "filter", "fun": "values", "values": expression, "states": {"op": "initial"}}
+    asked = {**document, "properties": [{"name": "asked", "expression": whole}]}
+    try:
+        model, properties = stormpy.parse_jani_model_from_string(json.dumps(asked))
+        built = stormpy.build_model(model, properties)
+        result = stormpy.model_checking(built, properties[0], only_initial_states=True)
+        if result is None:
+            raise ExactError("Storm does not answer properties of this form")
+        return float(result.get_value(built.initial_states[0]))
+    except (RuntimeError, IndexError) as error:
+        raise ExactError(f"Storm failed: {error}") from None
 
 
 def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:

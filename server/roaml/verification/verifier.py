@@ -23,7 +23,7 @@ from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
 from roaml.verification.storm import exact_values, judge_exactly
 from roaml.verification.stuck import Look
 from roaml.verification.target import VerificationTarget
-from roaml.views.ends import marks
+from roaml.views.ends import marks, open_conditions
 
 
 class NoThresholdError(ValueError):
@@ -43,13 +43,13 @@ def checker_of(target: VerificationTarget, properties: Iterable[str] | None = No
     """
     model, ends = target.model, marks(target.model)
     if properties is None:
-        return ModelChecker(model, model.properties, ends)
+        return ModelChecker(model, model.properties, ends, open_=open_conditions(model))
     names = list(dict.fromkeys(properties))
     asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in model.properties)
     if asks_stuck:
         names.remove(STUCK_PROPERTY)
     chosen = select(model.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
-    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck)
+    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck, open_=open_conditions(model))
 
 
 def verifier_of(

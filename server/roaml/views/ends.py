@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from roaml.jani.expressions import Expression, Name
 from roaml.jani.model import Automaton, Model
 from roaml.scxml.names import (
     CLOCK,
@@ -20,15 +21,16 @@ from roaml.scxml.names import (
     WAITING,
     named,
     on_send,
+    open_variable,
 )
 from roaml.smc.end import End
 
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
     """(automaton, location) -> the meaning of a trace that ends there; empty for a model that is not a translation."""
-    found = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
+    marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
     is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
-    return found if is_translated else {}
+    return marks if is_translated else {}
 
 
 def is_event(automaton: Automaton) -> bool:
@@ -44,3 +46,10 @@ def _mark(automaton: Automaton, location: str) -> End:
     if automaton.name.startswith(TREE_ROOT_PREFIX):
         return End.FINISHED if location == TREE_HAS_FINISHED else End.QUIET
     return End.STUCK if location == RECEIVED and is_event(automaton) else End.QUIET
+
+
+def open_conditions(model: Model) -> Mapping[str, Expression]:
+    """Property -> what says that it is open at the end of time (docs/spec/jani.md#observers)."""
+    variables = {variable.name for variable in model.variables}
+    names = {property_.name: open_variable(property_.name) for property_ in model.properties}
+    return {property_: Name(variable) for property_, variable in names.items() if variable in variables}

@@ -54,7 +54,7 @@ def said(event: str, who: str, clients: Collection[str], taken: bool = False) ->
     if client not in clients:
         name = event
     for form, text in _COMPILED:
-        found = form.fullmatch(name)
-        if found:
-            return text.format(*(group.replace("__", "/") for group in found.groups()))
+        match = form.fullmatch(name)
+        if match:
+            return text.format(*(group.replace("__", "/") for group in match.groups()))
     return f"the event `{event}`"

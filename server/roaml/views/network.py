@@ -14,9 +14,9 @@ def network_graph(model: Model, title: str) -> Graph:
     for automaton in model.automata:
         for edge in automaton.edges:
             action = edge.action or ""
-            for event, found in ((sent_by(action), senders), (received_by(action), receivers)):
+            for event, automata_by_event in ((sent_by(action), senders), (received_by(action), receivers)):
                 if event not in ("", automaton.name):
-                    found.setdefault(event, {})[automaton.name] = None
+                    automata_by_event.setdefault(event, {})[automaton.name] = None
     labels: dict[tuple[str, str], list[str]] = {}
     for event, sources in senders.items():
         for source in sources:

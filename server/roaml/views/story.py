@@ -51,20 +51,20 @@ def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     told = turns(story)
     folded = _folded(story, told)
-    found = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
+    story_lines = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
-        found.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
-    return found
+        story_lines.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
+    return story_lines
 
 
 def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    found = []
+    story_lines = []
     for wait in waits_of(story):
         place = "" if wait.origin is None else place_of(wait.origin)
-        found.append(
+        story_lines.append(
             StoryLine(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
         )
-    return found
+    return story_lines
 
 
 def waits_of(story: Story) -> tuple[Wait, ...]:

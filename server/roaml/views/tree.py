@@ -12,7 +12,9 @@ _OWN = ("ID", "name")
 
 def tree_graph(system: System) -> Graph:
     nodes = tuple(_node(instance) for instance in system.instances)
-    links = tuple(GraphLink(str(each.number), str(child)) for each in system.instances for child in each.children)
+    links = tuple(
+        GraphLink(str(instance.number), str(child)) for instance in system.instances for child in instance.children
+    )
     title = system.tree_paths[0].replace("\\", "/").rpartition("/")[2] if system.tree_paths else "tree"
     return Graph(Kind.TREE, title, nodes, links)
 

@@ -169,7 +169,7 @@ class _Chain:
 
     def blocked(self, number: int, wanted: str) -> Iterator[_Link]:
         """What an automaton waits for that would send something, or let time pass."""
-        found: dict[tuple[str, int], _Link] = {}
+        links: dict[tuple[str, int], _Link] = {}
         for edge in self.edges(number):
             if edge.action is None or received_by(edge.action) or (number, edge.action) not in self.ready:
                 continue
@@ -180,13 +180,13 @@ class _Chain:
                     if (other, action) in self.ready:
                         continue
                     event = self.automata[other].name
-                    late = [(event, each) for each in self.not_taking(event)] if self.is_pending(event) else []
+                    late = [(event, busy) for busy in self.not_taking(event)] if self.is_pending(event) else []
                     if event not in self.events:
                         late = [(received_by(action), other)]
-                    for name, each in late:
-                        link = _Link(number, wanted, name, edge.origin, True, ((each, on_receive(named(name))),))
-                        found.setdefault((name, each), link)
-        yield from found.values()
+                    for name, busy in late:
+                        link = _Link(number, wanted, name, edge.origin, True, ((busy, on_receive(named(name))),))
+                        links.setdefault((name, busy), link)
+        yield from links.values()
 
     def waiting(self, number: int, wanted: str) -> Iterator[_Link]:
         """What an automaton waits for that stays in a state until it receives something."""
@@ -198,7 +198,7 @@ class _Chain:
         active = {event: edge for event, edge in best.items() if not self.is_asleep(event, number)}
         for event, edge in (active or best).items():
             if self.is_pending(event):
-                others = tuple((each, on_receive(named(event))) for each in self.not_taking(event) if each != number)
+                others = tuple((other, on_receive(named(event))) for other in self.not_taking(event) if other != number)
                 yield _Link(number, wanted, event, edge.origin, True, others)
             else:
                 others = tuple((sender, on_send(named(event))) for sender in self.senders(event))
@@ -214,7 +214,7 @@ class _Chain:
         return bool(senders) and all(
             not any(True for _ in self.blocked(sender, ""))
             and (awaited := self.awaited(sender, on_send(named(event))))
-            and all(self.senders(each) == [asker] for each in awaited)
+            and all(self.senders(event) == [asker] for event in awaited)
             for sender in senders
         )
 
@@ -227,7 +227,7 @@ class _Chain:
             targets = [way.location for way in edge.destinations if way.location != here]
             costs = [distances[target] for target in targets if target in distances]
             if costs:
-                is_ready = any(edge is each for each in self.enabled[number])
+                is_ready = any(edge is enabled for enabled in self.enabled[number])
                 ways.append(((2 - _cost(edge) - is_ready, min(costs)), edge))
         least = min((cost for cost, _ in ways), default=None)
         return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
@@ -236,7 +236,7 @@ class _Chain:
         """Location -> the number of events that lead the automaton from there to one where it can do what is
         required."""
         edges = self.automata[number].edges
-        found: dict[str, int] = {}
+        distances: dict[str, int] = {}
         queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == wanted)]
         before: dict[str, list[Edge]] = {}
         for edge in edges:
@@ -244,11 +244,11 @@ class _Chain:
                 before.setdefault(way.location, []).append(edge)
         while queue:
             distance, location = heapq.heappop(queue)
-            if location not in found:
-                found[location] = distance
+            if location not in distances:
+                distances[location] = distance
                 for edge in before.get(location, ()):
                     heapq.heappush(queue, (distance + _cost(edge), edge.source))
-        return found
+        return distances
 
     # ------------------------------------------------------------------ in words
 
@@ -313,7 +313,7 @@ class _Chain:
 
     def place_in_tree(self, answer: str) -> Origin | None:
         """The place in the tree of the node that sends an answer: the node that ticks it is there."""
-        called = _ANSWER.sub(lambda found: f"_{HALT if found[1] else TICK}", answer)
+        called = _ANSWER.sub(lambda answered: f"_{HALT if answered[1] else TICK}", answer)
         return self.automata[self.index[called]].origin if called in self.index else None
 
     def clients(self) -> frozenset[str]:

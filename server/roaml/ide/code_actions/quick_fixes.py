@@ -235,7 +235,19 @@ def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAct
         assert source is not None
         return WorkspaceEdit({**edits, diagnostic.path: _removals(source, element.span)})
 
-    yield _action(diagnostic, f"Remove the port `{key}` here and in the tree", make, preferred=True)
+    preferred = not _feeds_others(snapshot.analysis, diagnostic.path, key)
+    yield _action(diagnostic, f"Remove the port `{key}` here and in the tree", make, preferred=preferred)
+
+
+def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
+    """Whether an output port of a plugin is bound to a variable that other ports read: then it is the output that is
+    missing."""
+    systems = (analysis.system(system) for system in analysis.memberships.get(path, ()))
+    for variable in (ports for system in systems if system for ports in system.blackboard.values()):
+        own = [bound for bound in variable if bound.automaton.path == path and bound.port.key == key]
+        if any(bound.port.direction == "out" for bound in own) and any(bound.port.read for bound in variable):
+            return True
+    return False
 
 
 def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:

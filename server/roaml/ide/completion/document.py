@@ -9,11 +9,13 @@ from roaml.diagnostics import Symbol
 from roaml.expr.operators import FUNCTIONS
 from roaml.ide.describe import describe
 from roaml.ide.describe import language as describe_language
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, ElementType, Grammar
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, ElementType, Grammar
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 
-_GRAMMARS: Mapping[str, Grammar] = {each.schema: each for each in (HL_SCXML, SYSTEM, STRUCTS, BEHAVIOR_TREE)}
+_GRAMMARS: Mapping[str, Grammar] = {
+    each.schema: each for each in (HL_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE)
+}
 
 
 def document(analysis: Analysis, about: Symbol) -> str:

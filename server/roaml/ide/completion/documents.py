@@ -69,6 +69,22 @@ _STRUCTS = """\
 </types>
 """
 
+_PROPERTIES = """\
+<properties>
+\t<ports>
+\t\t<ros_topic topic_name="${1:/level}" type="${2:std_msgs/Int32}" event="publish">
+\t\t\t<event_var id="${3:level_published}"/>
+\t\t</ros_topic>
+\t</ports>
+\t<guarantees>
+\t\t<property id="${4:published}" pattern="${5:existence}">
+\t\t\t<event>$3</event>
+\t\t\t<scope type="globally"/>
+\t\t</property>$0
+\t</guarantees>
+</properties>
+"""
+
 
 def documents(path: str) -> Iterator[CompletionItem]:
     """The documents that an empty file may become."""
@@ -80,6 +96,7 @@ def documents(path: str) -> Iterator[CompletionItem]:
         yield _item("system", _SYSTEM, Rank.BEST)
         yield _item("behavior tree", _TREE, Rank.LIKELY)
         yield _item("struct declarations", _STRUCTS, Rank.USUAL)
+        yield _item("properties", _PROPERTIES, Rank.USUAL)
 
 
 def _item(label: str, snippet: str, rank: Rank) -> CompletionItem:

@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
-from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, Type, fits, unwrap, wrap
+from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, StructKind, Type, fits, unwrap, wrap
 from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
@@ -206,7 +206,7 @@ def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Itera
         return
     for name, member in inner.members:
         about = Symbol("", SymbolKind.FIELD, name, inner.name)
-        if inner.what == "struct":
+        if inner.kind is StructKind.DECLARED:
             about = Symbol(request.system_path or request.path, SymbolKind.MEMBER, name, inner.name)
         yield CompletionItem(name, ItemKind.MEMBER, detail=str(wrap(member, bounds)), about=about)
 

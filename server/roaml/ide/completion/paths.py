@@ -17,13 +17,13 @@ _BY_SECTION = {
     "data_declarations": (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
     "behavior_tree": (FileKind.TREE, FileKind.MACHINE),
     "node_models": (FileKind.MACHINE,),
-    "properties": (FileKind.PROPERTIES,),
+    "properties": (FileKind.PROPERTIES, FileKind.XML_PROPERTIES),
 }
 
 _BY_TYPE = {
     **dict.fromkeys(TREE_TYPES, (FileKind.TREE,)),
     **dict.fromkeys((*PLUGIN_TYPES, *NODE_TYPES), (FileKind.MACHINE,)),
-    "xml": (FileKind.STRUCTS,),
+    "xml": (FileKind.STRUCTS, FileKind.XML_PROPERTIES),
     "json": (FileKind.JSON_STRUCTS,),
     "jani": (FileKind.PROPERTIES,),
 }

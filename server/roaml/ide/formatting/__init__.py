@@ -18,7 +18,7 @@ from roaml.text import SourceFile, Span, TextEdit
 
 DEFAULT = FileLayout()
 
-_XML = (FileKind.MACHINE, FileKind.SYSTEM, FileKind.TREE, FileKind.STRUCTS)
+_XML = (FileKind.MACHINE, FileKind.SYSTEM, FileKind.TREE, FileKind.STRUCTS, FileKind.XML_PROPERTIES)
 _JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
 
 

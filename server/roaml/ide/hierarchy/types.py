@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import Struct, unwrap
+from roaml.expr.types import Struct, StructKind, unwrap
 from roaml.ide.names.lookup import occurrences_at
 from roaml.ide.navigation import definition_of
 from roaml.interfaces.registry import NotFound
@@ -88,7 +88,7 @@ def _types_of(analysis: Analysis, path: str, symbol: Symbol) -> Iterator[Symbol]
                     owner = analysis.structs(system).types.get(symbol.scope)
                     type_ = owner.member(symbol.name) if isinstance(owner, Struct) else None
                 inner = unwrap(type_)[0] if type_ is not None else None
-                if isinstance(inner, Struct) and inner.what == "struct":
+                if isinstance(inner, Struct) and inner.kind is StructKind.DECLARED:
                     yield Symbol(system or path, SymbolKind.STRUCT, inner.name)
         case SymbolKind.FIELD:
             name, _, section = symbol.scope.partition(" ")

@@ -17,7 +17,7 @@ from roaml.expr.tree import (
     walk,
 )
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, Type, resolve_type, unwrap, wrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, resolve_type, unwrap, wrap
 from roaml.ide.names.occurrence import Access, Occurrence, base_span, parameter, variable, without_slash
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
@@ -332,7 +332,7 @@ class _Scope:
         inner, _ = unwrap(self.type_of(node.object))
         if not isinstance(inner, Struct) or inner.member(node.name) is None:
             return
-        if inner.what == "struct":
+        if inner.kind is StructKind.DECLARED:
             yield Occurrence(
                 node.name_span, Symbol(self.machine.owner, SymbolKind.MEMBER, node.name, inner.name), access=access
             )

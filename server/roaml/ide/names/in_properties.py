@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
+from roaml.expr.types import UNKNOWN, Struct, StructKind, Type, unwrap
 from roaml.ide.names.frames import Piece, Trees
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Form, Occurrence, parameter, tree_node
@@ -179,7 +179,7 @@ def _members(rest: str, type_: Type, owner: str) -> Iterator[Piece]:
         for name, member in inner.members:
             if rest == f"__{name}" or rest.startswith((f"__{name}__", f"__{name}.")):
                 yield _plain("__")
-                kind = SymbolKind.MEMBER if inner.what == "struct" else SymbolKind.FIELD
+                kind = SymbolKind.MEMBER if inner.kind is StructKind.DECLARED else SymbolKind.FIELD
                 yield name, Symbol(owner, kind, name, inner.name), Form.AS_IS
                 yield from _members(rest[2 + len(name) :], member, owner)
                 return

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import Struct, Type, unwrap
+from roaml.expr.types import Struct, StructKind, Type, unwrap
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, thing, thing_at
 from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
@@ -153,7 +153,7 @@ def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) 
 
 def _of_type(analysis: Analysis, owner: str, type_: Type | None) -> Iterator[Location]:
     inner = unwrap(type_)[0] if type_ is not None else None
-    if isinstance(inner, Struct) and inner.what == "struct":
+    if isinstance(inner, Struct) and inner.kind is StructKind.DECLARED:
         yield from thing(analysis, (Symbol(owner, SymbolKind.STRUCT, inner.name),)).definitions
 
 

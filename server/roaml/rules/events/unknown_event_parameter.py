@@ -7,13 +7,11 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.infer import UnknownMember
-from roaml.expr.types import Struct
+from roaml.expr.types import Struct, StructKind
 from roaml.model.gaps import PARAMETER
 from roaml.model.system import PlainEvent
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-
-EVENT_DATA = "data of event "
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -23,8 +21,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, UnknownMember) and isinstance(problem.owner, Struct):
-                event = context.system.events.get(problem.owner.what.removeprefix(EVENT_DATA))
-                if not problem.owner.what.startswith(EVENT_DATA) or event is None or not event.senders:
+                event = context.system.events.get(problem.owner.event)
+                if problem.owner.kind is not StructKind.EVENT or event is None or not event.senders:
                     continue
                 if not context.system.may(PARAMETER, event.name):
                     yield from _check(problem, event, [name for name, _ in problem.owner.members])

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import UnknownMember
-from roaml.expr.types import Array, Struct, unwrap
+from roaml.expr.types import Array, Struct, StructKind, unwrap
 from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.value_types import TypedValue
@@ -81,7 +81,7 @@ def _unknown(problem: UnknownMember) -> Finding | None:
         what = "an array" if isinstance(problem.owner, Array) else f"of type `{problem.owner}`"
         only = "; its only member is `.length`" if isinstance(problem.owner, Array) else ""
         return RULE.at(problem.span, f"this is {what} and has no member `{problem.name}`{only}")
-    if is_ros(inner) or inner.what.startswith("data of event"):
+    if is_ros(inner) or inner.kind is StructKind.EVENT:
         return None  # unknown-field and unknown-event-parameter report these with more detail
     close = close_names(problem.name, [name for name, _ in inner.members])
     owner = f"`{inner}`" if inner.name else f"the {inner.what}"

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import rename_tag
-from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM
+from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean
 
-ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS) for root in grammar.roots)
+ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS, XML_PROPERTIES) for root in grammar.roots)
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -27,7 +27,7 @@ def check(context: FileContext) -> Iterator[Finding]:
     fixes = [rename_tag(root, name, preferred=number == 0) for number, name in enumerate(close)]
     hint = (
         did_you_mean(tuple(f"<{name}>" for name in close))
-        or "; the root must be `<roaml>`, `<ascxml>`, `<root>` or `<types>`"
+        or "; the root is `<roaml>`, `<ascxml>`, `<root>`, `<types>` or `<properties>`"
     )
     yield RULE.at(root.name_span, f"unknown root element `<{root.name}>`{hint}", *fixes)
 

@@ -16,6 +16,8 @@ from roaml.text import TextEdit
 TYPES = {
     ("behavior_tree", FileKind.TREE): "bt.cpp-xml",
     ("behavior_tree", FileKind.MACHINE): "bt-plugin-ascxml",
+    ("properties", FileKind.PROPERTIES): "jani",
+    ("properties", FileKind.XML_PROPERTIES): "xml",
     ("data_declarations", FileKind.STRUCTS): "xml",
     ("data_declarations", FileKind.JSON_STRUCTS): "json",
 }

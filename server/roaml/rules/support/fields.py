@@ -3,18 +3,16 @@
 
 from __future__ import annotations
 
-from roaml.expr.types import Struct
+from roaml.expr.types import Struct, StructKind
 from roaml.model.machine import RosSend
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS, find_handle, section_of
 from roaml.rules.rule import MachineContext
 
-ROS_PARTS = ("message", "request", "response", "goal", "feedback", "result")
-
 
 def is_ros(struct: Struct) -> bool:
     """Whether a struct is a ROS message or a part of a service or action."""
-    return struct.what.partition(" ")[0] in ROS_PARTS
+    return struct.kind is StructKind.ROS
 
 
 def sent_part(context: MachineContext, statement: RosSend) -> Struct | None:

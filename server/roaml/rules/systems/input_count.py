@@ -34,11 +34,6 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
         yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))
-    properties = [f for f in context.files if f.input.section == "properties"]
-    for extra in properties[1:]:
-        related = (Related(properties[0].input.element.name_span, "the first one"),)
-        message = "a system allows only one property file"
-        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
 
 
 def _remove(context: SystemContext, listed: ListedFile) -> Fix:

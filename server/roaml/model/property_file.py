@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A file of properties in XML as typed data (docs/spec/xml-properties.md#file). Reading never fails."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.language import XML_PROPERTIES
+from roaml.model.syntax import Expression, Name, TypeRef, expression_from, expression_of, name_of, type_of
+from roaml.observers.notation import Notation, read
+from roaml.text import Decoded
+from roaml.xml_syntax import Document, Element
+
+STATE, EVENT, GOAL_ID, RESULT_CODE, ACCEPTED = "state_var", "event_var", "goal_id", "result_code", "accepted"
+VARIABLES = (STATE, EVENT, GOAL_ID, RESULT_CODE, ACCEPTED)
+
+TOPIC, SERVICE, ACTION, NODE, PLAIN = "ros_topic", "ros_service", "ros_action", "bt_node", "scxml_event_send"
+NAME_ATTRIBUTES = {
+    TOPIC: "topic_name",
+    SERVICE: "service_name",
+    ACTION: "action_name",
+    NODE: "node",
+    PLAIN: "event",
+}
+"""The kinds of ports, with the attribute that names what they listen to."""
+
+GUARANTEES, ASSUMES = "guarantees", "assumes"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PortVariable:
+    """`kind` is the name of its element. `field` is the dotted path into a message, or the parameter of an event."""
+
+    element: Element
+    kind: str
+    id: Name | None
+    type: TypeRef | None
+    field: Name | None
+    initial: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Port:
+    """`kind` is the name of its element, `name` what it listens to, `event` what of that."""
+
+    element: Element
+    kind: str
+    name: Name | None
+    type: Name | None
+    event: Name | None
+    origin: Name | None
+    target: Name | None
+    variables: tuple[PortVariable, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrittenScope:
+    element: Element
+    type: Name | None
+    event: Expression | None
+    until: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeInterval:
+    element: Element
+    time: Name | None
+    after: Name | None
+    within: Name | None
+    unit: Name | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrittenFormula:
+    """A formula with its atoms, in the order of `notation.atoms`."""
+
+    source: Decoded
+    notation: Notation
+    atoms: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrittenProperty:
+    """`section` is `GUARANTEES` or `ASSUMES`. `conditions` are those in `<event>` or `<events>`."""
+
+    element: Element
+    section: str
+    id: Name | None
+    pattern: Name | None
+    logic: Name | None
+    formula: WrittenFormula | None
+    conditions: tuple[Expression, ...]
+    scopes: tuple[WrittenScope, ...]
+    intervals: tuple[TimeInterval, ...]
+
+    @property
+    def expressions(self) -> Iterator[Expression]:
+        """All conditions that the property names, in the order of the patterns' inputs."""
+        yield from self.conditions
+        for scope in self.scopes[:1]:
+            yield from (condition for condition in (scope.event, scope.until) if condition is not None)
+        if self.formula is not None:
+            yield from self.formula.atoms
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PropertyFile:
+    element: Element
+    ports: tuple[Port, ...]
+    properties: tuple[WrittenProperty, ...]
+
+    @property
+    def variables(self) -> Iterator[tuple[Port, PortVariable]]:
+        for port in self.ports:
+            for variable in port.variables:
+                yield port, variable
+
+
+def build_property_file(document: Document) -> PropertyFile | None:
+    """The properties in `document`, or None if its root is another one."""
+    root = document.root
+    if root is None or root.name not in XML_PROPERTIES.roots:
+        return None
+    ports = [
+        _port(document, element)
+        for section in root.elements
+        if section.name == "ports"
+        for element in section.elements
+        if element.name in NAME_ATTRIBUTES
+    ]
+    properties = [
+        _property(document, element, section.name)
+        for section in root.elements
+        if section.name in (GUARANTEES, ASSUMES)
+        for element in section.elements
+        if element.name == "property"
+    ]
+    return PropertyFile(root, tuple(ports), tuple(properties))
+
+
+def _port(document: Document, element: Element) -> Port:
+    variables = tuple(_variable(document, child) for child in element.elements if child.name in VARIABLES)
+    name, type_ = name_of(element.get(NAME_ATTRIBUTES[element.name])), name_of(element.get("type"))
+    event = None if element.name == PLAIN else name_of(element.get("event"))
+    origin, target = name_of(element.get("origin")), name_of(element.get("target"))
+    return Port(element, element.name, name, type_, event, origin, target, variables)
+
+
+def _variable(document: Document, element: Element) -> PortVariable:
+    field = name_of(element.get("field")) or name_of(element.get("param"))
+    initial = expression_of(document, element.get("expr"))
+    return PortVariable(element, element.name, name_of(element.get("id")), type_of(element.get("type")), field, initial)
+
+
+def _property(document: Document, element: Element, section: str) -> WrittenProperty:
+    holders = [child for child in element.elements if child.name in ("event", "events")]
+    events = [each for h in holders for each in ([h] if h.name == "event" else h.elements) if each.name == "event"]
+    contents = (document.content(event) for event in events)
+    scopes = tuple(
+        WrittenScope(
+            child,
+            name_of(child.get("type")),
+            expression_of(document, child.get("event")),
+            expression_of(document, child.get("until")),
+        )
+        for child in element.elements
+        if child.name == "scope"
+    )
+    intervals = tuple(
+        TimeInterval(child, *(name_of(child.get(name)) for name in ("time", "after", "within", "time_unit")))
+        for child in element.elements
+        if child.name == "time_interval"
+    )
+    return WrittenProperty(
+        element,
+        section,
+        name_of(element.get("id")),
+        name_of(element.get("pattern")),
+        name_of(element.get("logic")),
+        _formula(document, element),
+        tuple(expression_from(content) for content in contents if content is not None),
+        scopes,
+        intervals,
+    )
+
+
+def _formula(document: Document, element: Element) -> WrittenFormula | None:
+    attribute = element.get("expr")
+    if attribute is None or not attribute.has_value:
+        return None
+    source = document.decoded(attribute.value_span)
+    notation = read(source.text)
+    atoms = tuple(expression_from(source.part(*span).stripped()) for span in notation.atoms)
+    return WrittenFormula(source, notation, atoms)

@@ -1,0 +1,437 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A property file in its system: what its ports listen to, what its properties observe, and what is wrong
+(docs/spec/xml-properties.md)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roaml.expr.infer import (
+    BadComparison,
+    BadOperand,
+    DivisionByZero,
+    IntegerDivision,
+    RandomUsed,
+    UnknownFunction,
+    UnknownMember,
+    UnknownName,
+    infer,
+)
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Name, walk
+from roaml.expr.types import UNKNOWN, Type, is_kind
+from roaml.model.globals import GlobalVariable
+from roaml.model.initial import check_initial
+from roaml.model.property_file import (
+    ASSUMES,
+    EVENT,
+    PropertyFile,
+    TimeInterval,
+    WrittenProperty,
+    WrittenScope,
+)
+from roaml.model.property_ports import FindInterface, LinkedPort, LinkedVariable, PortLinker
+from roaml.model.property_problems import Problem, ProblemKind
+from roaml.model.syntax import Expression
+from roaml.model.syntax import Name as WrittenName
+from roaml.model.system import System
+from roaml.model.system_file import NANOSECONDS
+from roaml.model.timing import periods
+from roaml.observers.properties import (
+    CLOSE,
+    LEFT,
+    OPEN,
+    RIGHT,
+    FormulaProperty,
+    Pattern,
+    PatternProperty,
+    Property,
+    ScopeKind,
+    Since,
+    Window,
+)
+from roaml.observers.properties import (
+    walk as walk_formula,
+)
+from roaml.suggest import close_names
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedProperty:
+    """A property that can be observed.
+
+    Attributes:
+        conditions: what the inputs of its observer are.
+        ports: those whose variables it reads: what its letters are.
+        path: of the file that it is written in.
+    """
+
+    name: str
+    is_assumption: bool
+    property: Property
+    conditions: Mapping[str, Expression]
+    ports: tuple[LinkedPort, ...]
+    written: WrittenProperty
+    path: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinkedFile:
+    """`properties` are those without problems."""
+
+    file: PropertyFile
+    ports: tuple[LinkedPort, ...]
+    properties: tuple[LinkedProperty, ...]
+    problems: tuple[Problem, ...]
+
+
+def clock_step(system: System) -> int | None:
+    """The step of the clock in ns; None without a timer."""
+    found = [period.nanoseconds for period in periods(system, system.parameters)]
+    return math.gcd(*found) if found else None
+
+
+def link(
+    file: PropertyFile,
+    system: System,
+    find: FindInterface,
+    variables: Mapping[str, GlobalVariable],
+    taken: Mapping[str, str],
+    path: str,
+) -> LinkedFile:
+    """
+    Args:
+        path: of the file.
+        variables: the global variables of the translated system.
+        taken: the names of properties in files that the system lists before this one -> a word for the file.
+    """
+    return _Linker(file, system, find, variables, taken, path).linked()
+
+
+class _Linker:
+    def __init__(
+        self,
+        file: PropertyFile,
+        system: System,
+        find: FindInterface,
+        variables: Mapping[str, GlobalVariable],
+        taken: Mapping[str, str],
+        path: str,
+    ) -> None:
+        self.file = file
+        self.path = path
+        self.ports = PortLinker(system, find, variables)
+        self.linked_ports = tuple(self.ports.link(port) for port in file.ports)
+        self.problems = self.ports.problems
+        self.step = clock_step(system)
+        self.taken = taken
+        self.by_id: dict[str, tuple[LinkedPort, LinkedVariable]] = {}
+        self.used: set[str] = set()
+
+    def report(self, kind: ProblemKind, span: Span, message: str, close: Iterable[str] = ()) -> None:
+        self.problems.append(Problem(kind, span, message, tuple(close)))
+
+    def linked(self) -> LinkedFile:
+        assumed = next((written for written in self.file.properties if written.section == ASSUMES), None)
+        if assumed is not None:
+            message = "assumptions are neither verified nor translated yet; without them, the guarantees ask more"
+            self.report(ProblemKind.FORM, assumed.element.name_span, message)
+        self._check_variables()
+        self._check_names()
+        properties = [self._property(written) for written in self.file.properties]
+        self._check_use()
+        kept = tuple(each for each in properties if each is not None)
+        return LinkedFile(self.file, self.linked_ports, kept, tuple(self.problems))
+
+    # ------------------------------------------------------------ variables
+
+    def _check_variables(self) -> None:
+        for port in self.linked_ports:
+            for variable in port.variables:
+                name = variable.written.id
+                assert name is not None
+                if variable.id in self.by_id:
+                    self.report(ProblemKind.REPEATED_ID, name.span, f"another variable has the id `{variable.id}`")
+                elif not _is_identifier(variable.id):
+                    message = f"`{variable.id}` is not an identifier, so no condition can name it"
+                    self.report(ProblemKind.PORT_VARIABLE, name.span, message)
+                self.by_id.setdefault(variable.id, (port, variable))
+                initial = variable.written.initial
+                if initial is not None and variable.kind != EVENT:
+                    self._check_initial(initial, variable.type)
+
+    def _check_initial(self, initial: Expression, type_: Type) -> None:
+        if initial.broken:
+            self.report(ProblemKind.PORT_VARIABLE, initial.findings[0].span, initial.findings[0].message)
+        elif check_initial(initial.tree, type_):
+            message = f"`expr` is the value before the first message: a constant of type `{type_}`"
+            self.report(ProblemKind.PORT_VARIABLE, initial.span, message)
+
+    def _check_names(self) -> None:
+        seen: set[str] = set()
+        for written in self.file.properties:
+            if written.id is None:
+                continue
+            name = written.id.value
+            if name in seen:
+                self.report(ProblemKind.REPEATED_ID, written.id.span, f"another property has the id `{name}`")
+            elif name in self.taken:
+                message = f"another property of the system is called `{name}`: one in {self.taken[name]}"
+                self.report(ProblemKind.REPEATED_ID, written.id.span, message)
+            seen.add(name)
+
+    def _check_use(self) -> None:
+        for port in self.linked_ports:
+            if not port.variables:
+                message = "this port has no variables, so no property listens to it"
+                self.report(ProblemKind.UNUSED, port.written.element.name_span, message)
+            for variable in port.variables:
+                if variable.id not in self.used and variable.written.id is not None:
+                    message = f"no property uses `{variable.id}`"
+                    self.report(ProblemKind.UNUSED, variable.written.id.span, message)
+
+    # ----------------------------------------------------------- properties
+
+    def _property(self, written: WrittenProperty) -> LinkedProperty | None:
+        before = len(self.problems)
+        for expression in written.expressions:
+            self._check_condition(expression)
+        if written.pattern is None and written.formula is None:
+            if written.logic is None:
+                message = "a property has a `pattern`, or a formula in `logic` and `expr`"
+            else:
+                message = "`expr` is missing: the formula"
+            self.report(ProblemKind.FORM, written.element.name_span, message)
+        found = self._pattern(written) if written.pattern is not None else self._formula(written)
+        errors = [problem for problem in self.problems[before:] if problem.kind not in _HINTS]
+        if found is None or errors or written.id is None:
+            return None
+        property_, conditions = found
+        names = {each.name for c in conditions.values() for each in walk(c.tree) if isinstance(each, Name)}
+        ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
+        is_assumption = written.section == ASSUMES
+        return LinkedProperty(written.id.value, is_assumption, property_, conditions, ports, written, self.path)
+
+    def _check_condition(self, condition: Expression) -> None:
+        if condition.broken:
+            for finding in condition.findings:
+                self.report(ProblemKind.CONDITION, finding.span, finding.message)
+            return
+        type_, problems = infer(condition.tree, self._type_of)
+        self.used |= {each.name for each in walk(condition.tree) if isinstance(each, Name)}
+        reported = False
+        for problem in problems:
+            if isinstance(problem, IntegerDivision):
+                continue
+            reported = True
+            close: tuple[str, ...] = ()
+            if isinstance(problem, UnknownName):
+                close = close_names(problem.name, self.by_id)
+            self.report(ProblemKind.CONDITION, problem.span, _in_words(problem, close), close)
+        if not reported and type_ != UNKNOWN and not is_kind(type_, "bool"):
+            message = f"a condition is true or false, but this is of type `{type_}`"
+            self.report(ProblemKind.CONDITION, condition.span, message)
+        self._check_together(condition)
+
+    def _type_of(self, name: str) -> Type | None:
+        return self.by_id[name][1].type if name in self.by_id else None
+
+    def _check_together(self, condition: Expression) -> None:
+        for part in walk(condition.tree):
+            if isinstance(part, Binary) and part.operator is Operator.AND:
+                left, right = self._event(part.left), self._event(part.right)
+                if left is not None and right is not None and left[0] is not right[0]:
+                    message = (
+                        f"`{left[1].id}` and `{right[1].id}` are never true together: each message is a step of its own"
+                    )
+                    self.report(ProblemKind.NEVER_TOGETHER, part.span, message)
+
+    def _event(self, tree: object) -> tuple[LinkedPort, LinkedVariable] | None:
+        found = self.by_id.get(tree.name) if isinstance(tree, Name) else None
+        return found if found is not None and found[1].kind == EVENT else None
+
+    def _pattern(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
+        assert written.pattern is not None
+        if written.logic is not None or written.formula is not None:
+            message = "a property has either a `pattern` or a formula, not both"
+            self.report(ProblemKind.FORM, written.pattern.span, message)
+            return None
+        if written.pattern.value not in {pattern.value for pattern in Pattern}:
+            return None  # the schema reports it
+        pattern = Pattern(written.pattern.value)
+        conditions = self._conditions(written, pattern)
+        scope = self._scope(written)
+        window = self._window(written, pattern)
+        if conditions is None or scope is None or window is None:
+            return None
+        kind, limits = scope
+        if pattern is Pattern.UNIVERSALITY and kind is ScopeKind.GLOBALLY and window.lower == 0:
+            self._check_start(conditions[LEFT])
+        return PatternProperty(pattern, kind, window), {**conditions, **limits}
+
+    def _check_start(self, condition: Expression) -> None:
+        if self._event(condition.tree) is not None:
+            name = condition.text.strip()
+            message = (
+                f"`{name}` is false at the start of every trace and between messages, so this property never holds"
+            )
+            self.report(ProblemKind.FALSE_AT_START, condition.span, message)
+
+    def _conditions(self, written: WrittenProperty, pattern: Pattern) -> dict[str, Expression] | None:
+        needed = 2 if pattern.is_binary else 1
+        given = len(written.conditions)
+        if given != needed:
+            wanted = "two `<event>` in `<events>`" if needed == 2 else "one `<event>`"
+            message = f"`{pattern.value}` needs {wanted}; there {'is' if given == 1 else 'are'} {given or 'none'}"
+            self.report(ProblemKind.FORM, written.element.name_span, message)
+            return None
+        return dict(zip((LEFT, RIGHT), written.conditions, strict=False))
+
+    def _scope(self, written: WrittenProperty) -> tuple[ScopeKind, dict[str, Expression]] | None:
+        if not written.scopes:
+            message = 'the scope is missing: `<scope type="globally"/>` asks of the whole trace'
+            self.report(ProblemKind.FORM, written.element.name_span, message)
+            return None
+        scope = written.scopes[0]
+        if scope.type is None or scope.type.value not in {kind.value for kind in ScopeKind}:
+            return None  # the schema reports it
+        kind = ScopeKind(scope.type.value)
+        limits = dict(self._limits(scope, kind, scope.type))
+        complete = (OPEN in limits or not kind.has_event) and (CLOSE in limits or not kind.has_until)
+        return (kind, limits) if complete else None
+
+    def _limits(self, scope: WrittenScope, kind: ScopeKind, place: WrittenName) -> Iterator[tuple[str, Expression]]:
+        rows = ((OPEN, "event", scope.event, kind.has_event), (CLOSE, "until", scope.until, kind.has_until))
+        for name, attribute, condition, is_needed in rows:
+            if is_needed and condition is None:
+                self.report(ProblemKind.FORM, place.span, f"the scope `{kind.value}` needs the attribute `{attribute}`")
+            elif condition is not None and not is_needed:
+                message = f"the scope `{kind.value}` has no `{attribute}`"
+                self.report(ProblemKind.FORM, condition.span, message)
+            elif condition is not None:
+                yield name, condition
+
+    def _formula(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
+        formula = written.formula
+        if formula is None:
+            return None
+        elements = [scope.element for scope in written.scopes] + [interval.element for interval in written.intervals]
+        for span in (*(c.span for c in written.conditions), *(element.name_span for element in elements)):
+            self.report(ProblemKind.FORM, span, "a formula has neither events nor a scope nor an interval beside it")
+        for span, message in formula.notation.problems:
+            self.report(ProblemKind.FORM, formula.source.span(*span), message)
+        if formula.notation.formula is None:
+            return None
+        property_ = FormulaProperty(formula.notation.formula)
+        timed = [n for n in walk_formula(property_.formula) if isinstance(n, Since) and not n.window.is_unbounded]
+        if timed and self.step is None:
+            self._no_clock(written.element.name_span)
+        return property_, {condition.text: condition for condition in formula.atoms}
+
+    # ----------------------------------------------------------------- time
+
+    def _window(self, written: WrittenProperty, pattern: Pattern) -> Window | None:
+        if not written.intervals:
+            if pattern is Pattern.RECURRENCE:
+                message = "`recurrence` needs a `<time_interval>`: after which time the condition must have come back"
+                self.report(ProblemKind.TIME, written.element.name_span, message)
+                return None
+            return Window()
+        interval = written.intervals[0]
+        place = interval.element.name_span
+        ends = (interval.time, interval.after, interval.within)
+        if interval.unit is None or interval.unit.value not in NANOSECONDS:
+            return None  # the schema reports it
+        if not any(ends):
+            self.report(ProblemKind.TIME, place, "an interval has `time`, `after` or `within`")
+            return None
+        if interval.time is not None and (interval.after or interval.within):
+            self.report(ProblemKind.TIME, interval.time.span, "`time` means `within`; use `after` and `within` alone")
+            return None
+        if pattern is Pattern.RECURRENCE and interval.after is not None:
+            self.report(ProblemKind.TIME, interval.after.span, "`recurrence` has no `after`, only `time`")
+            return None
+        if self.step is None:
+            self._no_clock(place)
+            return None
+        return self._in_steps(interval, NANOSECONDS[interval.unit.value], self.step)
+
+    def _no_clock(self, span: Span) -> None:
+        self.report(ProblemKind.TIME, span, "the system has no timer, so it has no clock that could measure a time")
+
+    def _in_steps(self, interval: TimeInterval, unit: int, step: int) -> Window | None:
+        upper_written = interval.time or interval.within
+        after, within = _number(interval.after), _number(upper_written)
+        if (interval.after is not None and after is None) or (upper_written is not None and within is None):
+            return None  # the schema reports it
+        lower = 0 if after is None else math.ceil(after * unit / step)
+        upper = None if within is None else math.floor(within * unit / step)
+        if after is not None and within is not None and after > within:
+            assert interval.after is not None
+            message = (
+                f"`after` is greater than `within`: no time is from {interval.after.value} to {_text(upper_written)}"
+            )
+            self.report(ProblemKind.TIME, interval.after.span, message)
+            return None
+        if max(lower, upper or 0) > MAX_STEPS:
+            message = (
+                f"the interval has {max(lower, upper or 0):,} steps of the clock; at most {MAX_STEPS:,} are counted"
+            )
+            self.report(ProblemKind.TIME, interval.element.name_span, message)
+            return None
+        if upper is not None and lower > upper:
+            place = interval.after.span if interval.after else interval.element.name_span
+            message = f"no step of the clock, which has {_duration(step)}, is in this interval"
+            self.report(ProblemKind.TIME, place, message)
+            return None
+        return Window(lower, upper)
+
+
+MAX_STEPS = 1_000_000
+_HINTS = (ProblemKind.NEVER_TOGETHER, ProblemKind.FALSE_AT_START)
+
+
+def _text(name: WrittenName | None) -> str:
+    return "" if name is None else name.value
+
+
+def _number(name: WrittenName | None) -> Fraction | None:
+    """A number that is not negative."""
+    try:
+        value = Fraction(name.value) if name is not None and "/" not in name.value else None
+    except ValueError:
+        return None
+    return value if value is not None and value >= 0 else None
+
+
+def _duration(nanoseconds: int) -> str:
+    unit, size = next((unit, size) for unit, size in NANOSECONDS.items() if nanoseconds % size == 0)
+    return f"{nanoseconds // size} {unit}"
+
+
+def _is_identifier(text: str) -> bool:
+    return text.isascii() and text.isidentifier()
+
+
+def _in_words(problem: object, close: tuple[str, ...]) -> str:
+    hint = f"; did you mean `{close[0]}`?" if close else ""
+    match problem:
+        case UnknownName(name=name):
+            return f"no port of this file has a variable `{name}`{hint}"
+        case UnknownMember(name=name):
+            return f"there is no member `{name}`; name the field at the port, in a `<state_var>`"
+        case BadOperand(operator=operator, given=given, wanted=wanted):
+            return f"`{operator}` takes {wanted}, not a value of type `{given}`"
+        case BadComparison(operator=operator, left=left, right=right):
+            return f"`{operator}` cannot compare `{left}` with `{right}`"
+        case UnknownFunction(name=name):
+            return f"there is no `{name}`"
+        case DivisionByZero():
+            return "this divides by zero"
+        case RandomUsed():
+            return "a condition cannot be random"
+    return "this cannot be evaluated"

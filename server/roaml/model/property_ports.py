@@ -1,0 +1,437 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the ports of a property file listen to: events of the translation, and what they carry
+(docs/spec/xml-properties.md#ports).
+
+Of the two sendings of a request or an answer, the one at the client's side counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
+from roaml.interfaces.registry import NotFound
+from roaml.model.globals import FIELD_PREFIX, GlobalVariable
+from roaml.model.property_file import (
+    ACCEPTED,
+    ACTION,
+    EVENT,
+    GOAL_ID,
+    NODE,
+    PLAIN,
+    RESULT_CODE,
+    SERVICE,
+    STATE,
+    TOPIC,
+    Port,
+    PortVariable,
+)
+from roaml.model.property_problems import Problem, ProblemKind
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Name
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
+from roaml.roles import ProtocolPart
+from roaml.scxml.observed import PortEvent
+from roaml.suggest import close_names
+from roaml.text import Span
+
+FindInterface = Callable[[str, str], "InterfaceType | NotFound"]
+
+INT32 = BASE_TYPES["int32"]
+_KINDS = {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}
+_WORDS = {TOPIC: "topic", SERVICE: "service", ACTION: "action", NODE: "node of the behavior tree", PLAIN: "event"}
+_EVENTS = {
+    TOPIC: ("publish",),
+    SERVICE: ("request", "response"),
+    ACTION: ("goal_request", "goal_response", "feedback", "result"),
+    NODE: ("tick", "response", "halt"),
+}
+_PARTS = {
+    "publish": "message",
+    "request": "request",
+    "response": "response",
+    "goal_request": "goal",
+    "feedback": "feedback",
+    "result": "result",
+}
+_GIVEN_BY = {GOAL_ID: _EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
+"""The events of an action that carry what these variables hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedVariable:
+    """Attributes:
+    kind: the name of its element.
+    type: of the value; `UNKNOWN` if that cannot be told.
+    parameter: of the events, "" if it is not read from one.
+    """
+
+    id: str
+    kind: str
+    type: Type
+    parameter: str
+    written: PortVariable
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedPort:
+    """`is_known`: whether it is certain what it listens to."""
+
+    written: Port
+    events: tuple[PortEvent, ...]
+    variables: tuple[LinkedVariable, ...]
+    is_known: bool = True
+
+
+class PortLinker:
+    """Links the ports of one file; what is wrong is collected in `problems`."""
+
+    def __init__(self, system: System, find: FindInterface, variables: Mapping[str, GlobalVariable]) -> None:
+        self.system = system
+        self.find = find
+        self.variables = variables
+        self.problems: list[Problem] = []
+
+    def report(self, kind: ProblemKind, span: Span, message: str, close: Iterable[str] = ()) -> None:
+        self.problems.append(Problem(kind, span, message, tuple(close)))
+
+    def link(self, port: Port) -> LinkedPort:
+        events = self._event_names(port)
+        if port.name is None or events is None:
+            return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
+        match port.kind:
+            case "ros_topic" | "ros_service" | "ros_action":
+                return self._interface(port, port.name, events)
+            case "bt_node":
+                return self._node(port, port.name, events)
+        return self._plain(port, port.name)
+
+    def _event_names(self, port: Port) -> str | None:
+        """What counts of the interface; None if that is not one of the words for it (the schema reports that)."""
+        if port.kind == PLAIN:
+            return ""
+        return port.event.value if port.event and port.event.value in _EVENTS[port.kind] else None
+
+    def _unlinked(self, port: Port) -> Iterator[LinkedVariable]:
+        for variable in port.variables:
+            if variable.id is not None:
+                type_ = BOOL if variable.kind in (EVENT, ACCEPTED) else INT32 if variable.kind != STATE else UNKNOWN
+                yield LinkedVariable(variable.id.value, variable.kind, type_, "", variable)
+
+    def _is_complete(self) -> bool:
+        return self.system.complete
+
+    # ------------------------------------------------------------ interfaces
+
+    def _interface(self, port: Port, name: Name, event: str) -> LinkedPort:
+        channel = self._channel(port, name)
+        if channel is None:
+            return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
+        type_ = self._type(port, channel)
+        part = type_.part(_PARTS[event]) if type_ is not None and event in _PARTS else None
+        if part is None and event == "goal_response":
+            part = Struct("", (), "answer to a goal")
+        events = tuple(self._channel_events(port, channel, event))
+        if not events and self._is_complete():
+            what = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
+            who = what.get(event, "answers")
+            self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this is never sent")
+        variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
+        return LinkedPort(port, events, variables, is_known=type_ is not None)
+
+    def _channels(self, kind: str) -> Mapping[str, Channel]:
+        return {TOPIC: self.system.topics, SERVICE: self.system.services, ACTION: self.system.actions}[kind]
+
+    def _channel(self, port: Port, name: Name) -> Channel | None:
+        key = sanitise(name.value) if port.kind == TOPIC else name.value
+        channel = self._channels(port.kind).get(key)
+        if channel is not None:
+            return channel
+        if port.kind == TOPIC and key == CLOCK_TOPIC and self.system.has_timer:
+            return Channel(CLOCK_TOPIC)
+        for kind in (TOPIC, SERVICE, ACTION):
+            other = sanitise(name.value) if kind == TOPIC else name.value
+            if kind != port.kind and other in self._channels(kind):
+                message = (
+                    f"`{name.value}` is {_article(_WORDS[kind])}, not {_article(_WORDS[port.kind])}; use `<{kind}>`"
+                )
+                self.report(ProblemKind.UNKNOWN_PORT, name.span, message)
+                return None
+        if self._is_complete():
+            known = {
+                written: None
+                for channel in self._channels(port.kind).values()
+                for written in _written_names(channel, port.kind)
+            }
+            close = close_names(name.value, known)
+            hint = f"; did you mean `{close[0]}`?" if close else ""
+            message = f"the system has no {_WORDS[port.kind]} `{name.value}`{hint}"
+            self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
+        return None
+
+    def _type(self, port: Port, channel: Channel) -> InterfaceType | None:
+        if port.type is None:
+            return None
+        kind = _KINDS[port.kind]
+        given = self.find(kind, port.type.value)
+        declared = {endpoint.use.type: self.find(kind, endpoint.use.type) for endpoint in channel.endpoints}
+        types = [type_ for type_ in declared.values() if isinstance(type_, InterfaceType)]
+        if isinstance(given, InterfaceType):
+            if types and all(given.name != type_.name for type_ in types):
+                written = next(name for name, type_ in declared.items() if type_ is types[0])
+                message = (
+                    f"the type of `{port.name.value if port.name else ''}` is `{written}`, not `{port.type.value}`"
+                )
+                self.report(ProblemKind.PORT_TYPE, port.type.span, message, (written,))
+                return types[0]
+            return given
+        written_types = tuple(name for name, type_ in declared.items() if isinstance(type_, InterfaceType))
+        hint = f"; the machines declare `{written_types[0]}`" if written_types else ""
+        message = f"there is no {_WORDS[port.kind]} type `{port.type.value}`{hint}"
+        self.report(ProblemKind.PORT_TYPE, port.type.span, message, written_types[:1])
+        return types[0] if types else None
+
+    def _channel_events(self, port: Port, channel: Channel, event: str) -> Iterator[PortEvent]:
+        if port.kind == TOPIC:
+            senders = [e for e in channel.sources if ProtocolPart.MESSAGE in e.use.sends]
+            senders = self._chosen(port.origin, senders, "publishes on", channel)
+            name = f"topic_{channel.name}_msg"
+            if port.origin is None:
+                if senders or (channel.name == CLOCK_TOPIC and self.system.has_timer):
+                    yield PortEvent(name)
+            else:
+                for sender in senders:
+                    yield PortEvent(name, sender.automaton.name)
+            return
+        chooser = port.origin if event in ("request", "goal_request") else port.target
+        clients = self._chosen(chooser, channel.users, "is a client of", channel)
+        if port.target is None and port.origin is None and len(channel.users) > 1:
+            self._warn_of_clients(port, channel, event)
+        stem = f"{'srv' if port.kind == SERVICE else 'action'}_{sanitise(channel.name)}"
+        for client in clients:
+            who, number = safe_name(client.automaton.name), channel.users.index(client)
+            goal = (GOAL_ID, number)
+            match event:
+                case "request" if ProtocolPart.REQUEST in client.use.sends:
+                    yield PortEvent(f"{stem}_req_client_{who}")
+                case "response" if channel.sources:
+                    yield PortEvent(f"{stem}_response_client_{who}")
+                case "goal_request" if ProtocolPart.GOAL in client.use.sends:
+                    yield PortEvent(f"{stem}_goal_req_client_{who}", constants=(goal,))
+                case "goal_response" if channel.sources:
+                    yield PortEvent(f"{stem}_goal_accept_client_{who}", constants=(goal, (ACCEPTED, True)))
+                    yield PortEvent(f"{stem}_goal_reject_client_{who}", constants=(goal, (ACCEPTED, False)))
+                case "feedback" if channel.sources:
+                    yield PortEvent(f"{stem}_feedback_handle_client_{who}", constants=(goal,))
+                case "result" if channel.sources:
+                    yield PortEvent(f"{stem}_result_handle_client_{who}", constants=(goal,))
+
+    def _chosen(
+        self, name: Name | None, endpoints: list[ChannelEndpoint], does: str, channel: Channel
+    ) -> list[ChannelEndpoint]:
+        if name is None:
+            return endpoints
+        chosen = [endpoint for endpoint in endpoints if name.value in _names_of(endpoint.automaton)]
+        if not chosen and self._is_complete():
+            known = [each for endpoint in endpoints for each in _names_of(endpoint.automaton)]
+            close = close_names(name.value, known) or tuple(known[:1])
+            hint = f"; did you mean `{close[0]}`?" if close else ""
+            message = f"no machine `{name.value}` {does} `{channel.name}`{hint}"
+            self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
+        return chosen
+
+    def _warn_of_clients(self, port: Port, channel: Channel, event: str) -> None:
+        assert port.name is not None
+        names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
+        attribute = "origin" if event in ("request", "goal_request") else "target"
+        message = f"what {len(channel.users)} clients say counts: {names}; AS2FM takes one; set `{attribute}` to choose"
+        self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)
+
+    # ------------------------------------------------------------- the tree
+
+    def _node(self, port: Port, name: Name, event: str) -> LinkedPort:
+        automata = [automaton for automaton in self.system.automata if automaton.instance is not None]
+        matches = [automaton for automaton in automata if self._is_called(automaton, name.value)]
+        if len(matches) != 1:
+            if matches:
+                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(self._path(each) for each in matches))
+                message = f"{len(matches)} nodes of the tree are called `{name.value}`: {paths}; use the path of one"
+                self.report(ProblemKind.UNKNOWN_PORT, name.span, message)
+            elif self._is_complete():
+                known = dict.fromkeys(
+                    each
+                    for automaton in automata
+                    if automaton.instance
+                    for each in (automaton.instance.name, automaton.instance.plugin)
+                )
+                close = close_names(name.value, known)
+                hint = f"; did you mean `{close[0]}`?" if close else ""
+                message = f"the tree has no node `{name.value}`{hint}"
+                self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
+            return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
+        instance = matches[0].instance
+        assert instance is not None
+        status = Struct("", (("status", INT32),) if event == "response" else (), f"{event} of a node")
+        variables = tuple(self._variables(port, status, "", event))
+        return LinkedPort(port, (PortEvent(f"bt_{instance.number}_{event}"),), variables)
+
+    def _is_called(self, automaton: SystemAutomaton, text: str) -> bool:
+        instance = automaton.instance
+        assert instance is not None
+        *path, last = text.split("/")
+        if last != instance.name and (last != instance.plugin or self._has_name(last)):
+            return False
+        above = self._above(automaton)
+        for part in reversed(path):
+            while above and above[-1] != part:
+                above.pop()
+            if not above:
+                return False
+            above.pop()
+        return True
+
+    def _has_name(self, text: str) -> bool:
+        return any(each.instance is not None and each.instance.name == text for each in self.system.automata)
+
+    def _above(self, automaton: SystemAutomaton) -> list[str]:
+        """The names of the nodes around a node and of the trees that they are in, outermost first."""
+        names: list[str] = []
+        instance = automaton.instance
+        assert instance is not None
+        tree = instance.source.tree
+        names.append(tree)
+        while instance.parent is not None:
+            parent = self.system.by_instance.get(instance.parent)
+            if parent is None or parent.instance is None:
+                break
+            instance = parent.instance
+            names.append(instance.name)
+            if instance.source.tree != tree:
+                tree = instance.source.tree
+                names.append(tree)
+        return names[::-1]
+
+    def _path(self, automaton: SystemAutomaton) -> str:
+        assert automaton.instance is not None
+        return "/".join(filter(None, (*self._above(automaton), automaton.instance.name)))
+
+    # -------------------------------------------------------- plain events
+
+    def _plain(self, port: Port, name: Name) -> LinkedPort:
+        """An event by its name in the translation."""
+        params = self._parameters(name.value)
+        if params is None and self._is_complete():
+            events = [variable.event for variable in self.variables.values()]
+            close = close_names(name.value, dict.fromkeys(events))
+            hint = f"; did you mean `{close[0]}`?" if close else ""
+            self.report(ProblemKind.UNKNOWN_PORT, name.span, f"the system sends no event `{name.value}`{hint}", close)
+        data = None if params is None else Struct("", tuple(params.items()), f"the event `{name.value}`")
+        sender = port.origin.value if port.origin is not None else ""
+        variables = tuple(self._variables(port, data, "", ""))
+        return LinkedPort(port, (PortEvent(name.value, sender),), variables, is_known=params is not None)
+
+    def _parameters(self, event: str) -> dict[str, Type] | None:
+        """The parameters of an event of the translation; None if there is no event of that name."""
+        if f"{event}.valid" not in self.variables:
+            return None
+        names = (v for v in self.variables.values() if v.event == event and v.name.startswith(f"{event}__"))
+        return {v.name.removeprefix(f"{event}__"): v.type for v in names if "." not in v.name[len(event) :]}
+
+    # ------------------------------------------------------------ variables
+
+    def _variables(self, port: Port, data: Struct | None, prefix: str, event: str) -> Iterator[LinkedVariable]:
+        """`data` is what the event carries, None if that is not known."""
+        for variable in port.variables:
+            if variable.id is None:
+                continue
+            match variable.kind:
+                case "event_var":
+                    yield LinkedVariable(variable.id.value, EVENT, BOOL, "", variable)
+                case "state_var":
+                    type_, parameter = self._field(variable, data, prefix)
+                    yield LinkedVariable(variable.id.value, STATE, type_, parameter, variable)
+                case _:
+                    if port.kind == ACTION and event not in _GIVEN_BY[variable.kind]:
+                        carriers = _either(_GIVEN_BY[variable.kind])
+                        message = f"`{event}` carries no `<{variable.kind}>`; it is carried by {carriers}"
+                        self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
+                    type_ = BOOL if variable.kind == ACCEPTED else INT32
+                    parameter = "code" if variable.kind == RESULT_CODE else ""
+                    yield LinkedVariable(variable.id.value, variable.kind, type_, parameter, variable)
+
+    def _field(self, variable: PortVariable, data: Struct | None, prefix: str) -> tuple[Type, str]:
+        if variable.field is None:
+            message = "`field` is missing: the field whose value the variable has"
+            self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
+            return UNKNOWN, ""
+        parts = variable.field.value.split(".")
+        parameter = prefix + "__".join(parts)
+        if data is None:
+            return _declared(variable), parameter
+        type_: Type | None = data
+        for part in parts:
+            type_ = type_.member(part) if isinstance(type_, Struct) else None
+            if type_ is None:
+                known = list(_leaf_paths(data))
+                close = close_names(variable.field.value, known) or (tuple(known) if len(known) == 1 else ())
+                hint = f"; did you mean `{close[0]}`?" if close else ""
+                message = f"{data} has no field `{variable.field.value}`{hint}"
+                self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message, close)
+                return _declared(variable), parameter
+        if isinstance(type_, Struct):
+            message = f"`{variable.field.value}` is a message; name one of its fields"
+            self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message)
+            return UNKNOWN, parameter
+        assert type_ is not None
+        if not prefix and (type_ == UNKNOWN or _same_kind(_declared(variable), type_)):
+            return _declared(
+                variable
+            ), parameter  # a parameter has the type of what is sent, which need not be declared
+        if variable.type is not None and type_ != UNKNOWN and variable.type.text != str(type_):
+            message = f"the type of `{variable.field.value}` is `{type_}`, not `{variable.type.text}`"
+            self.report(ProblemKind.PORT_VARIABLE, variable.type.span, message, (str(type_),))
+        return type_, parameter
+
+
+def _declared(variable: PortVariable) -> Type:
+    """The base type that is written, if it is one."""
+    name = variable.type.name if variable.type else None
+    return BASE_TYPES.get(name.base, UNKNOWN) if name and not name.dimensions else UNKNOWN
+
+
+def _same_kind(left: Type, right: Type) -> bool:
+    return getattr(left, "kind", None) == getattr(right, "kind", "")
+
+
+def _leaf_paths(data: Struct) -> Iterator[str]:
+    for name, type_ in data.members:
+        if isinstance(type_, Struct):
+            yield from (f"{name}.{path}" for path in _leaf_paths(type_))
+        else:
+            yield name
+
+
+def _names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
+    """By which names a port may choose an automaton: that of its machine or node, and its own."""
+    names = [automaton.name]
+    if automaton.instance is not None:
+        names = [automaton.instance.name, automaton.outline.name, *names]
+    return tuple(dict.fromkeys(name for name in names if name))
+
+
+def _written_names(channel: Channel, kind: str) -> Iterator[str]:
+    for endpoint in channel.endpoints:
+        name = endpoint.automaton.interface_name(endpoint.use)
+        if name is not None:
+            yield name
+    if kind == TOPIC and channel.name == CLOCK_TOPIC:
+        yield CLOCK_TOPIC
+
+
+def _article(word: str) -> str:
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
+
+
+def _either(names: Iterable[str]) -> str:
+    return " or ".join(f"`{name}`" for name in names)

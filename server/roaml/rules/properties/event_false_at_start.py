@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event-false-at-start: see event_false_at_start.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.FALSE_AT_START,
+    Severity.WARNING,
+    "A universality asks that an event is always being sent.",
+)

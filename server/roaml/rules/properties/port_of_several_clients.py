@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""port-of-several-clients: see port_of_several_clients.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.SEVERAL_CLIENTS,
+    Severity.WARNING,
+    "A port of a service or action does not say which of its clients counts.",
+)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""port-type: see port_type.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.PORT_TYPE,
+    Severity.ERROR,
+    "The type of a port is not that of the interface.",
+)

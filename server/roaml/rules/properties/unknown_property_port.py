@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unknown-property-port: see unknown_property_port.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.UNKNOWN_PORT,
+    Severity.ERROR,
+    "A port names something that the system does not have.",
+)

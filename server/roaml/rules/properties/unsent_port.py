@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unsent-port: see unsent_port.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.UNSENT,
+    Severity.WARNING,
+    "Nothing is ever sent at a port.",
+)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""unused-port-variable: see unused_port_variable.md."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Severity
+from roaml.model.property_problems import ProblemKind
+from roaml.rules.support.property_problems import problem_rule
+
+RULE = problem_rule(
+    ProblemKind.UNUSED,
+    Severity.WARNING,
+    "No property uses a variable of a port, or a port has none.",
+)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Properties of plain automata: what is observed of the events that they send (docs/spec/xml-properties.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roaml.expr.tree import Expr
+from roaml.expr.types import Type
+from roaml.observers.properties import Property
+from roaml.text import Location
+
+
+@dataclass(frozen=True, slots=True)
+class PortEvent:
+    """An event of the translation.
+
+    Attributes:
+        name: of the event.
+        sender: only what this automaton sends counts; "" if all that is sent counts.
+        constants: what the event says without parameters: kinds of variables -> value.
+    """
+
+    name: str
+    sender: str = ""
+    constants: tuple[tuple[str, int | bool], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedVariable:
+    """Attributes:
+    kind: which of the constants of an event it is, if it is one of them.
+    parameter: of the events, "" if it is not read from one.
+    initial: the value before the first event; `None` for a variable that is true when the event is sent.
+    """
+
+    id: str
+    kind: str
+    type: Type
+    parameter: str
+    initial: Expr | None
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedPort:
+    events: tuple[PortEvent, ...]
+    variables: tuple[ObservedVariable, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedProperty:
+    """`conditions`: what the inputs of its observer are, as expressions over the ids of the variables."""
+
+    name: str
+    property: Property
+    conditions: Mapping[str, Expr]
+    ports: tuple[ObservedPort, ...]
+    origin: Location

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Properties in XML beside hand-written properties in JANI that ask the same, in one model: Storm computes the same
+probabilities, and the same traces satisfy both."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+import pytest
+from storm import exact
+from translating import errors, loaded
+
+from roaml import api
+from roaml.jani.model import Model
+from roaml.smc.run import Options
+from roaml.to_jani.observers import TIME_OVER_ACTION
+
+COIN = """<ascxml name="Coin" version="1.0" initial="toss">
+    <datamodel><data id="count" type="int32" expr="0" /></datamodel>
+    <ros_time_rate name="second" rate_hz="1" />
+    <ros_topic_publisher name="heads" topic="/heads" type="std_msgs/Int32" />
+    <ros_topic_publisher name="tails" topic="/tails" type="std_msgs/Empty" />
+    <state id="toss">
+        <ros_rate_callback name="second">
+            <target id="toss" prob="0.3">
+                <assign location="count" expr="count + 1" />
+                <ros_topic_publish name="heads"><field name="data" expr="count" /></ros_topic_publish>
+            </target>
+            <target id="toss" prob="0.2"><ros_topic_publish name="tails" /></target>
+            <target id="toss" />
+        </ros_rate_callback>
+    </state>
+</ascxml>"""
+JUDGE = """<ascxml name="Judge" version="1.0" initial="wait">
+    <ros_topic_subscriber name="heads" topic="/heads" type="std_msgs/Int32" />
+    <ros_topic_publisher name="whistle" topic="/whistle" type="std_msgs/Bool" />
+    <state id="wait">
+        <ros_topic_callback name="heads">
+            <target id="wait" prob="0.4">
+                <ros_topic_publish name="whistle"><field name="data" expr="true" /></ros_topic_publish>
+            </target>
+            <target id="wait" />
+        </ros_topic_callback>
+    </state>
+</ascxml>"""
+PORTS = """<ports>
+    <ros_topic topic_name="/heads" type="std_msgs/Int32" event="publish">
+        <event_var id="heads" /><state_var id="count" type="int32" field="data" expr="7" />
+    </ros_topic>
+    <ros_topic topic_name="/tails" type="std_msgs/Empty" event="publish"><event_var id="tails" /></ros_topic>
+    <ros_topic topic_name="/whistle" type="std_msgs/Bool" event="publish"><event_var id="whistle" /></ros_topic>
+</ports>"""
+
+HEADS, TAILS, WHISTLE = "topic_heads_msg.valid", "topic_tails_msg.valid", "topic_whistle_msg.valid"
+COUNT = "topic_heads_msg__ros_fields__data"
+
+
+def op(name: str, *parts: object) -> dict[str, object]:
+    keys = ("exp",) if len(parts) == 1 else ("left", "right")
+    return {"op": name, **dict(zip(keys, parts, strict=True))}
+
+
+def at_least(count: int) -> dict[str, object]:
+    return op("≥", COUNT, count)
+
+
+def weak_until(left: object, right: object) -> dict[str, object]:
+    """Storm does not read W."""
+    return op("∨", op("G", left), op("U", left, right))
+
+
+TWINS: Mapping[str, tuple[str, object]] = {
+    "existence": (
+        '<property id="{}" pattern="existence"><event>whistle</event><scope type="globally" /></property>',
+        op("F", WHISTLE),
+    ),
+    "absence": (
+        '<property id="{}" pattern="absence"><event>whistle || tails</event><scope type="globally" /></property>',
+        op("G", op("∧", op("¬", WHISTLE), op("¬", TAILS))),
+    ),
+    "universality": (
+        '<property id="{}" pattern="universality"><event>count != 2</event><scope type="globally" /></property>',
+        op("G", op("≠", COUNT, 2)),
+    ),
+    "precedence": (
+        '<property id="{}" pattern="precedence"><events><event>whistle</event><event>tails</event></events>'
+        '<scope type="globally" /></property>',
+        weak_until(op("¬", TAILS), WHISTLE),
+    ),
+    "existence_before": (
+        '<property id="{}" pattern="existence"><event>whistle</event><scope type="before" event="tails" /></property>',
+        op("∨", op("G", op("¬", TAILS)), op("U", op("¬", TAILS), WHISTLE)),
+    ),
+    "existence_until": (
+        '<property id="{}" pattern="existence"><event>heads</event><scope type="until" event="tails" /></property>',
+        op("U", op("¬", TAILS), HEADS),
+    ),
+    "absence_before": (
+        '<property id="{}" pattern="absence"><event>whistle</event>'
+        '<scope type="before" event="heads &amp;&amp; count == 3" /></property>',
+        op("∨", op("G", op("<", COUNT, 3)), weak_until(op("¬", WHISTLE), at_least(3))),
+    ),
+    "absence_until": (
+        '<property id="{}" pattern="absence"><event>whistle</event><scope type="until" event="tails" /></property>',
+        weak_until(op("¬", WHISTLE), TAILS),
+    ),
+    "response_once": (
+        '<property id="{}" pattern="response"><events><event>heads &amp;&amp; count == 1</event>'
+        "<event>heads &amp;&amp; count == 3</event></events>"
+        '<scope type="globally" /></property>',
+        op("⇒", op("F", at_least(1)), op("F", at_least(3))),
+    ),
+    "formula": (
+        '<property id="{}" logic="pmtl" expr="{{ tails }} -&gt; O {{ heads }}" />',
+        weak_until(op("¬", TAILS), HEADS),
+    ),
+}
+
+
+def system(guarantees: str, twins: object = (), seconds: int = 6) -> dict[str, str]:
+    inputs = '<input type="node-ascxml" src="coin.ascxml" /><input type="node-ascxml" src="judge.ascxml" />'
+    return {
+        "main.xml": f"""<roaml>
+    <parameters><max_time value="{seconds}" unit="s" /></parameters>
+    <node_models>{inputs}</node_models>
+    <properties>
+        <input type="xml" src="properties.xml" /><input type="jani" src="twins.jani" />
+    </properties>
+</roaml>""",
+        "coin.ascxml": COIN,
+        "judge.ascxml": JUDGE,
+        "properties.xml": f"<properties>{PORTS}<guarantees>{guarantees}</guarantees></properties>",
+        "twins.jani": json.dumps({"properties": list(twins)}),  # type: ignore[call-overload]
+    }
+
+
+def twin(name: str, path: object) -> dict[str, object]:
+    probability = {"op": "Pmin", "exp": path}
+    values = {"op": "filter", "fun": "values", "values": probability, "states": {"op": "initial"}}
+    return {"name": name, "expression": values}
+
+
+def translated(name: str) -> Model:
+    written, path = TWINS[name]
+    return api.to_jani(loaded(system(written.format(name), [twin("twin", path)])))
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_storm_gives_the_same(name: str) -> None:
+    model = translated(name)
+    observed, by_hand = exact(model, name), exact(model, "twin")
+    assert observed.least == pytest.approx(by_hand.least, abs=1e-6)
+    assert observed.greatest == pytest.approx(by_hand.greatest, abs=1e-6)
+    assert 0 < observed.least < 1
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_the_same_traces_satisfy_both(name: str) -> None:
+    options = Options(method="fixed", max_traces=300, seed=11)
+    one, other = api.verify(translated(name), [name, "twin"], options, only_uniform=True)
+    assert one.answer is not None
+    assert other.answer is not None
+    verdicts = [
+        {verdict: [seen.trace for seen in each] for verdict, each in answer.tally.examples.items()}
+        for answer in (one.answer, other.answer)
+    ]
+    assert verdicts[0] == verdicts[1]
+    assert 0 < one.answer.tally.successes < 300
+
+
+def test_other_properties_keep_their_answers() -> None:
+    """The model with an observer does what the model without it does."""
+    with_observer = translated("existence")
+    alone = api.to_jani(loaded(system("", [twin("twin", TWINS["existence"][1])])))
+    assert exact(alone, "twin").least == pytest.approx(exact(with_observer, "twin").least, abs=1e-9)
+    assert not any(action.name == TIME_OVER_ACTION for action in alone.actions)
+
+
+def test_an_observer_joins_what_is_there() -> None:
+    plain = api.to_jani(loaded(system("")))
+    model = translated("existence_until")
+    observer = model.automata[-1]
+    assert observer.name == "existence_until__observer"
+    assert [location.name for location in observer.locations] == ["observing"]
+    assert all(edge.guard is None and len(edge.destinations) == 1 for edge in observer.edges)
+    results = {sync.result for sync in plain.system.syncs}
+    assert {sync.result for sync in model.system.syncs} == results
+
+
+TIMED = """
+<property id="soon" pattern="existence"><event>whistle</event><scope type="globally" />
+    <time_interval time="20" time_unit="s" /></property>
+<property id="answered" pattern="response"><events><event>heads</event><event>whistle</event></events>
+    <scope type="globally" /><time_interval time="2500" time_unit="ms" /></property>
+"""
+
+
+def test_what_is_open_at_the_end_of_time_is_undecided() -> None:
+    model = api.to_jani(loaded(system(TIMED)))
+    options = Options(method="fixed", max_traces=200, seed=3)
+    soon, answered = api.verify(model, ["soon", "answered"], options, only_uniform=True)
+    assert soon.answer is not None
+    assert answered.answer is not None
+    assert soon.answer.failures == 0
+    assert soon.answer.tally.undecided > 0
+    assert answered.answer.failures > 0
+    assert answered.answer.tally.undecided > 0
+    assert soon.answer.bounds.upper == 1
+    # Other tools count what is open as satisfied.
+    assert exact(model, "soon").least == pytest.approx(1)
+
+
+def test_names_that_clash_are_changed() -> None:
+    clash = TWINS["existence"][0].format("topic_heads_msg")
+    model = api.to_jani(loaded(system(clash)))
+    names = [automaton.name for automaton in model.automata]
+    assert names[-1] == "topic_heads_msg___observer"
+    assert len(set(names)) == len(names)
+    assert model.properties[-1].name == "topic_heads_msg"
+
+
+def test_properties_are_chosen_by_name() -> None:
+    source = loaded(system(TIMED, [twin("twin", op("F", HEADS))]))
+    assert [p.name for p in api.to_jani(source).properties] == ["twin", "soon", "answered"]
+    assert [p.name for p in api.to_jani(source, ["answered"]).properties] == ["answered"]
+
+
+def test_a_file_with_assumptions_is_refused() -> None:
+    files = system("")
+    assumed = TWINS["existence"][0].format("assumed")
+    files["properties.xml"] = f"<properties>{PORTS}<assumes>{assumed}</assumes></properties>"
+    assert [error.code for error in errors(files)] == ["property-form"]
