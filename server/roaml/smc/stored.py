@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A tally that was stored in a file may have been changed there: whether it is one that traces can have given."""
+"""Validates a tally from a file, which may have been changed: whether traces can have produced it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import MAX_KEPT_TRACES, SPRT, Options, Seen, Tally
+from roaml.smc.run import KEPT, SPRT, Options, Seen, Tally
 
-_MAX_COUNT = 1 << 62
-"""No counter reaches this."""
+_MOST = 1 << 62
+"""A limit that no counter reaches."""
 
 
 def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
@@ -19,10 +19,10 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
 
     Args:
         value: from JSON.
-        question, options: what the traces were made for.
+        question, options: the question and the options of the traces.
 
     Raises:
-        ValueError: it is not of that form, or its numbers contradict one another; the message says where.
+        ValueError: it does not have that form, or its numbers contradict each other; the message states where.
     """
     shape = _row(value, "tally")
     for key in ("traces", "successes", "undecided", "steps"):
@@ -32,7 +32,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     _expect(shape.get("accepted") in (None, True, False), "accepted")
     mean = shape.get("mean")
     if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(each, str) for each in mean[1:]):
-        raise ValueError("`mean` cannot be so")
+        raise ValueError("`mean` is not possible")
     _whole(mean[0], "mean")
     for row in _row(shape.get("ends"), "ends").values():
         _expect(isinstance(row, list) and len(row) == 3, "ends")
@@ -42,7 +42,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     _expect(set(examples) == {str(verdict) for verdict in _VERDICTS}, "examples")
     _expect(set(shortest) <= set(examples), "shortest")
     for seen in examples.values():
-        _expect(isinstance(seen, list) and len(seen) <= MAX_KEPT_TRACES, "examples")
+        _expect(isinstance(seen, list) and len(seen) <= KEPT, "examples")
         for each in seen:
             _pair(each, "examples")
     for each in shortest.values():
@@ -50,7 +50,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
-        raise ValueError("it has not the form of a tally") from None
+        raise ValueError("it is not a tally") from None
     _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
     _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
     _check_sums(tally, question, options)
@@ -71,7 +71,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     total = 0
     for verdict, count in counts.items():
         seen = tally.examples[verdict]
-        _expect(len(seen) == min(count, MAX_KEPT_TRACES), "examples")
+        _expect(len(seen) == min(count, KEPT), "examples")
         _expect([each.trace for each in seen] == sorted({each.trace for each in seen}), "examples")
         numbers.update(each.trace for each in seen)
         total += sum(each.steps for each in seen)
@@ -79,7 +79,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
         if count:
             least: Seen = tally.shortest[verdict]
             first = min(seen, key=lambda each: (each.steps, each.trace))
-            _expect(least == first if count <= MAX_KEPT_TRACES else least.steps <= first.steps, "shortest")
+            _expect(least == first if count <= KEPT else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.traces, "shortest")
         _expect(all(each.trace < tally.traces and each.steps <= options.max_steps for each in seen), "examples")
     _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
@@ -91,7 +91,7 @@ _VERDICTS = (TRUE, FALSE, UNKNOWN)
 
 def _expect(holds: bool, key: str) -> None:
     if not holds:
-        raise ValueError(f"`{key}` cannot be so")
+        raise ValueError(f"`{key}` is not possible")
 
 
 def _row(value: Any, key: str) -> dict[str, Any]:
@@ -101,7 +101,7 @@ def _row(value: Any, key: str) -> dict[str, Any]:
 
 
 def _whole(value: Any, key: str) -> None:
-    _expect(isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MAX_COUNT, key)
+    _expect(isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MOST, key)
 
 
 def _pair(value: Any, key: str) -> None:
