@@ -21,8 +21,8 @@ AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
 """The time before the first event of a machine."""
 
-MAX_ALTERNATIVES = 6
-MAX_EVENTS = 4
+MOST_ALTERNATIVES = 6
+MOST_EVENTS = 4
 REPEATED = (
     ProtocolPart.MESSAGE,
     ProtocolPart.EVENT,
@@ -211,8 +211,8 @@ def _least(masks: Iterable[int]) -> tuple[int, ...]:
     """Without sets that contain another one; if there are many, only the smallest."""
     found: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
-        if mask.bit_count() > MAX_EVENTS:
+        if mask.bit_count() > MOST_EVENTS:
             break
         if not any(known & mask == known for known in found):
             found.append(mask)
-    return tuple(found[:MAX_ALTERNATIVES])
+    return tuple(found[:MOST_ALTERNATIVES])
