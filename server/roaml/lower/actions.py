@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton): one goal
-is decided on at a time.
+"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton), which
+decides on one goal at a time.
 
-A client is known by its goal id, its place among the clients of the action.
+A client is identified by its goal id, its index among the clients of the action.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def action_handler(action: Channel, program: TranslatableSystem) -> Automaton:
         State("goal_requested", (), (), decided, origin),
     )
     int32 = BASE_TYPES["int32"]
-    own = tuple(Data(each, int32, zero(int32), origin) for each in (GOAL_ID, CODE))
+    own = tuple(Data(variable, int32, zero(int32), origin) for variable in (GOAL_ID, CODE))
     data = (*variables({**goal, **feedback, **result}, origin), *own)
     return Automaton(f"{ACTION_HANDLER_PREFIX}{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
 

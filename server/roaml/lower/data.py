@@ -42,7 +42,7 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
 
 
 def as_type(value: Expr, element: Type) -> Expr:
-    """Literals of a real type are reals, also those written without a point
+    """Literals of a real type are reals, including those written without a point
     (docs/spec/plain-scxml.md#initial-reals)."""
     if not is_kind(element, "real"):
         return value
@@ -52,5 +52,5 @@ def as_type(value: Expr, element: Type) -> Expr:
         case Unary():
             return replace(value, operand=as_type(value.operand, element))
         case ArrayLiteral():
-            return replace(value, elements=tuple(as_type(each, element) for each in value.elements))
+            return replace(value, elements=tuple(as_type(item, element) for item in value.elements))
     return value

@@ -109,15 +109,15 @@ class ActionEvents:
 def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> dict[str, Type]:
     """The leaf fields of a part of a service or action as event parameters, in the order of the ROS definition.
 
-    Fields that need not be set (`InterfaceType.optional`) count only if somebody sends them.
+    Fields that need not be set (`InterfaceType.optional`) are included only if an automaton sends them.
     """
     sent = set[str]().union(*(sent_parameters(endpoint, part) for endpoint in channel.endpoints))
     for endpoint in channel.endpoints:
         interface = environment.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
         if interface is not None:
             required = {parameter(path.split(".")) for path in interface.required(section_of(part))}
-            found = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
-            return {name: type_ for name, type_ in found.items() if name in required or name in sent}
+            parameters = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
+            return {name: type_ for name, type_ in parameters.items() if name in required or name in sent}
     return {}
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Timers and the clock that makes them tick (docs/spec/plain-scxml.md#time).
+"""Timers and the clock that makes them fire (docs/spec/plain-scxml.md#time).
 
-- Times are integers throughout: no rounding beyond that of the periods, which is the reference's.
-- Every automaton that uses a timer gets ticks of its own; in the usual case of one user the event has the timer's name.
+- Times are integers throughout: nothing is rounded except the periods, as in the reference translator.
+- Every automaton that uses a timer has its own ticks; in the common case of one user the event has the timer's name.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class Timer:
-    """A timer of one automaton. `event` is None if nothing waits for its ticks.
+    """A timer of one automaton. `event` is `None` if nothing waits for its ticks.
 
     Attributes:
-        user: the plain automaton that it ticks for.
+        user: the plain automaton for which it fires.
         handle: its name there.
     """
 
@@ -65,18 +65,18 @@ class Timer:
 
 def timers_of(program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]]) -> list[Timer]:
     """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
-    found: list[tuple[str, str, Fraction, bool, Location]] = []
+    declared: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
     for automaton, machine in members:
-        (found if automaton.instance is None else in_tree).extend(_declared(automaton, machine, program))
+        (declared if automaton.instance is None else in_tree).extend(_declared(automaton, machine, program))
     if program.system.instances:
         rate = Fraction(str(program.parameters.tick_rate))
-        found.append((*tick_timer(program), rate, True, program.node(ROOT_NUMBER)))
-    found += in_tree
-    handles = [handle for _, handle, _, used, _ in found if used]
+        declared.append((*tick_timer(program), rate, True, program.node(ROOT_NUMBER)))
+    declared += in_tree
+    handles = [handle for _, handle, _, used, _ in declared if used]
     return [
         Timer(user, handle, _event(user, handle, handles.count(handle) == 1) if used else None, period(rate), origin)
-        for user, handle, rate, used, origin in found
+        for user, handle, rate, used, origin in declared
     ]
 
 
@@ -100,7 +100,7 @@ def _declared(
 
 
 def _awaited(chart: Chart) -> set[str]:
-    """The timers that a chart has callbacks for."""
+    """The timers for which a chart has callbacks."""
     return {
         handler.handle.value
         for state in chart.states
@@ -112,9 +112,9 @@ def _awaited(chart: Chart) -> set[str]:
 def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
     text = declaration.rate.value if isinstance(declaration.rate, Name) else ""
     port = declaration.rate.key.value if isinstance(declaration.rate, PortRead) and declaration.rate.key else ""
-    found = rate(automaton, text, port)
-    assert found is not None, "a rule reports what is no rate"
-    return found
+    hertz = rate(automaton, text, port)
+    assert hertz is not None, "a rule reports what is no rate"
+    return hertz
 
 
 # ------------------------------------------------------------------- the clock
@@ -124,7 +124,7 @@ STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
 def clock(timers: list[Timer], program: TranslatableSystem) -> PlainAutomaton:
-    """The automaton that counts the time and makes timers tick."""
+    """The automaton that counts the time and makes timers fire."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
     step = math.gcd(*periods)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as they are checked (docs/spec/jani.md#properties).
+"""Properties in the form in which they are checked (docs/spec/jani.md#properties).
 
-- Comparisons with an array literal are spelled out.
-- Bounds on time and rewards stay as they are, although the model counts steps and has no rewards: `roaml.smc.forms`
-  says so of each property that has some. Without its bounds, a property would ask another question.
+- Comparisons with an array literal are expanded.
+- Bounds on time and rewards are kept, although the model counts steps and has no rewards: `roaml.smc.forms` reports
+  properties with them. Without its bounds, a property would have another meaning.
 - Only path formulas and operators keep their comments.
 """
 
@@ -47,9 +47,9 @@ def _stored(expression: Expression, variables: Mapping[str, ArrayShape]) -> Stor
         expression = expression.array
     if not isinstance(expression, Name) or expression.identifier not in variables:
         return None
-    found = Stored(expression.identifier, variables[expression.identifier], tuple(indexes))
-    return found if found.dimensions > 0 else None
+    stored = Stored(expression.identifier, variables[expression.identifier], tuple(indexes))
+    return stored if stored.dimensions > 0 else None
 
 
 def _listed(value: ArrayValue) -> Listed:
-    return Listed(tuple(_listed(each) if isinstance(each, ArrayValue) else each for each in value.elements))
+    return Listed(tuple(_listed(item) if isinstance(item, ArrayValue) else item for item in value.elements))

@@ -25,9 +25,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for declaration, channel in unused:
             if not system.may(other_kind(kind).value, channel.name):
                 close = close_names(channel.name, unserved)
-                message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
+                message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
                 yield RULE.at(name_span(declaration), message, *fixes)
 
 
-RULE = Rule("missing-client", Severity.WARNING, "A service or action is served that nobody uses.", machine=check)
+RULE = Rule("missing-client", Severity.WARNING, "No machine uses a service or action that is served.", machine=check)
