@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The faces of `roaml`: the language server and the command line."""
+"""The user interfaces of `roaml`: the language server and the command line."""

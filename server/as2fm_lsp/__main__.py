@@ -15,10 +15,10 @@ def main() -> None:
 
 
 def spare_the_collector() -> None:
-    """Let Python look for garbage in cycles less often.
+    """Reduce the frequency of cyclic garbage collection.
 
-    Our trees are large, and next to nothing in them is cyclic. At its own pace the collector takes a sixth of the time
-    of a check, more the larger the system, and makes every fifth key in an editor wait for 80 ms.
+    Our trees are large and contain almost no cycles. With the default thresholds, the collector takes a sixth of the
+    time of a check, more for larger systems, and delays every fifth keystroke in an editor by 80 ms.
     """
     gc.set_threshold(50_000)
 

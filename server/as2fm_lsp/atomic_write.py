@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writing files whole or not at all.
+"""Atomic writes of files.
 
-A file is written under another name, `.as2fm-writing-…` beside it, and then renamed. The writer holds a lock on it. A
-file of such a name without a lock was left behind by a killed process. The next one that writes there removes it.
+A file is written under another name, `.as2fm-writing-…`, in the same folder, and then renamed. The writer holds a lock
+on it. A file with such a name and without a lock was left behind by a killed process; the next writer in the folder
+removes it.
 """
 
 from __future__ import annotations
@@ -14,20 +15,20 @@ from collections.abc import Iterable
 
 try:
     import fcntl
-except ImportError:  # Windows, where what is left behind stays
+except ImportError:  # Windows, where leftover files remain
     fcntl = None  # type: ignore[assignment]
 
 PREFIX = ".as2fm-writing-"
 
 
 def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
-    """Write a file so that it is complete or, if anything fails, as it was before. Links are followed.
+    """Write a file so that it is complete or, after a failure, unchanged. Links are followed.
 
     Args:
-        content: all of it, or its text in pieces, which are not held together.
+        content: the whole content, or its text in pieces, which are not joined in memory.
 
     Raises:
-        OSError: it cannot be written; `filename` is `path`.
+        OSError: the file cannot be written; `filename` is `path`.
     """
     pieces = [content] if isinstance(content, (str, bytes)) else content
     data = (piece.encode("utf-8", "backslashreplace") if isinstance(piece, str) else piece for piece in pieces)
@@ -38,7 +39,7 @@ def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
         else:
             _replace(os.path.realpath(path), data)
     except OSError as error:
-        # Not the name of a file that nobody has asked for, nor none at all, as of a full disk.
+        # Report the requested name, not the temporary one, nor none at all, as for a full disk.
         error.filename, error.filename2 = path, None
         raise
 
@@ -48,7 +49,7 @@ def _replace(path: str, data: Iterable[bytes]) -> None:
     folder = os.path.dirname(path)
     sweep(folder)
     handle, temporary = _temporary(folder)
-    # The lock outlives `close`, which may be what fails. Windows has none, and renames no file that is open.
+    # The lock is kept until after `close`, which may fail. Windows has no locks, and cannot rename an open file.
     locked = None if fcntl is None else os.dup(handle)
     try:
         with open(handle, "wb") as file:
@@ -73,11 +74,11 @@ def _temporary(folder: str) -> tuple[int, str]:
                 fcntl.flock(handle, fcntl.LOCK_EX)
         if fcntl is None or os.fstat(handle).st_nlink:
             return handle, path
-        os.close(handle)  # it was swept away before it was locked
+        os.close(handle)  # it was removed before it was locked
 
 
 def sweep(folder: str) -> None:
-    """Remove from a folder what killed processes were writing."""
+    """Remove the leftover files of killed processes from a folder."""
     if fcntl is None:
         return
     try:
@@ -91,9 +92,8 @@ def sweep(folder: str) -> None:
 
 
 def _remove_unlocked(path: str) -> None:
-    """
-    Raises:
-        OSError: somebody is writing the file, or it cannot be removed.
+    """Raises:
+    OSError: another process is writing the file, or it cannot be removed.
     """
     handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     try:

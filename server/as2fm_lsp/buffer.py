@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The text of an open document, exactly as the client has it, and the edits that the client makes in it.
+"""The text of an open document, exactly as the client has it, and the client's edits.
 
-- Lines end at LF, CRLF and CR and nowhere else, as the protocol says; `str.splitlines` knows more ends.
-- A position beyond the end of a line or of the text is moved back to it.
-- A byte order mark at the beginning is part of the text here. Analyses see the text without it, and `Converter` adds it
+- Lines end at LF, CRLF and CR only, as in the protocol; `str.splitlines` splits at other characters as well.
+- A position beyond the end of a line or of the text is replaced by that end.
+- A byte order mark at the beginning is part of the text here. Analyses get the text without it, and `Converter` adds it
   to the columns of the first line again.
-- In UTF-16 a client may cut a character in two, for half a character is a unit like any other there.
+- In UTF-16 a client may split a character in two, because half a character is a unit there.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Units:
         self.may_cut = self._encoding is types.PositionEncodingKind.Utf16
 
     def count(self, text: str) -> int:
-        """How many units `text` has."""
+        """The number of units of `text`."""
         if self._encoding is types.PositionEncodingKind.Utf32 or text.isascii():
             return len(text)
         if self._encoding is types.PositionEncodingKind.Utf8:
@@ -41,8 +41,8 @@ class Units:
         return len(text) + sum(character > "\uffff" for character in text)
 
     def column(self, line: str, units: int) -> tuple[int, bool]:
-        """The column in code points at `units` units, and whether that is inside of the character there. A column
-        beyond the end of the line is moved back to it."""
+        """The column in code points at `units` units, and whether the position is inside of the character there. A
+        column beyond the end of the line is replaced by the end."""
         if self._encoding is types.PositionEncodingKind.Utf32 or line.isascii():
             return min(units, len(line)), False
         done = 0
@@ -66,7 +66,7 @@ class Units:
 
 
 def edited(text: str, range_: types.Range, new_text: str, units: Units) -> str:
-    """`text` with `new_text` in place of a range."""
+    """`text` with a range replaced by `new_text`."""
     lines = LineIndex(text)
     start, end = sorted((units.place(text, lines, range_.start), units.place(text, lines, range_.end)))
     before, after = text[: start[0]], text[end[0] :]
@@ -81,11 +81,11 @@ def edited(text: str, range_: types.Range, new_text: str, units: Units) -> str:
 
 
 def _halves(character: str) -> str:
-    """The two surrogates that a character beyond U+FFFF is made of in UTF-16."""
+    """The two UTF-16 surrogates of a character beyond U+FFFF."""
     code = ord(character) - 0x10000
     return chr(0xD800 + (code >> 10)) + chr(0xDC00 + (code & 0x3FF))
 
 
 def _joined(text: str) -> str:
-    """Two surrogates that have met are one character."""
+    """Join two adjacent surrogates to one character."""
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The client: what it can do, and what it is told and asked."""
+"""The client: its capabilities, and the notifications and requests to it."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ SECTION = "as2fm"
 
 
 class Client:
-    """Args:
-    endpoint: the connection.
+    """The client.
+
+    Args:
+        endpoint: the connection.
 
     Attributes:
         show_references: the command of the client that shows places; "" if it has none.
-        show_counterexample: the one that shows why a property fails.
-        trigger_suggest: the one that asks for completions.
+        show_counterexample: the command that explains why a property fails.
+        trigger_suggest: the command that requests completions.
     """
 
     def __init__(self, endpoint: Endpoint) -> None:
@@ -34,7 +36,7 @@ class Client:
         self._endpoint = endpoint
 
     def use_commands(self, options: Mapping[str, Any]) -> None:
-        """Take over the names of the client's commands from its `initializationOptions`."""
+        """Read the names of the client's commands from its `initializationOptions`."""
         self.show_references = str(options.get("showReferences") or "")
         self.show_counterexample = str(options.get("showCounterexample") or "")
         self.trigger_suggest = str(options.get("triggerSuggest") or "")
@@ -47,12 +49,12 @@ class Client:
 
     @property
     def position_encoding(self) -> types.PositionEncodingKind:
-        """The encoding that was agreed on."""
+        """The negotiated encoding of positions."""
         return types.PositionEncodingKind(self._endpoint.workspace.position_encoding)
 
     @property
     def folders(self) -> tuple[str, ...]:
-        """The URIs of the folders that are open."""
+        """The URIs of the open folders."""
         return tuple(folder.uri for folder in self._endpoint.workspace.folders.values())
 
     # ---------------------------------------------------------- notifications
@@ -73,7 +75,7 @@ class Client:
             await self._endpoint.window_show_document_async(params)
 
     def refresh_diagnostics(self) -> None:
-        """Diagnostics have changed that the client fetches by itself."""
+        """The diagnostics that the client fetches itself have changed."""
         workspace = self.capabilities.workspace
         if workspace is not None and workspace.diagnostics and workspace.diagnostics.refresh_support:
             self._endpoint.workspace_diagnostic_refresh(None)
@@ -85,20 +87,20 @@ class Client:
         self._endpoint.workspace_code_lens_refresh(None)
 
     async def settings(self) -> dict[str, Any] | None:
-        """The client's settings; None if it cannot be asked for them."""
+        """The client's settings; `None` if it does not support the request."""
         workspace = self.capabilities.workspace
         if workspace is None or not workspace.configuration:
             return None
         item = types.ConfigurationItem(section=SECTION)
         try:
             answer: Any = await self._endpoint.workspace_configuration_async(types.ConfigurationParams([item]))
-        except Exception as error:  # a client that cannot answer is as good as one without settings
+        except Exception as error:  # a client that cannot answer is treated like one without settings
             log.warning("the client's settings cannot be read: %s", error)
             return None
         return answer[0] if answer and isinstance(answer[0], dict) else {}
 
     async def watch_files(self, patterns: Iterable[str]) -> None:
-        """Be told of changes on the disk, if the client can do so."""
+        """Subscribe to changes on the disk, if the client supports it."""
         workspace = self.capabilities.workspace
         watched = workspace.did_change_watched_files if workspace else None
         if watched is None or not watched.dynamic_registration:
@@ -108,15 +110,14 @@ class Client:
         registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
         try:
             await self._endpoint.client_register_capability_async(types.RegistrationParams([registration]))
-        except Exception as error:  # without it, files are looked at again with each change of a document
+        except Exception as error:  # without it, files are checked again with each change of a document
             log.warning("files cannot be watched: %s", error)
 
     # --------------------------------------------------------------- progress
 
     async def create_progress(self, token: str) -> None:
-        """
-        Raises:
-            Exception: the client does not show it.
+        """Raises:
+        Exception: the client does not support it.
         """
         await self._endpoint.work_done_progress.create_async(token)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What handlers are given: the models, the client, and where they register themselves."""
+"""The context of handlers: the models, the client, and the registration."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Command = TypeVar("Command", bound=Callable[..., Awaitable[Any]])
 
 
 class Dispatcher(Protocol):
-    """Calls handlers when messages come."""
+    """Calls handlers when messages arrive."""
 
     def on(self, method: str, handler: Callable[..., Any], options: object = None) -> None: ...
 
@@ -35,12 +35,12 @@ class Context:
 
     Attributes:
         session: open documents, folders, settings.
-        client: what the client can do; notifications and requests to it.
-        requests: whether an answer is still wanted.
+        client: the client's capabilities; notifications and requests to it.
+        requests: whether an answer is still needed.
         progress: shows long work at the client.
-        diagnostics: when they are computed and sent.
-        results: what is known of properties.
-        refresh: asks the client to ask again for hints and lenses.
+        diagnostics: computes and sends diagnostics.
+        results: the known results of properties.
+        refresh: asks the client to request hints and lenses again.
         trust: whether the user trusts the workspace.
     """
 
@@ -66,7 +66,7 @@ class Context:
     def command(self, name: str, *, needs_trust: bool = True) -> Callable[[Command], Command]:
         """Register the decorated coroutine function as a command.
 
-        Most commands write files or work for long: they need a workspace that is trusted.
+        Most commands write files or run for a long time, so they require a trusted workspace.
         """
 
         def register(handler: Command) -> Command:

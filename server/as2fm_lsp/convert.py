@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Between the library's plain data and the protocol's types.
+"""Conversion between the library's plain data and the protocol's types.
 
-Columns in UTF-8 and UTF-16 are known here and in `buffer` only.
+Columns in UTF-8 and UTF-16 exist only here and in `buffer`.
 
-- A document without a file (`untitled:…`) has its URI as its path.
-- Documents are named back to the client by the very URI that it used.
+- The path of a document without a file (`untitled:…`) is its URI.
+- Documents are identified to the client by exactly the URI that it used.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _TAGS: Mapping[Tag, types.DiagnosticTag] = {
 
 
 class Converter:
-    """Converts in the position encoding that was agreed on with the client: `utf-8`, `utf-16` or `utf-32`."""
+    """Converts in the position encoding that was negotiated with the client: `utf-8`, `utf-16` or `utf-32`."""
 
     def __init__(self, encoding: str = types.PositionEncodingKind.Utf16) -> None:
         self.units = Units(encoding)
@@ -46,8 +46,7 @@ class Converter:
     # ----------------------------------------------------------------- paths
 
     def path(self, uri: str) -> str:
-        """The path of a document; its URI if no file can have that name. The URI is remembered as the name of that
-        path."""
+        """The path of a document; its URI if it is not a file name. The URI is stored as the name of that path."""
         path = _file(uri) or uri
         self._uris[path] = uri
         return path
@@ -59,8 +58,8 @@ class Converter:
     # ------------------------------------------------------------- positions
 
     def mark(self, path: str, is_marked: bool) -> None:
-        """Whether the client has a byte order mark before the text of a document. It counts in the columns of the first
-        line and is not part of the text."""
+        """Whether the client has a byte order mark before the text of a document. It is included in the columns of the
+        first line and is not part of the text."""
         (self._marked.add if is_marked else self._marked.discard)(path)
 
     def position(self, source: SourceFile, offset: int) -> types.Position:
@@ -73,8 +72,8 @@ class Converter:
         return types.Range(self.position(source, span.start), self.position(source, span.end))
 
     def columns(self, source: SourceFile, spans: Iterable[Span]) -> Iterator[tuple[int, int, int]]:
-        """The line and the first and last column of each span; none goes over the end of a line. Quicker than `range`,
-        for whole files."""
+        """The line and the first and last column of each span; none extends over the end of a line. Faster than
+        `range`, for whole files."""
         text, lines = source.text, source.lines
         units = len if text.isascii() else self.units.count
         line = begin = following = hidden = 0
@@ -87,7 +86,7 @@ class Converter:
             yield line, first, first + units(text[start:end])
 
     def offset(self, source: SourceFile, position: types.Position) -> int:
-        """The offset of a position; positions behind the end of a line or of the text are moved back to it."""
+        """The offset of a position; positions beyond the end of a line or of the text are replaced by that end."""
         column = max(0, position.character - self._hidden(source, position.line))
         return self.units.place(source.text, source.lines, types.Position(position.line, column))[0]
 
@@ -96,7 +95,7 @@ class Converter:
         return Span(min(start, end), max(start, end))
 
     def _hidden(self, source: SourceFile, line: int) -> int:
-        """How many units the client has before the text of a line."""
+        """The number of units that the client has before the text of a line."""
         return self.units.count(MARK) if line == 0 and source.path in self._marked else 0
 
     # ----------------------------------------------------------- diagnostics
@@ -104,7 +103,7 @@ class Converter:
     def diagnostic(
         self, diagnostic: Diagnostic, source: SourceFile, sources: Mapping[str, SourceFile]
     ) -> types.Diagnostic:
-        """`sources` are the texts of the files in which related places lie."""
+        """`sources` are the texts of the files that contain related places."""
         related = [
             types.DiagnosticRelatedInformation(
                 types.Location(self.uri(r.location.path), self.range(sources[r.location.path], r.location.span)),
@@ -133,17 +132,17 @@ class Converter:
 
 
 def _file(uri: str) -> str:
-    """The absolute path of the file that a URI names; empty if it names none."""
+    """The absolute path of the file of a URI; "" if it is not the URI of a file."""
     if not uri.startswith("file:"):
         return ""
     try:
         path = os.path.normpath(uris.to_fs_path(uri) or "")
         os.fsencode(path)
-    except ValueError:  # no URI after all, or what no system can encode
+    except ValueError:  # not a valid URI, or one that the system cannot encode
         return ""
     return path if os.path.isabs(path) and "\0" not in path else ""
 
 
 def rule_uri(code: str) -> str:
-    """The document of a rule, as it is installed beside the server: it needs no network and fits the version."""
+    """The document of a rule, as installed with the server: it needs no network and has the right version."""
     return document_file(code).as_uri()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """When diagnostics are computed and how they reach the client.
 
-- The newest text wins: a change cancels what was still to be done for older ones. The changed file comes first, then
+- The newest text takes precedence: a change cancels the pending work for older ones. The changed file is first, then
   the other files of its workspace.
-- Whatever the client sends goes before: the work gives way to it, and what was computed before stays known.
-- A file is published only when its diagnostics differ from what the client already has.
+- Messages of the client take precedence: the work yields to them, and its results so far are kept.
+- A file is published only when its diagnostics differ from those that the client already has.
 """
 
 from __future__ import annotations
@@ -65,9 +65,8 @@ class Diagnostics:
         self._all_waiting = False
 
     def checkpoint(self) -> None:
-        """
-        Raises:
-            Interrupted: a message has come.
+        """Raises:
+        Interrupted: a message has arrived.
         """
         if self._gives_way and self._inbox.waiting:
             raise Interrupted
@@ -75,7 +74,7 @@ class Diagnostics:
     # ------------------------------------------------------------------ push
 
     def schedule(self, *paths: str) -> None:
-        """Files have changed; none are named if any may have."""
+        """Files have changed; if none are given, any may have changed."""
         self._all_waiting |= not paths
         self._waiting = dict.fromkeys((*paths, *self._waiting))
         if self._task is not None:
@@ -95,7 +94,7 @@ class Diagnostics:
         await self._prepare()
 
     async def _prepare(self) -> None:
-        """While nobody waits: find out what the next question is likely to need, and clear away."""
+        """While idle: compute what the next request is likely to need, and collect garbage."""
         moment = self.session.moment()
         for path in await self._giving_way(moment.files):
             analysis = moment.snapshot(path).analysis
@@ -124,13 +123,13 @@ class Diagnostics:
     async def _check(self, moment: Moment, path: str) -> None:
         try:
             diagnostics = await self._giving_way(lambda: self.of(moment, path))
-        except Exception:  # a failure of ours in one file must not keep the others from being checked
+        except Exception:  # a crash in one file must not prevent the check of the others
             log.exception("%s cannot be checked", path)
         else:
             self._send(path, diagnostics, moment.versions.get(path))
 
     async def _giving_way(self, compute: Callable[[], T]) -> T:
-        """What is computed between messages. Under a steady stream of them, it is not interrupted for ever."""
+        """A computation between messages. Under a steady stream of messages, it is not interrupted for ever."""
         for _ in range(MAX_INTERRUPTIONS):
             await self._let_messages_by()
             self._gives_way = True
@@ -158,7 +157,7 @@ class Diagnostics:
     # ------------------------------------------------------------------ pull
 
     def of(self, moment: Moment, path: str) -> list[types.Diagnostic]:
-        """The diagnostics of a file, as the client takes them. None of a file that is not there."""
+        """The diagnostics of a file, in the protocol's types; empty if the file does not exist."""
         snapshot = moment.snapshot(path)
         source = snapshot.analysis.source(path)
         if source is None:
@@ -168,7 +167,7 @@ class Diagnostics:
     def converted(
         self, snapshot: Snapshot, source: SourceFile, diagnostics: Iterable[Diagnostic]
     ) -> list[types.Diagnostic]:
-        """Diagnostics of a file, as the client takes them."""
+        """Diagnostics of a file, in the protocol's types."""
         diagnostics = tuple(diagnostics)
         related = {r.location.path for d in diagnostics for r in d.related}
         sources: dict[str, SourceFile] = {p: s for p in related if (s := snapshot.analysis.source(p)) is not None}
@@ -203,5 +202,5 @@ class Diagnostics:
 
 
 def result_id(diagnostics: list[types.Diagnostic]) -> str:
-    """Equal diagnostics, equal id."""
+    """Equal diagnostics have equal ids."""
     return hashlib.blake2b(repr(diagnostics).encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which hints and lenses the user wants to see: `as2fm.inlayHints` and `as2fm.codeLens` of the client's settings.
+"""Which hints and lenses are shown: `as2fm.inlayHints` and `as2fm.codeLens` of the client's settings.
 
     {"inlayHints": {"types": false}, "codeLens": {"references": false}}
 
-Each may also be a plain true or false. What is not said is as below; what makes no sense counts as not said.
+Each may also be a plain true or false. Missing and invalid values have the defaults below.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ OFF_BY_DEFAULT = frozenset([HintKind.PORTS])
 
 @dataclass(frozen=True, slots=True)
 class DisplaySettings:
-    """`references`: whether lenses count uses; `results`: whether hints tell what is known of properties."""
+    """`references`: whether lenses show numbers of uses; `results`: whether hints show results of properties."""
 
     hints: frozenset[HintKind]
     references: bool
@@ -26,9 +26,10 @@ class DisplaySettings:
 
 
 def display_settings(settings: object) -> DisplaySettings:
-    """
+    """The display settings.
+
     Args:
-        settings: the client's settings, as they came.
+        settings: the client's settings, as received.
     """
     hints = frozenset(k for k in HintKind if _is_on(settings, "inlayHints", k.value, k not in OFF_BY_DEFAULT))
     references = _is_on(settings, "codeLens", "references", True)

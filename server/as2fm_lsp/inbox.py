@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages that have been read and are not yet handled.
 
-- They are read in a thread of their own, so that they are here while something is computed; they are handled one after
-  the other, in their order, on the event loop.
-- What is cancelled is known from the moment at which the cancellation is read, though its turn is still to come.
+- A separate thread reads them, so that they are available during computations; they are handled one after the other, in
+  their order, on the event loop.
+- A request is cancelled from the moment at which the cancellation is read, although its turn is later.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from lsprotocol import types
 log = logging.getLogger(__name__)
 
 _LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
-"""Also behind the rest of what is no message, so that the message after it is found."""
+"""Also matches after the rest of an invalid message, so that the next message is found."""
 
 _FIELD = re.compile(rb"[A-Za-z-]+:")
-"""How a line of a header begins."""
+"""The beginning of a header line."""
 
 MAX_MESSAGE_BYTES = 1 << 28
 """What claims to be longer is no message."""
@@ -38,7 +38,8 @@ CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CAN
 
 
 class Inbox:
-    """`alive` are the ids of requests and the tokens of work that can still be cancelled, besides what waits here."""
+    """`alive` are the ids of requests and the tokens of work that can still be cancelled, in addition to those in the
+    queue."""
 
     def __init__(self) -> None:
         self.alive: set[object] = set()
@@ -51,13 +52,13 @@ class Inbox:
     # ---------------------------------------------------------------- filling
 
     def fill_from(self, stream: BinaryIO) -> None:
-        """Read a stream to its end, in a thread that the process does not wait for."""
+        """Read a stream to its end, in a daemon thread."""
         loop = asyncio.get_running_loop()
 
         def tell() -> None:
             try:
                 loop.call_soon_threadsafe(self._news.set)
-            except RuntimeError:  # the loop is closed: nobody is left to be told
+            except RuntimeError:  # the loop is closed: there is no receiver left
                 return
 
         self._tell = tell
@@ -75,7 +76,7 @@ class Inbox:
         threading.Thread(target=read, name="inbox", daemon=True).start()
 
     def end(self) -> None:
-        """Nothing more comes, in whatever thread that is found out."""
+        """Signal the end of the messages, from any thread."""
         self._ended = True
         self._tell()
 
@@ -93,15 +94,15 @@ class Inbox:
 
     @property
     def waiting(self) -> bool:
-        """Whether there is a message whose turn has not come."""
+        """Whether there is a pending message."""
         return bool(self._messages)
 
     def is_cancelled(self, id_: object) -> bool:
-        """Whether a request, or work with a token, is not wanted any more."""
+        """Whether a request, or work with a token, has been cancelled."""
         return id_ in self._cancelled
 
     def will_change(self, uri: str) -> bool:
-        """Whether a change of a document waits here."""
+        """Whether a change of a document is pending."""
         return any(_changes(message, uri) for message in tuple(self._messages))
 
     # ----------------------------------------------------------------- taking
@@ -110,7 +111,7 @@ class Inbox:
         return self
 
     async def __anext__(self) -> Any:
-        """The next message as plain data; the error if it is no JSON."""
+        """The next message as plain data; the error if it is not JSON."""
         while not self._messages:
             if self._ended:
                 raise StopAsyncIteration
@@ -130,14 +131,14 @@ class Inbox:
 
 
 def bodies(stream: BinaryIO) -> Iterator[bytes]:
-    """The bodies of the messages in a stream; what is no message is passed over."""
+    """The bodies of the messages in a stream; invalid data are skipped."""
     length = 0
     for line in iter(partial(stream.readline, _MAX_LINE_BYTES), b""):
         match = _LENGTH.fullmatch(line)
         if match:
             length = int(match[1])
         elif line.strip():
-            length = length if _FIELD.match(line) else 0  # the header has ended without an end
+            length = length if _FIELD.match(line) else 0  # the header has ended without a length
         elif length:
             if length <= MAX_MESSAGE_BYTES:
                 body = b"".join(_pieces(stream, length))
@@ -148,14 +149,14 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
 
 
 def _pieces(stream: BinaryIO, length: int) -> Iterator[bytes]:
-    """Memory is taken for what is there, not for what is announced."""
+    """Memory is allocated for received data, not for the announced length."""
     while length and (piece := stream.read(min(length, _PIECE_BYTES))):
         length -= len(piece)
         yield piece
 
 
 def _params(message: object, *methods: str) -> dict[str, Any] | None:
-    """The parameters of a message if its method is one of these."""
+    """The parameters of a message if it has one of these methods."""
     if isinstance(message, dict) and message.get("method") in methods and isinstance(message.get("params"), dict):
         params: dict[str, Any] = message["params"]
         return params
@@ -163,7 +164,7 @@ def _params(message: object, *methods: str) -> dict[str, Any] | None:
 
 
 def _cancelled(message: object) -> str | int | None:
-    """The id or token of what a message cancels."""
+    """The id or token of the request or work that a message cancels."""
     params = _params(message, *CANCELLATIONS)
     if params is None or not isinstance(message, dict):
         return None
@@ -172,7 +173,7 @@ def _cancelled(message: object) -> str | int | None:
 
 
 def is_id(value: object) -> TypeGuard[int | str]:
-    """Whether a request can have this id, or work this token."""
+    """Whether a value is a valid id of a request, or token of work."""
     return isinstance(value, (int, str)) and not isinstance(value, bool)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JUnit XML, which continuous integration reads as results of tests."""
+"""JUnit XML, the format of test results for continuous integration."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Case:
     """A test.
 
     Attributes:
-        text: what it printed; nothing is written if it is empty and the test passed.
+        text: its output; omitted if it is empty and the test passed.
         message: why it failed, in one line.
         type: the kind of the failure.
-        seconds: how long it took, if that is known.
+        seconds: its duration in s, if known.
         properties: further facts, as names and values.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Texts in the form that the client shows: Markdown, or the same without marks."""
+"""Texts in a format that the client supports: Markdown or plain text."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from roaml.ide.describe.markdown import plain
 
 
 def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent:
-    """`formats` are those that the client has declared, what it likes best first; without any it gets plain text."""
+    """`formats` are those that the client has declared, the preferred one first; the default is plain text."""
     if formats and formats[0] == types.MarkupKind.Markdown:
         return types.MarkupContent(types.MarkupKind.Markdown, text)
     return types.MarkupContent(types.MarkupKind.PlainText, plain(text))
 
 
 def documentation(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent | str:
-    """The same where a client that has declared nothing takes a plain string."""
+    """The same for requests in which a client without declared formats gets a plain string."""
     return content(text, formats) if formats else plain(text)

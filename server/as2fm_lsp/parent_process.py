@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the process that has started the server is still alive."""
+"""Whether the process that has started the server is still running."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def watch(process_id: int, ended: Callable[[], None]) -> None:
 
 
 def wait_for_end(process_id: int) -> None:
-    """Return when a process has ended, also if nobody has asked for its exit status yet."""
+    """Return when a process has ended, even if its exit status has not been read yet."""
     if sys.platform == "win32":
         _wait_on_windows(process_id)
     elif hasattr(os, "pidfd_open"):
@@ -51,7 +51,7 @@ def _wait_on_linux(process_id: int) -> None:
         descriptor = os.pidfd_open(process_id)
     except ProcessLookupError:
         return
-    except (OSError, OverflowError):  # an old kernel, or one that forbids it
+    except (OSError, OverflowError):  # an old kernel, or one that does not allow it
         _look_again_and_again(process_id)
         return
     try:
@@ -68,7 +68,7 @@ def _look_again_and_again(process_id: int) -> None:
 def _is_alive(process_id: int) -> bool:
     try:
         os.kill(process_id, 0)
-    except PermissionError:  # it belongs to another user
+    except PermissionError:  # it runs as another user
         return True
     except (OSError, OverflowError):
         return False

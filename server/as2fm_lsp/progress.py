@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work that the client shows as being done, if it can."""
+"""Progress of work, shown by the client if it supports that."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from as2fm_lsp.requests import Requests
 log = logging.getLogger(__name__)
 
 CREATION_TIMEOUT_S = 10.0
-"""The time in which a client must say that it shows the work, which waits for that."""
+"""The time that a client has to accept a progress token, in s; the work waits for it."""
 
 
 class Progress:
-    """What is shown of some work. Nothing is shown if `token` is empty.
+    """The displayed progress of some work. Nothing is shown if `token` is empty.
 
-    The same share of the work is shown once only.
+    Equal percentages are sent only once.
     """
 
     def __init__(self, client: Client, inbox: Inbox, requests: Requests, token: str) -> None:
@@ -36,21 +36,21 @@ class Progress:
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether the user has cancelled the work where the client shows it."""
+        """Whether the user has cancelled the work in the client."""
         return bool(self.token) and self._inbox.is_cancelled(self.token)
 
     async def step(self, what: str) -> None:
-        """Begin a part of the work, after what the client has sent in the meantime is handled.
+        """Begin a part of the work, after pending messages of the client are handled.
 
         Raises:
-            Interrupted: the work is not wanted any more.
+            Interrupted: the work is not needed any more.
         """
         self.say(what)
         await asyncio.sleep(0)
         self._requests.checkpoint()
 
     def say(self, what: str) -> None:
-        """Show what is being done."""
+        """Show a text."""
         if self.token:
             self._client.report_progress(self.token, types.WorkDoneProgressReport(message=what))
 
@@ -72,7 +72,7 @@ class ProgressReporter:
 
     @asynccontextmanager
     async def show(self, title: str, *, cancellable: bool = False) -> AsyncIterator[Progress]:
-        """Show some work, for as long as the `async with` statement runs."""
+        """Show some work, for the duration of the `async with` statement."""
         token = await self._created()
         work = Progress(self._client, self._inbox, self._requests, token)
         if not token:
@@ -81,7 +81,7 @@ class ProgressReporter:
         self._inbox.alive.add(token)
         begin = types.WorkDoneProgressBegin(title, cancellable=cancellable, percentage=None if cancellable else 0)
         self._client.begin_progress(token, begin)
-        await asyncio.sleep(0)  # let the message out
+        await asyncio.sleep(0)  # let the message be sent
         try:
             yield work
         finally:
@@ -89,14 +89,14 @@ class ProgressReporter:
             self._inbox.forget(token)
 
     async def _created(self) -> str:
-        """The token of work that the client is ready to show; empty if it is not."""
+        """The token of the progress that the client accepts to show; empty if it does not."""
         window = self._client.capabilities.window
         if window is None or not window.work_done_progress:
             return ""
         token = str(uuid.uuid4())
         try:
             await asyncio.wait_for(self._client.create_progress(token), CREATION_TIMEOUT_S)
-        except Exception as error:  # the work is done all the same
+        except Exception as error:  # the work continues without it
             log.warning("progress cannot be shown: %s", error or type(error).__name__)
             return ""
         return token

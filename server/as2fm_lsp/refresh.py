@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells the client to ask again for hints and lenses.
+"""Asks the client to request hints and lenses again.
 
-A client asks by itself about the document that is edited. What hints and lenses of *other* documents say changes only
-with what files see of each other, and that is the linked systems: as long as they stay the same objects, it is quiet.
-What is known of properties changes as well, and becomes stale.
-The first time it speaks: the client may have asked before anything was known.
+A client requests those of the edited document itself. The hints and lenses of *other* documents change only with the
+linked systems: while these stay the same objects, nothing is sent. Results of properties change as well, and become
+stale.
+
+The first request is always sent: the client may have asked before anything was known.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from as2fm_lsp.verification.known_results import KnownResults
 
 
 class Refresh:
-    """What the client was last told of."""
+    """The state that was last sent to the client."""
 
     def __init__(self, client: Client, session: Session, results: KnownResults) -> None:
         self._client = client
@@ -40,7 +41,7 @@ class Refresh:
             self._client.refresh_code_lenses()
 
     def _now(self) -> object:
-        """All that hints and lenses depend on beyond their own document."""
+        """Everything on which hints and lenses depend, except their own document."""
         moment = self._session.moment()
         systems = {
             system: (snapshot.analysis.system(system), len(snapshot.checker.errors(system)))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the answer to a request is still wanted.
+"""Whether the answer to a request is still needed.
 
-- A request that the client has cancelled is answered with `RequestCancelled`, at once if it has not begun, else at the
-  next checkpoint.
-- One about a text that is about to change is answered with `ContentModified`, if the client says that it will then ask
-  again. Others are answered for the text that they were asked about, as the protocol wants it.
+- A request that the client has cancelled is answered with `RequestCancelled`, at once if it has not begun, otherwise at
+  the next checkpoint.
+- A request about a text that is about to change is answered with `ContentModified`, if the client has declared that it
+  will then repeat the request. Others are answered for the text of the request, as the protocol requires.
 """
 
 from __future__ import annotations
@@ -38,12 +38,14 @@ _current: ContextVar[_Request | None] = ContextVar("request", default=None)
 
 
 class Requests:
-    """Args:
-    inbox: what the client has sent.
-    id_: the id of the request that is being handled; None for a notification.
+    """The requests of a session.
+
+    Args:
+        inbox: the messages of the client.
+        id_: the id of the current request; `None` for a notification.
 
     Attributes:
-        asked_again: the methods that the client asks again after `ContentModified`.
+        asked_again: the methods that the client repeats after `ContentModified`.
     """
 
     def __init__(self, inbox: Inbox, id_: Callable[[], str | int | None]) -> None:
@@ -52,7 +54,7 @@ class Requests:
         self._id = id_
 
     def guarded(self, method: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-        """A handler that stops when its answer is not wanted any more."""
+        """A handler that stops when its answer is not needed any more."""
         if asyncio.iscoroutinefunction(handler):
 
             @functools.wraps(handler)
@@ -71,13 +73,12 @@ class Requests:
 
     @property
     def is_handled(self) -> bool:
-        """Whether what runs now runs for a request."""
+        """Whether the current code runs for a request."""
         return _current.get() is not None
 
     def checkpoint(self) -> None:
-        """
-        Raises:
-            Interrupted: the answer to the request that is being handled is not wanted any more.
+        """Raises:
+        Interrupted: the answer to the current request is not needed any more.
         """
         request = _current.get()
         if request is not None and (self._is_cancelled(request) or self._is_stale(request)):
@@ -85,7 +86,7 @@ class Requests:
 
     @contextmanager
     def cancelled_by(self, token: str) -> Iterator[None]:
-        """The request that is being handled can also be cancelled where the client shows its progress."""
+        """The current request can also be cancelled by the progress that the client shows."""
         request = _current.get()
         if request is not None:
             request.ids.append(token)
@@ -121,6 +122,6 @@ class Requests:
 
 
 def _uri(arguments: tuple[Any, ...]) -> str:
-    """The document that a request is about."""
+    """The document of a request."""
     document = getattr(arguments[0], "text_document", None) if arguments else None
     return getattr(document, "uri", "")

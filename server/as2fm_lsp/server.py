@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The language server: puts its parts together, and begins and ends a session.
+"""The language server: assembles its parts, and begins and ends a session.
 
-Handlers convert what comes in, make one call and convert what comes out. Messages are handled one after the other on
-one event loop, so a handler never sees a half-applied change; what is computed gives up at its next checkpoint when its
-result is not needed any more.
+Handlers convert the input, make one call and convert the output. Messages are handled one after the other on one event
+loop, so a handler never sees a half-applied change; computations stop at their next checkpoint when their result is not
+needed any more.
 """
 
 from __future__ import annotations
@@ -72,13 +72,12 @@ class Server:
         self.endpoint.serve_client(connection)
 
     def serve(self, source: BinaryIO, target: BinaryIO) -> None:
-        """Serve one client, until it tells the server to exit or has no more to say."""
+        """Serve one client, until it requests the exit or closes the connection."""
         self.endpoint.serve(source, target)
 
     def _checkpoint(self) -> None:
-        """
-        Raises:
-            Interrupted: what is computed now is not wanted, or something else is wanted first.
+        """Raises:
+        Interrupted: the result is not needed, or something else has priority.
         """
         if self.requests.is_handled:
             self.requests.checkpoint()
@@ -91,7 +90,7 @@ def create() -> Server:
 
 
 def _register(server: Server) -> None:
-    """Make the features known, and those messages with which a session begins and ends."""
+    """Register the features, and the messages that begin and end a session."""
     context, endpoint = server.context, server.endpoint
     session, client, diagnostics = context.session, context.client, context.diagnostics
 
@@ -116,7 +115,7 @@ def _register(server: Server) -> None:
 
     @context.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:
-        if session.client_settings:  # while the client, busy with its own start, is asked for what may be the same
+        if session.client_settings:  # the client, during its own start, would receive duplicate requests
             diagnostics.schedule()
         await asyncio.gather(client.watch_files(WATCHED), fetch_settings(context))
         tell_problems(context)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the server holds over time: open documents, folders, settings.
+"""The state of the server: open documents, folders, settings.
 
-- Each folder of the client is a workspace with the configuration that stands in it, so that it is checked as CI does.
-- A file outside all folders, and of none of their systems, is checked in a workspace of its own, around the repository
-  or folder that it lies in, for as long as it is open.
-- All workspaces see all open documents. Each file is seen, and reported on, in one of them (`Moment`).
+- Each folder of the client is a workspace with its own configuration, so that it is checked as in CI.
+- A file outside all folders and their systems is checked in a workspace of its own, around its repository or folder,
+  while it is open.
+- All workspaces see all open documents. Each file is analysed and reported in one of them (`Moment`).
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ MAX_SNAPSHOT_AGE_S = 0.5
 
 
 class Moment:
-    """All workspaces at one moment, each frozen when it is first asked for.
+    """All workspaces at one moment, each frozen at its first use.
 
     Args:
         folders: the workspaces of the client's folders.
-        around: the workspace for a file that belongs to none of them.
+        around: the workspace for a file that is in none of them.
         versions: the open documents with their versions.
     """
 
@@ -53,8 +53,8 @@ class Moment:
         self._snapshots: dict[int, Snapshot] = {}
 
     def snapshot(self, path: str) -> Snapshot:
-        """Where a file is seen: in the innermost folder around it in which a system names it, else in any folder in
-        which one does, else alone in the innermost folder, else outside of all folders."""
+        """The snapshot for a file: that of the innermost folder around it in which a system names it, otherwise of any
+        folder in which one does, otherwise of the innermost folder alone, otherwise outside of all folders."""
         near = sorted((folder for folder in self._folders if is_below(path, folder)), key=len, reverse=True)
         for folder in dict.fromkeys((*near, *self._folders)):
             snapshot = self._frozen(self._folders[folder])
@@ -63,7 +63,7 @@ class Moment:
         return self._frozen(self._folders[near[0]] if near else self._around(path))
 
     def files(self) -> tuple[str, ...]:
-        """All files that are reported on: what is open, the systems that this belongs to, and the folders."""
+        """All files that are reported: open files, their systems, and the folders."""
         paths = dict.fromkeys(self.versions)
         for path in self.versions:
             analysis = self.snapshot(path).analysis
@@ -98,7 +98,7 @@ class Session:
         self._taken = 0.0
 
     def moment(self) -> Moment:
-        """Now. As long as nothing is known to have changed, what was looked up for the last answer serves the next."""
+        """The current moment. Until something changes, all answers share it."""
         now = time.monotonic()
         if self._moment is None or now - self._taken > MAX_SNAPSHOT_AGE_S:
             self._moment = Moment(self._folders, self._workspace_around, self._versions)
@@ -114,11 +114,11 @@ class Session:
     def open(self, path: str, text: str, version: int | None) -> None:
         self._put(path, text, version)
         if not any(is_below(path, folder) for folder in self._folders):
-            self._workspace_around(path)  # now, so that problems with the configuration there can be told
+            self._workspace_around(path)  # now, so that problems with its configuration can be shown
 
     def change(self, path: str, changes: Iterable[types.TextDocumentContentChangeEvent], version: int | None) -> None:
-        """Apply the edits of a change, one after the other, each to the text that the one before made. Documents that
-        are not open have no text that could be changed."""
+        """Apply the edits of a change in order, each to the result of the previous one. Documents that are not open
+        have no text to change."""
         text = self._texts.get(path)
         if text is None:
             log.warning("%s is changed, but it is not open", path)
@@ -131,7 +131,7 @@ class Session:
         self._put(path, text, version)
 
     def text(self, path: str) -> str | None:
-        """What an open document holds, as the client has it."""
+        """The text of an open document, as the client has it."""
         return self._texts.get(path)
 
     def close(self, path: str) -> None:
@@ -155,7 +155,7 @@ class Session:
     # ------------------------------------------------------------ workspaces
 
     def set_folders(self, folders: Iterable[str]) -> None:
-        """The folders that the client has open. Workspaces of folders that stay keep what they know."""
+        """Set the open folders of the client. Workspaces of folders that stay keep their caches."""
         folders = tuple(dict.fromkeys(os.path.normpath(folder) for folder in folders))
         known, self._around = self._folders, {}
         self.look_again()
@@ -164,7 +164,7 @@ class Session:
             workspace.look_for_packages_in(self._packages(folder, workspace.roots))
 
     def refresh(self) -> None:
-        """Files have come or gone."""
+        """Files were created or deleted."""
         self.look_again()
         for workspace in self._workspaces():
             workspace.refresh()
@@ -181,7 +181,7 @@ class Session:
 
     @property
     def client_settings(self) -> object:
-        """As the client sent them; it may send anything."""
+        """The settings as the client sent them; they may be anything."""
         return self._client_settings
 
     def _workspaces(self) -> tuple[Workspace, ...]:
@@ -202,12 +202,12 @@ class Session:
         return workspace
 
     def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
-        """The folders in which ROS packages are looked for: the nearest first, then the client's others."""
+        """The folders that are searched for ROS packages: the nearest first, then the client's others."""
         outside = [root for root in roots if not is_below(root, folder)]
         return tuple(filter(is_on_disk, dict.fromkeys((folder, *outside, *self._folders))))
 
     def settings_of(self, path: str) -> Settings:
-        """The settings that a file is checked with."""
+        """The settings with which a file is checked."""
         near = [folder for folder in self._folders if is_below(path, folder)]
         return self._settings(max(near, key=len) if near else _surroundings(path))
 
@@ -215,15 +215,18 @@ class Session:
         """The configuration in a folder, with the client's settings added."""
         settings, problems = find_settings(folder) if is_on_disk(folder) else (Settings(), ())
         settings, mistakes = settings_from(_kebab(self._client_settings), folder, settings)
-        if not settings.origin:  # else they are among the diagnostics of that file
+        if not settings.origin:  # otherwise they are among the diagnostics of that file
             self.problems += problems
         self.problems += [f"In the editor's settings: {mistake.message}." for mistake in mistakes]
         return replace(settings, ament_prefixes=ament_prefixes())
 
 
 def _surroundings(path: str) -> str:
-    """The folder in which a file outside all folders is checked. Alone is a document without a file, and a file in the
-    root of the file system, of which nobody wants all files to be listed."""
+    """The folder in which a file outside all folders is checked.
+
+    A document without a file is checked alone, and so is a file in the root of the file system, because listing all
+    files would take too long.
+    """
     if not is_on_disk(path):
         return path
     folder = enclosing_root(path) or os.path.dirname(path)
@@ -245,7 +248,7 @@ _CLIENT_KEYS = {
 
 
 def _kebab(settings: object) -> dict[str, Any]:
-    """The client's settings under the names of the configuration file; those for the client itself are left out."""
+    """The client's settings under the names of the configuration file, without those for the client itself."""
     if not isinstance(settings, Mapping):  # a client may send anything
         return {}
     return {_CLIENT_KEYS[key]: value for key, value in settings.items() if key in _CLIENT_KEYS and value}

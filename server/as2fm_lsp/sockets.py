@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 FIRST_MESSAGE_TIMEOUT_S = 30.0
 
 MAX_WAITING_CONNECTIONS = 16
-"""Connections whose first message has not come. Others are refused meanwhile."""
+"""The maximum number of connections without a first message. Others are rejected meanwhile."""
 
 MAX_FIRST_MESSAGE_BYTES = 1 << 24
 
@@ -44,25 +44,25 @@ _HEADER = re.compile(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]
 _BEGIN = b"content-"
 _MAX_HEADER_LINE_BYTES = 1000
 _ABSENT = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
-"""A name may stand for addresses that this machine does not have, as that of IPv6."""
+"""A name may have addresses that this machine does not support, such as IPv6."""
 
 
 class RemoteError(ValueError):
-    """An address at which other machines can connect."""
+    """An address to which other machines can connect."""
 
 
 class InUseError(OSError):
-    """Somebody listens at a socket file, or it is another file; the message says what to do."""
+    """A socket file is in use, or is another file; the message states what to do."""
 
 
 @dataclass(frozen=True)
 class Connection:
-    """The connection of a client that may be served.
+    """The connection of an accepted client.
 
     Attributes:
         first: its first message, the `initialize`, without the token.
-        source: what it sends after that.
-        target: where it is answered.
+        source: the stream of its further messages.
+        target: the stream for the answers.
     """
 
     first: dict[str, Any]
@@ -76,11 +76,11 @@ class Connection:
 
 @contextmanager
 def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[tuple[socket.socket, ...]]:
-    """Sockets that listen at all addresses that `host` stands for.
+    """Sockets that listen at all addresses of `host`.
 
     Raises:
-        RemoteError: other machines could connect there, and `allow_remote` is False.
-        OSError: an address is taken, or there is none.
+        RemoteError: other machines could connect, and `allow_remote` is False.
+        OSError: an address is in use, or there is none.
     """
     candidates = dict.fromkeys(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE))
     addresses = [(family, address) for family, _, _, _, address in candidates]
@@ -102,20 +102,20 @@ def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[t
 
 @contextmanager
 def listening_at(path: str) -> Iterator[tuple[socket.socket, ...]]:
-    """A socket file that nobody but the user can connect to; it is removed in the end. One that a server has left
-    behind is replaced.
+    """A socket file to which only the user can connect; it is removed at the end. A leftover one of another server is
+    replaced.
 
     Raises:
-        InUseError: there is something else.
-        OSError: there can be no such file.
+        InUseError: there is another file or server.
+        OSError: the file cannot be created.
     """
     if _is_socket(path):
         with socket.socket(socket.AF_UNIX) as probe:
             if probe.connect_ex(path) == 0:
-                raise InUseError("another server listens there; stop it, or name another file")
+                raise InUseError("another server is listening there; stop it, or name another file")
         os.unlink(path)
     elif os.path.lexists(path):
-        raise InUseError("there is another file of that name; remove it, or name another")
+        raise InUseError("a file with this name already exists; remove it, or name another")
     with socket.socket(socket.AF_UNIX) as listener:
         before = os.umask(0o177)
         try:
@@ -131,7 +131,7 @@ def listening_at(path: str) -> Iterator[tuple[socket.socket, ...]]:
 
 
 def shown_address(listener: socket.socket) -> str:
-    """Where a socket listens, as it is given to `--tcp` or `--socket`."""
+    """The address of a socket, in the form of `--tcp` or `--socket`."""
     name = listener.getsockname()
     if isinstance(name, str):
         return name
@@ -154,10 +154,10 @@ def _is_socket(path: str) -> bool:
 
 
 def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
-    """Wait for the first client that may be served. Others are told why not and disconnected.
+    """Wait for the first client that is accepted. Others get an error and are disconnected.
 
     Args:
-        token: what the client must send as `token` in its `initializationOptions`; "" if it need not.
+        token: the `token` that the client must send in its `initializationOptions`; "" if none is required.
     """
     admitted: list[Connection] = []
     one = threading.Lock()
@@ -167,7 +167,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
     def greet(connection: socket.socket) -> None:
         try:
             client = _admitted(connection, token)
-        except (OSError, ValueError, RecursionError) as error:  # it is gone, or has sent what is not JSON
+        except (OSError, ValueError, RecursionError) as error:  # it has disconnected, or has sent invalid JSON
             log.warning("a connection was refused: %s", error)
             client = None
         finally:
@@ -187,7 +187,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
             for key, _ in ready.select():
                 if key.data is None:
                     continue
-                with suppress(OSError):  # whoever has connected is gone already
+                with suppress(OSError):  # the other side has already disconnected
                     connection, _ = key.data.accept()
                     connection.setblocking(True)
                     if waiting.acquire(blocking=False):
@@ -198,17 +198,17 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
 
 
 def _admitted(connection: socket.socket, token: str) -> Connection | None:
-    """The client if its first message is as it must be; it has been told if not."""
+    """The client if its first message is valid; otherwise it gets an error."""
     connection.settimeout(FIRST_MESSAGE_TIMEOUT_S)
     source, target = connection.makefile("rb"), connection.makefile("wb")
     body = _first_body(source)
     if body is None:
-        log.warning("a connection that does not begin as the protocol says was refused")
+        log.warning("a connection that does not follow the protocol was rejected")
         return None
     message = json.loads(body)
     error = _objection(message, token)
     if error is not None:
-        log.warning("a client was refused: %s", error)
+        log.warning("a client was rejected: %s", error)
         answer = json.dumps(error_response(message, error)).encode()
         target.write(b"Content-Length: %d\r\n\r\n%b" % (len(answer), answer))
         target.flush()
@@ -218,7 +218,7 @@ def _admitted(connection: socket.socket, token: str) -> Connection | None:
 
 
 def _first_body(source: BufferedReader) -> bytes | None:
-    """None if a line of the header is anything but what the protocol has there."""
+    """The first body; `None` if a header line does not follow the protocol."""
     length = 0
     begin = source.peek(len(_BEGIN))[: len(_BEGIN)].lower()
     if not _BEGIN.startswith(begin):  # it need not be a line
@@ -237,7 +237,7 @@ def _first_body(source: BufferedReader) -> bytes | None:
 
 
 def _objection(message: Any, token: str) -> JsonRpcException | None:
-    """Why a first message is refused. The token is taken out of it."""
+    """Why a first message is rejected; "" if it is valid. The token is removed from it."""
     if not isinstance(message, dict) or message.get("method") != types.INITIALIZE:
         return JsonRpcServerNotInitialized("the first message must be `initialize`")
     if not token:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the command line and the server do alike when they translate a system."""
+"""Functions for translations that the command line and the server share."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from roaml.smc.forms import BOUNDS, bounds_in
 
 
 class OutputError(ValueError):
-    """The file to be written belongs to the system; the message says so."""
+    """The output file is part of the system; the message states that."""
 
 
 def jani_path(system: str) -> str:
-    """Where the JANI file of a system goes, if nothing else is said: beside the system file."""
+    """The default path of the JANI file of a system: beside the system file."""
     return os.path.splitext(system)[0] + ".jani"
 
 
 def keep_off(path: str, system: api.LoadedSystem) -> None:
-    """
-    Raises:
-        OutputError: `path` is one of the files that the system is made of.
+    """Raises:
+    OutputError: `path` is one of the files of the system.
     """
     if os.path.realpath(path) in {os.path.realpath(file) for file in system.files}:
-        raise OutputError(f"{path} belongs to the system; the translation must go to another file")
+        raise OutputError(f"{path} is part of the system; write the translation to another file")
 
 
 def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
     """A model without the properties that have bounds on time or rewards, and a warning for each of these bounds.
 
-    JANI has these bounds for timed models. Of a model that counts steps, Storm reads a bound of 5 (seconds) as 5 steps.
+    JANI defines these bounds for timed models. In a model that counts steps, Storm reads a bound of 5 (seconds) as 5
+    steps.
     """
     warnings: list[Diagnostic] = []
     kept: list[Property] = []
     for property_ in model.properties:
         bounds = list(bounds_in(property_))
         for why, bound in bounds:
-            assert bound.origin is not None  # It was read from a file of the system.
+            assert bound.origin is not None  # The property was read from a file of the system.
             message = f"the property `{property_.name}` is left out of the JANI file: {why}"
             warnings.append(Diagnostic(bound.origin.path, BOUNDS, Severity.WARNING, bound.origin.span, message))
         if not bounds:

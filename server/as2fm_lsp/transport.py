@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """One connection to a client, on top of pygls: reading, checking, dispatching and answering messages.
 
-This is the only module that uses what is private in pygls, or derives from its classes. It is written for pygls 2.1 and
-the other versions that `pyproject.toml` allows (`pygls>=2.1,<3`); who raises that range reads this module again:
+This is the only module that uses private parts of pygls, or derives from its classes. It is written for pygls 2.1 and
+the other versions that `pyproject.toml` allows (`pygls>=2.1,<3`); review this module when that range changes:
 
-- pygls keeps a second copy of every document, which nobody reads, splits lines differently and moves the positions of
-  changes while it applies them; and it keeps a future for every notification. Neither is done here.
-- It answers no request that comes at the wrong time, and takes any value for a token.
+- pygls keeps an unused second copy of every document, splits lines differently and moves the positions of changes while
+  it applies them; and it keeps a future for every notification. This module avoids both.
+- It does not answer requests at the wrong time, and accepts any value as a token.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ _DOCUMENTS = (
     types.NOTEBOOK_DOCUMENT_DID_CHANGE,
     types.NOTEBOOK_DOCUMENT_DID_CLOSE,
 )
-"""What `Session` does and pygls would do a second time."""
+"""Features that `Session` implements and pygls would do again."""
 
 _MAX_NAME_CHARACTERS = 60
 
 _MAX_UNANSWERED = 1000
-"""The number of requests to the client whose answers are awaited: one that never answers must not fill the memory."""
+"""The maximum number of pending requests to the client: one that never answers must not fill the memory."""
 
 
 class Protocol(LanguageServerProtocol):
@@ -70,31 +70,31 @@ class Protocol(LanguageServerProtocol):
     # ------------------------------------------------------------------ in
 
     def receive(self, message: object) -> None:
-        """Handle a message that was read: plain data, or the error if it is no JSON.
+        """Handle a message: plain data, or the error if it is not JSON.
 
         Raises:
-            JsonRpcException: it is no message that is understood, or it comes at the wrong time.
+            JsonRpcException: the message is not valid, or arrives at the wrong time.
         """
         if isinstance(message, Exception):
-            raise JsonRpcParseError(f"the message is not JSON: {message}")
+            raise JsonRpcParseError(f"the message is not valid JSON: {message}")
         if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
-            raise JsonRpcInvalidRequest(f'a message is one JSON object with `"jsonrpc": "{self.VERSION}"`')
+            raise JsonRpcInvalidRequest(f'a message must be one JSON object with `"jsonrpc": "{self.VERSION}"`')
         if "id" in message and "method" not in message:
             self._response(message)
             return
         method = message.get("method")
         if not isinstance(method, str) or not is_id(message.get("id", 0)):
-            raise JsonRpcInvalidRequest("`method` is a string and `id` a number or a string")
+            raise JsonRpcInvalidRequest("`method` must be a string and `id` a number or a string")
         is_request = "id" in message
         if self._shutdown and method != types.EXIT:
             if is_request:
-                raise JsonRpcInvalidRequest("the server was told to shut down; only `exit` can follow")
+                raise JsonRpcInvalidRequest("the server was shut down; only `exit` is allowed")
             return
         if method == types.INITIALIZE:
             self._check_initialize(message)
         elif not self._is_initialized and method != types.EXIT:
             if is_request:
-                raise JsonRpcServerNotInitialized(f"`{_short(method)}` comes before `initialize`")
+                raise JsonRpcServerNotInitialized(f"`{_short(method)}` is not allowed before `initialize`")
             return
         if method in CANCELLATIONS:
             _check_cancellation(message)
@@ -107,20 +107,20 @@ class Protocol(LanguageServerProtocol):
         if self.get_message_type(message["method"]) is None:
             message.setdefault("params", None)
         elif message.get("params", 0) is None:
-            del message["params"]  # some clients send null where there are none
+            del message["params"]  # some clients send null where there are no parameters
         try:
             return self.structure_message(message)
         except Exception as error:
-            raise JsonRpcInvalidParams(f"the parameters of `{_short(message['method'])}` are not understood") from error
+            raise JsonRpcInvalidParams(f"the parameters of `{_short(message['method'])}` are not valid") from error
 
     def _check_initialize(self, message: dict[str, Any]) -> None:
         if "id" not in message:
-            raise JsonRpcInvalidRequest("`initialize` is a request and has an `id`")
+            raise JsonRpcInvalidRequest("`initialize` must be a request with an `id`")
         if self._is_initialized:
-            raise JsonRpcInvalidRequest("the server is initialized already")
+            raise JsonRpcInvalidRequest("the server is already initialized")
 
     def _response(self, message: dict[str, Any]) -> None:
-        """An answer of the client. Those that nobody waits for are passed over."""
+        """Handle a response of the client. Unexpected responses are ignored."""
         if not is_id(message["id"]) or message["id"] not in self._request_futures:
             return
         if "error" in message:
@@ -139,14 +139,14 @@ class Protocol(LanguageServerProtocol):
     def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: Any = None) -> None:
         def done(future: Future[Any]) -> None:
             self._request_futures.pop(msg_id, None)
-            with suppress(asyncio.CancelledError):  # as when the session ends: nobody waits
+            with suppress(asyncio.CancelledError):  # as at the end of the session: nothing waits for it
                 callback(future)
 
         super()._execute_handler(msg_id, handler, done, args, kwargs)
 
 
 def _check_cancellation(message: dict[str, Any]) -> None:
-    """pygls takes any value for a token."""
+    """pygls accepts any value as a token."""
     params, name = message.get("params"), CANCELLATIONS[message["method"]]
     if not isinstance(params, dict) or not is_id(params.get(name)):
         raise JsonRpcInvalidParams(f"`{name}` must be a number or a string")
@@ -157,7 +157,7 @@ def _short(text: str) -> str:
 
 
 class Endpoint(LanguageServer):
-    """One client's end of the connection.
+    """The connection to one client.
 
     Attributes:
         is_shut_down: whether the client has asked the server to shut down.
@@ -176,27 +176,28 @@ class Endpoint(LanguageServer):
 
     @property
     def request_id(self) -> str | int | None:
-        """The id of the request that is being handled; None for a notification."""
+        """The id of the current request; `None` for a notification."""
         id_: str | int | None = self.protocol.msg_id
         return id_
 
     def on(self, method: str, handler: Callable[..., Any], options: object = None) -> None:
-        """Let `handler` answer a request or take a notification."""
+        """Let `handler` answer a request or receive a notification."""
         self.feature(method, options)(handler)
 
     def on_command(self, name: str, handler: Callable[..., Awaitable[Any]]) -> None:
-        """Let `handler` do a command of `workspace/executeCommand`. It is given the arguments as they came."""
+        """Let `handler` execute a command of `workspace/executeCommand`. It gets the arguments as received."""
 
         async def run(ls: LanguageServer, *arguments: object) -> Any:
-            # pygls looks at names: the first parameter must be `ls`, and then any number of arguments is passed on.
+            # pygls inspects names: the first parameter must be `ls`, and then any number of arguments is passed on.
             return await handler(*arguments)
 
         self.command(name)(run)
 
     def cancel_requests(self) -> None:
-        """End what runs for requests but the one that is being handled.
+        """Cancel all requests except the current one.
 
-        pygls does the same, but stumbles over a command that runs: cancelling it takes it out of what is iterated.
+        pygls does the same, but fails if a command is running: cancelling it changes the collection during the
+        iteration.
         """
         for id_, future in tuple(self.protocol._request_futures.items()):
             if id_ != self.protocol.msg_id and not future.done():
@@ -206,7 +207,7 @@ class Endpoint(LanguageServer):
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         self.has_parent = True
-        # A reader of our own: Python's is locked while a thread reads it, and the process could not end.
+        # A separate reader: Python's own is locked while a thread reads it, and the process could not end.
         source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
         self.serve(source, stdout or sys.stdout.buffer)
 
@@ -217,7 +218,7 @@ class Endpoint(LanguageServer):
             self.serve(connection.source, connection.target)
 
     def serve(self, source: BinaryIO, target: BinaryIO) -> None:
-        """Serve one client, until it tells the server to exit or has no more to say."""
+        """Serve one client, until it requests the exit or closes the connection."""
         self.protocol.set_writer(StdoutWriter(target))
         try:
             asyncio.run(self._handle_messages(source))
@@ -238,26 +239,26 @@ class Endpoint(LanguageServer):
                 raise
             except JsonRpcException as error:
                 self._refuse(message, error)
-            except Exception as error:  # whatever the client sends, the session goes on
+            except Exception as error:  # the session continues whatever the client sends
                 log.exception("a message cannot be handled")
                 self._refuse(message, JsonRpcInternalError(f"{type(error).__name__} in the server"))
             await asyncio.sleep(0)
 
     def _refuse(self, message: object, error: JsonRpcException) -> None:
-        """A message that is not understood, or not now; whoever waits for an answer gets one."""
+        """Answer an invalid message, or one at the wrong time, if it expects an answer."""
         if is_answered(message):
             self.protocol._send_data(error_response(message, error))
         else:
             log.warning("a message is ignored: %s", error)
 
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
-        """A failure of ours: told in the log, without a pop-up for each keystroke. A refusal is none."""
+        """An error of the server: logged, without a pop-up for each keystroke. A rejected request is not an error."""
         if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
             known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
             log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """What went wrong where nobody waits; that somebody does not wait any more is nothing wrong."""
+    """Log an error for which nothing waits; a cancelled wait is not an error."""
     if not isinstance(context.get("exception"), JsonRpcRequestCancelled):
         loop.default_exception_handler(context)

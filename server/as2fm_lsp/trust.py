@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the user trusts the workspace.
 
-A client that knows workspaces which are not trusted says so: `{"trusted": false}` in its initialization options, and
-`{"trusted": true}` in the notification `as2fm/didChangeTrust` once the user has granted it. Files of such a workspace
-are read and shown; what writes files, or works for long because these files say so, is refused. Clients that say
-nothing are trusted: they know of no other workspaces.
+A client that supports untrusted workspaces declares it: `{"trusted": false}` in its initialization options, and
+`{"trusted": true}` in the notification `as2fm/didChangeTrust` once the user has granted it. Files of an untrusted
+workspace are read and shown; actions that write files, or run for a long time because of these files, are rejected.
+Clients that declare nothing are trusted: they do not distinguish workspaces.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ DID_CHANGE = "as2fm/didChangeTrust"
 
 
 class NotTrustedError(JsonRpcException):
-    """What was asked for is refused."""
+    """A request is rejected because the workspace is not trusted."""
 
     CODE = LSPErrorCodes.RequestFailed.value
 
@@ -30,11 +30,12 @@ class Trust:
         self.is_granted = True
 
     def set(self, value: object) -> None:
-        """What the client says; anything but true means that it is not granted."""
+        """Set the trust; anything but true means that it is not granted."""
         self.is_granted = value is True
 
     def require(self, name: str) -> None:
-        """
+        """Check that the workspace is trusted.
+
         Args:
             name: of the command or request.
 
@@ -42,5 +43,5 @@ class Trust:
             NotTrustedError: the workspace is not trusted.
         """
         if not self.is_granted:
-            text = f"`{name}` is off because the workspace is not trusted; grant trust in the editor to use it"
+            text = f"`{name}` is disabled because the workspace is not trusted; grant trust in the editor to use it"
             raise NotTrustedError(text)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The compiler library for HL-SCXML robot models: parse, check, translate, verify.
 
-`roaml.api` is the door for other programs. The package knows nothing of editors or of LSP.
+`roaml.api` is the public interface for other programs. The package does not depend on editors or LSP.
 """
 
 __version__ = "0.1.0"

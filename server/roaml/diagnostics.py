@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tool says about a text, as plain values.
+"""Findings about a text, as plain values.
 
-- A `Finding` belongs to one file and knows no path: it is what parsers and rules produce and what is memoised.
-- A place in *another* file is named by a `Symbol`, never by a span, so a memoised finding stays right when the other
-  file is edited; `roaml.project` looks the span up when a `Diagnostic` is published.
+- A `Finding` is about one file and has no path: parsers and rules produce it, and it can be memoised.
+- A place in *another* file is identified by a `Symbol`, never by a span, so a memoised finding stays correct when the
+  other file is edited; `roaml.project` resolves the symbol when a `Diagnostic` is published.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roaml.text import Edit, Location, Span, TextEdit, computed
 
 
 class Severity(enum.IntEnum):
-    """How much a finding matters; a greater value matters more."""
+    """How important a finding is; a greater value is more important."""
 
     HINT = 0
     INFORMATION = 1
@@ -39,9 +39,10 @@ class Tag(enum.Enum):
 
 
 class Symbol(NamedTuple):
-    """A named thing in a file, independent of where it stands: `kind` is what the schemas say that a value defines.
+    """A named thing in a file, independent of its position. `kind` is the kind of symbol that the schemas define for
+    the value.
 
-    `scope` tells equal names apart (for example the thread that a state belongs to); it is empty for most kinds.
+    `scope` distinguishes equal names (for example by the thread that contains a state); it is empty for most kinds.
     """
 
     path: str
@@ -101,7 +102,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class RelatedPlace:
-    """A `Related` whose place has been looked up."""
+    """A `Related` whose place has been resolved."""
 
     location: Location
     message: str
@@ -109,7 +110,7 @@ class RelatedPlace:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """A finding as it is published: with its file, its final severity and all places looked up."""
+    """A finding as it is published: with its file, its final severity and all places resolved."""
 
     path: str
     code: str

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one reader of the user's files: models, definitions, configuration, baselines, states.
+"""The only module that reads files of the user: models, definitions, configuration, baselines, states.
 
-- Only regular files are opened. A device, socket or pipe may wait for ever or never end.
-- Nothing larger than what the caller expects is read.
+- Only regular files are opened. A device, socket or pipe may block for ever or never end.
+- Nothing larger than the given limit is read.
 """
 
 from __future__ import annotations
@@ -14,29 +14,30 @@ import stat
 MEGABYTE = 1024 * 1024
 
 MAX_BYTES = 32 * MEGABYTE
-"""Of a model or interface definition."""
+"""The maximum size of a model or interface definition, in bytes."""
 
 MAX_DATA = 512 * MEGABYTE
-"""Of what tools write for tools: a translated model, a baseline, the state of a verification."""
+"""The maximum size of generated files, in bytes: a translated model, a baseline, the state of a verification."""
 
 
 class UnreadableReason(enum.Enum):
-    """Why a path gives no text."""
+    """Why a path has no readable text."""
 
     MISSING = "there is no such file"
     FOLDER = "it is a folder"
-    SPECIAL = "it is no regular file"
+    SPECIAL = "it is not a regular file"
     UNREADABLE = "it cannot be read"
     TOO_LARGE = "it is larger than 32 MB"
     TOO_LONG = "it is too large to be checked"
     OUTSIDE = (
-        "it is a link to a file outside of the workspace; open that file's folder as well, or name it in `roots` or "
+        "it is a link to a file outside of the workspace; open the folder of that file as well, or add it to "
+        "`roots` or "
         "`ros-path`"
     )
 
 
 class NotReadableError(OSError):
-    """A file that must be read is not there, is of the wrong kind, or too large. `problem` says which."""
+    """A required file does not exist, is of the wrong kind, or is too large. `problem` is the reason."""
 
     def __init__(self, path: str, problem: UnreadableReason, most: int) -> None:
         words = f"it is larger than {most // MEGABYTE} MB" if problem is UnreadableReason.TOO_LARGE else problem.value
@@ -62,14 +63,14 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | U
     """The content of a regular file.
 
     Args:
-        most: a larger file is not read.
-        head: only so many bytes, however large the file is.
+        most: the maximum size in bytes; a larger file is not read.
+        head: the maximum number of bytes to read, however large the file is.
     """
     status = status_of(path, most) if head is None else status_of(path, _ANY)
     if isinstance(status, UnreadableReason):
         return status
     try:
-        # What has become a pipe in the meantime must not wait for who writes it.
+        # If the path has become a pipe in the meantime, opening it must not block.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(handle, "rb") as file:
             problem = _judged(os.fstat(handle), _ANY if head is not None else most)
@@ -81,10 +82,10 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | U
 
 
 def required(path: str, most: int = MAX_BYTES) -> bytes:
-    """The content of a file without which a command cannot go on.
+    """The content of a file that a command requires.
 
     Raises:
-        NotReadableError: why there is none.
+        NotReadableError: the file cannot be read.
     """
     found = read(path, most)
     if isinstance(found, UnreadableReason):
@@ -104,12 +105,12 @@ def _judged(status: os.stat_result, most: int) -> UnreadableReason | None:
 
 
 class Roots:
-    """The folders whose files belong to the user's work. Links in them lead to files of theirs only.
+    """The folders that contain the user's files. Links in them are followed only if their target is in one of them.
 
     Args:
-        folders: the workspace. What a link in them leads to must lie in one of the roots.
+        folders: the workspace. The target of a link in it must be in one of the roots.
         trusted: folders of the environment or the configuration with ROS interface packages, as `colcon build
-            --symlink-install` makes them: links in them are followed wherever they lead.
+            --symlink-install` creates them: links in them are always followed.
     """
 
     def __init__(self, folders: tuple[str, ...] = (), trusted: tuple[str, ...] = ()) -> None:
@@ -118,7 +119,7 @@ class Roots:
         self._real = tuple(os.path.join(os.path.realpath(folder), "") for folder in (*folders, *trusted))
 
     def hold(self, path: str) -> bool:
-        """Whether a path may be read, a file's or a folder's: no link on it leads out of the roots."""
+        """Whether a file or folder may be read: no link on its path leads out of the roots."""
         path = os.path.abspath(path)
         if path.startswith(self._trusted) or not path.startswith(self._folders):
             return True

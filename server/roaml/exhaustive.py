@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The end of a `match` over a closed set, as `typing.assert_never` of Python 3.11.
+"""The end of an exhaustive `match`, like `typing.assert_never` of Python 3.11.
 
-A type checker reports a case that is missing.
+A type checker reports missing cases.
 """
 
 from __future__ import annotations

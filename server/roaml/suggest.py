@@ -44,10 +44,10 @@ def are_similar(name: str, other: str) -> bool:
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The first of the `known` names that differs from `name` in the shortest stretch; None if all differ much.
+    """The first of the `known` names that differs from `name` in the shortest part; `None` if all differ a lot.
 
-    A stretch is what remains when equal beginnings and ends are taken away: one for a missing, an additional or a wrong
-    letter, and for two letters in the wrong order.
+    The part is what remains without the common beginning and end: one character for a missing, an additional or a wrong
+    letter, and two for two letters in the wrong order.
     """
     limit = min(len(name) // 3, 1 + len(name) // 5)
     best: str | None = None

@@ -31,16 +31,16 @@ class Span(NamedTuple):
     end: int
 
     def contains(self, offset: int) -> bool:
-        """Whether a caret at `offset` touches the span; both ends count."""
+        """Whether a caret at `offset` touches the span; both ends are included."""
         return self.start <= offset <= self.end
 
     def cover(self, other: Span) -> Span:
-        """The smallest span that holds both."""
+        """The smallest span that contains both."""
         return Span(min(self.start, other.start), max(self.end, other.end))
 
 
 def span_of(ends: tuple[int, int]) -> Span:
-    """A span with these ends; half the price of `Span(...)`, which counts where there is one for each word."""
+    """A span with these ends; twice as fast as `Span(...)`, for callers that create one for each word."""
     return tuple.__new__(Span, ends)
 
 
@@ -59,7 +59,7 @@ class Position(NamedTuple):
 
 
 class TextEdit(NamedTuple):
-    """Replace the text in `span`; an empty span inserts."""
+    """Replaces the text in `span`; an empty span inserts."""
 
     span: Span
     new_text: str
@@ -74,7 +74,7 @@ def computed(edits: Iterable[Edit]) -> tuple[TextEdit, ...]:
 
 
 def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:
-    """`text` with all `edits` made. Edits refer to the original text; on overlap the earlier one wins."""
+    """`text` with all `edits` applied. Edits refer to the original text; if two overlap, the earlier one is applied."""
     parts: list[str] = []
     done = 0
     for edit in sorted(edits, key=lambda e: e.span):
@@ -88,10 +88,10 @@ def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Decoded:
-    """A piece of source text after its escapes were resolved, and the way back to the source.
+    """A piece of source text with its escapes resolved, and the mapping back to the source.
 
-    `text` is what the escapes mean. Character `i` of it begins at source offset `sources[i]`; without escapes
-    `sources` is None and the character begins at `base + i`.
+    `text` is the resolved text. Character `i` of it begins at source offset `sources[i]`; without escapes `sources` is
+    `None` and the character begins at `base + i`.
     """
 
     text: str
@@ -109,7 +109,7 @@ class Decoded:
         return span_of((self.sources[start], self.sources[end]))
 
     def stripped(self) -> Decoded:
-        """Without surrounding white space."""
+        """The text without surrounding white space."""
         text = self.text.strip()
         start = self.text.index(text)
         return self.part(start, start + len(text))
@@ -121,7 +121,7 @@ class Decoded:
 
 
 def joined(pieces: Sequence[Decoded]) -> Decoded:
-    """At least one piece, one after the other."""
+    """The concatenation of one or more pieces."""
     if len(pieces) == 1:
         return pieces[0]
     sources = [piece.offset(index) for piece in pieces for index in range(len(piece.text))]
@@ -133,7 +133,7 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 class LineIndex:
-    """Where the lines of a text begin; converts between offsets and positions."""
+    """The offsets of the lines of a text; converts between offsets and positions."""
 
     def __init__(self, text: str) -> None:
         self._starts = [0, *_ends(text)]
@@ -144,13 +144,14 @@ class LineIndex:
         return len(self._starts)
 
     def position(self, offset: int) -> Position:
-        """The position of `offset`; offsets outside the text are moved to its nearer end."""
+        """The position of `offset`; an offset outside the text is replaced by the nearest end."""
         offset = max(0, min(offset, len(self._text)))
         line = bisect.bisect_right(self._starts, offset) - 1
         return Position(line, offset - self._starts[line])
 
     def offset(self, position: Position) -> int:
-        """The offset of `position`; a line or column beyond the end is moved back to it, before the line's end mark."""
+        """The offset of `position`; a line or column beyond the end is replaced by the end, before the line
+        terminator."""
         if position.line < 0:
             return 0
         if position.line >= len(self._starts):
@@ -163,26 +164,26 @@ class LineIndex:
         return self._starts[line]
 
     def line_end(self, line: int) -> int:
-        """Offset of the end of `line`, its line terminator included."""
+        """The offset of the end of `line`, including its line terminator."""
         return self._starts[line + 1] if line + 1 < len(self._starts) else len(self._text)
 
 
 def _ends(text: str) -> Iterable[int]:
-    """The offset behind each line's end."""
+    """The offset after the end of each line."""
     if "\r" in text:
         return (match.end() for match in _LINE_END.finditer(text))
-    # This is done for each key that is pressed; finding the ends one by one takes four times as long.
+    # This runs at each keystroke; finding the ends one by one takes four times as long.
     *lines, _ = text.split("\n")
     return accumulate(len(line) + 1 for line in lines)
 
 
 @dataclass(frozen=True)
 class SourceFile:
-    """One file's text at one moment. Two files with the same `digest` have the same text.
+    """The text of one file at one moment. Two files with the same `digest` have the same text.
 
-    `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; such bytes
-    appear in `text` as U+FFFD. `encoding` and the byte order `mark` are what the file was read with. `ignored_encoding`
-    is the place of the encoding in the XML declaration if the file was read with another one.
+    `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; invalid
+    bytes appear in `text` as U+FFFD. `encoding` and the byte order `mark` are those with which the file was read.
+    `ignored_encoding` is the place of the encoding in the XML declaration if the file was read with another one.
     """
 
     path: str
@@ -201,7 +202,7 @@ class SourceFile:
         return LineIndex(self.text)
 
     def encode(self, text: str) -> bytes:
-        """Another text as the bytes that this file would have with it."""
+        """The bytes of this file if it contained another text."""
         return self.mark + text.encode(self.encoding)
 
 
@@ -217,9 +218,9 @@ _MAX_DECLARATION_BYTES = 400
 
 
 def decode(path: str, data: bytes) -> SourceFile:
-    """Read bytes as text: a byte order mark decides, then an XML declaration, else UTF-8. Never fails.
+    """Decode bytes: a byte order mark takes precedence, then an XML declaration, then UTF-8. Never fails.
 
-    Only text encodings that Python knows are honoured; bytes that do not fit become U+FFFD.
+    Only text encodings that Python supports are used; invalid bytes become U+FFFD.
     """
     encoding, mark = "utf-8", b""
     for mark_bytes, name in _BOMS:
@@ -240,9 +241,9 @@ def decode(path: str, data: bytes) -> SourceFile:
 
 
 def _ignored_encoding(text: str, encoding: str) -> Span | None:
-    """Where a text declares another encoding than the one that it was read with; None if it does not.
+    """The place where a text declares another encoding than the one it was read with; `None` if there is none.
 
-    Names that Python does not know are left to the XML parser, which reports them.
+    Names that Python does not know are reported by the XML parser.
     """
     declared = _DECLARED.match(text[:_MAX_DECLARATION_BYTES])
     if declared is None:
@@ -263,15 +264,15 @@ _FAMILIES = {
     "utf-32-le": ("utf-32",),
     "utf-32-be": ("utf-32",),
 }
-"""Encoding that a byte order mark stands for -> other names that a declaration may give it."""
+"""The encoding of each byte order mark, with the other names that a declaration may use for it."""
 
 
 _PLAIN = b"<?xml +AD0- ~ \\u0041 !"
-"""Text that UTF-7, HZ and the escape codecs, though they keep most of ASCII, read differently."""
+"""Text that UTF-7, HZ and the escape codecs read differently, although they keep most of ASCII."""
 
 
 def _known_encoding(name: str) -> str:
-    """`name` if it is a text encoding that holds ASCII as it is and can skip what is wrong, else UTF-8."""
+    """`name` if it is a text encoding that is compatible with ASCII and can skip invalid bytes, otherwise UTF-8."""
     try:
         info = codecs.lookup(name)
         if info._is_text_encoding and _PLAIN.decode(info.name) == _PLAIN.decode():

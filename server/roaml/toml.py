@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""TOML with places: what Python's own parser does not keep.
+"""TOML with positions, which Python's parser does not keep.
 
-`tomllib` decides what is valid and gives the values. The scanner here walks over the same text once more and notes
-where keys and values are; it relies on the text being valid.
+`tomllib` validates the text and provides the values. The scanner in this module reads the same text again and records
+the positions of keys and values; it requires valid text.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ else:
     import tomli as tomllib
 
 Path: TypeAlias = "tuple[str | int, ...]"
-"""Keys of tables and indexes of arrays, from the outside to the inside."""
+"""Keys of tables and indices of arrays, from the outermost to the innermost."""
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the keys and the values of a document are. A table with a header of its own has that as its value."""
+    """The positions of the keys and values of a document. The value of a table with a header is the header."""
 
     keys: Mapping[Path, Span]
     values: Mapping[Path, Span]
 
 
 class TomlError(ValueError):
-    """A text is not TOML: the message of the parser, without its place, and the place."""
+    """A text is not valid TOML: the message of the parser, without its position, and the position."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
@@ -47,7 +47,7 @@ def loads(text: str) -> dict[str, Any]:
     """The values of a document.
 
     Raises:
-        TomlError: the text is not TOML, or is nested too deeply for the parser.
+        TomlError: the text is not valid TOML, or is nested too deeply for the parser.
     """
     try:
         return tomllib.loads(text)
@@ -67,7 +67,7 @@ def loads(text: str) -> dict[str, Any]:
 
 
 _DEEPEST = 8
-"""Values that are nested more deeply have no places of their own."""
+"""The maximum nesting depth of values with positions of their own."""
 
 _SPACE = re.compile(r"[ \t]*")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
@@ -81,7 +81,7 @@ _WORD = re.compile(r"[^,=\[\]{}#\s\"']+")
 
 
 def places(text: str) -> Places:
-    """The places in a valid document."""
+    """The positions in a valid document."""
     scanner = _Scanner(text)
     scanner.document()
     return Places(scanner.keys, scanner.values)
@@ -124,7 +124,7 @@ class _Scanner:
         return self.text.startswith(mark, self.at)
 
     def _blank(self) -> bool:
-        """Go over white space and comments; whether anything follows."""
+        """Skip white space and comments; return whether anything follows."""
         found = _BLANK.match(self.text, self.at)
         assert found is not None
         self.at = found.end()
@@ -140,7 +140,7 @@ class _Scanner:
         while True:
             self._space()
             found = _KEY.match(self.text, self.at)
-            if found is None:  # only in a text that is not TOML
+            if found is None:  # only in a text that is not valid TOML
                 return
             self.at = found.end()
             yield _decoded(found[0]), Span(found.start(), found.end())
@@ -171,7 +171,7 @@ class _Scanner:
         self.values[path] = Span(start, self.at)
 
     def _items(self, path: Path, end: str, depth: int) -> None:
-        """What stands between brackets, separated by commas."""
+        """The items between brackets, separated by commas."""
         self.at += 1
         index = 0
         while self._blank() and not self._sees(end):
@@ -195,7 +195,7 @@ class _Scanner:
         self.at += max(1, len(bare[0].rstrip()))
 
     def _skip(self) -> None:
-        """Go over a value, without recursion."""
+        """Skip a value, without recursion."""
         depth = 0
         while self._blank():
             character = self.text[self.at]

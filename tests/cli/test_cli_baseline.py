@@ -95,7 +95,7 @@ def test_a_broken_baseline_is_wrong_use_and_stays(check: Command, tmp_path: Path
     (tmp_path / "known.json").write_bytes(content)
     done = check(".", "--baseline", "known.json")
     assert done.status == 2
-    assert done.err == "as2fm-lsp: known.json: this is no baseline; remove it to write a new one\n"
+    assert done.err == "as2fm-lsp: known.json: not a baseline; remove it to write a new one\n"
     assert (tmp_path / "known.json").read_bytes() == content
 
 

@@ -306,4 +306,4 @@ def test_a_pipe_in_its_place_is_not_waited_for(check: Command, tmp_path: Path) -
     clock.write(tmp_path)
     os.mkfifo(tmp_path / "as2fm.toml")
     done = check(".")
-    assert (done.status, done.err) == (2, f"as2fm-lsp: {tmp_path / 'as2fm.toml'}: it is no regular file\n")
+    assert (done.status, done.err) == (2, f"as2fm-lsp: {tmp_path / 'as2fm.toml'}: it is not a regular file\n")

@@ -38,7 +38,7 @@ def test_safe_fixes_are_made(check: Command, tmp_path: Path, line_end: str, mark
     path.write_bytes(mark + MACHINE.replace("\n", line_end).encode())
     done = check("drainer.ascxml", "--fix", "--severity", "error")
     assert path.read_bytes() == mark + FIXED.replace("\n", line_end).encode()
-    more = "1 more finding has a fix that is not safe to make without a look; an editor offers them: unknown-element"
+    more = "1 more finding has a fix that is not safe to apply without a review; an editor offers them: unknown-element"
     assert done.err == f"as2fm-lsp: fixed drainer.ascxml\nas2fm-lsp: {more}\n"
     assert (done.status, done.codes) == (1, ["unknown-element"])
     again = check("drainer.ascxml", "--fix", "--severity", "error")

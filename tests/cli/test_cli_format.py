@@ -104,7 +104,7 @@ def test_what_is_not_well_formed_is_left_alone(command: Command, folder: Path, d
     done = command("format", "models")
     assert done.status == 1
     assert done.out == "formatted models/p.jani\n"
-    assert done.err == "as2fm-lsp: models/b.ascxml: not well-formed, so it stays as it is\n"
+    assert done.err == "as2fm-lsp: models/b.ascxml: not well-formed, so it is not changed\n"
     assert (folder / "b.ascxml").read_bytes() == data
 
 

@@ -37,7 +37,7 @@ def test_twice(command: Command, tmp_path: Path) -> None:
     before = files(tmp_path)
     done = command("init", "robot")
     assert (done.status, done.out) == (2, "")
-    assert "main.xml exists already; nothing was written" in done.err
+    assert "main.xml already exists; nothing was written" in done.err
     assert files(tmp_path) == before
 
 

@@ -232,7 +232,7 @@ def test_a_file_that_is_no_text_is_left_alone(command: Command, tmp_path: Path) 
     before = read(tmp_path)
     done = command("migrate", ".")
     assert done.status == 2
-    assert done.err == f"as2fm-lsp: {path}: it holds bytes that are no text; mend it first\n"
+    assert done.err == f"as2fm-lsp: {path}: not valid UTF-8; fix the encoding\n"
     assert read(tmp_path) == before
 
 
@@ -259,7 +259,7 @@ def test_a_file_is_never_overwritten(command: Command, tmp_path: Path) -> None:
     before = read(tmp_path)
     done = command("migrate", ".")
     assert done.status == 2
-    assert done.err.endswith("base.ascxml: there is such a file already; nothing was changed\n")
+    assert done.err.endswith("base.ascxml already exists; nothing was changed\n")
     assert read(tmp_path) == before
 
 
@@ -383,7 +383,7 @@ def test_only_systems_are_migrated(command: Command, tmp_path: Path, name: str) 
     write(tmp_path)
     done = command("migrate", name)
     assert done.status == 2
-    assert done.err.endswith("only systems are migrated; name their system file\n")
+    assert done.err.endswith("not a system file; only systems can be migrated, so name the system file\n")
     assert read(tmp_path) == encoded(OLD)
 
 

@@ -140,7 +140,7 @@ def test_devices_and_pipes_are_never_opened(check: Command, command: Command, tm
         for name in ("pipe.xml", "pipe.ascxml", "socket.xml", "/dev/null"):
             done = check(name)
             assert done.status == 2
-            assert done.err.endswith(": it is no regular file\n")
+            assert done.err.endswith(": it is not a regular file\n")
             (tmp_path / "main.xml").write_text(clock.MAIN.replace("clock.ascxml", name))
             assert ("main.xml", 6, "missing-file") in check("main.xml").found
 

@@ -79,7 +79,7 @@ def test_named_files(tmp_path: Path, make, arguments: tuple[str, ...]) -> None: 
     make(tmp_path / "it")
     done = run(tmp_path, *arguments)
     assert done.status == 2
-    assert "it is no regular file" in done.err
+    assert "it is not a regular file" in done.err
     assert "Traceback" not in done.err
 
 

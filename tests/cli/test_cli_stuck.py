@@ -47,20 +47,21 @@ def test_a_stuck_system_is_told_loudly(command: Command, ward: Path) -> None:
         lines[1],
     )
     assert lines[2].startswith("    the clock waits at 2 s for the tree")
-    assert lines[6].startswith("    help: a tick must be answered before time goes on")
+    assert lines[6].startswith("    help: a tick must be answered before time passes")
     assert lines[6].endswith(" [answer-needs-time]")
     assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[7])
     assert done.out.count("the clock waits") == 1
     assert re.search(
         r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
-        r"warning: the system gets stuck, time stands still; who waits for whom is shown above, beneath `delivered`\n",
+        r"warning: the system gets stuck, time stands still; "
+        r"the waiting automata are shown above, beneath `delivered`\n",
         done.out,
     )
     assert "\nnodes of the behavior tree: bt_1002 is Fetch (tree.xml:5)\n" in done.out
 
 
 def test_a_stuck_system_whose_properties_are_decided_before(command: Command, ward: Path) -> None:
-    """No result is doubtful; who waits for whom is shown with the traces that ran on."""
+    """No result is doubtful; the waiting automata are shown with the traces that ran on."""
     text = (ward / "properties.jani").read_text(encoding="utf-8")
     (ward / "properties.jani").write_text(text.replace('"topic_delivered_msg.valid"', "true"), encoding="utf-8")
     out = command("verify", "main.xml").out
@@ -77,11 +78,11 @@ def test_who_waits_for_whom_is_shown_once_for_two_properties(command: Command, w
     (ward / "properties.jani").write_text(json.dumps(written), encoding="utf-8")
     out = command("verify", "main.xml").out
     assert out.count("the clock waits") == 1
-    assert "doubtful; who waits for whom is shown above, beneath `delivered`\n" in out
+    assert "doubtful; the waiting automata are shown above, beneath `delivered`\n" in out
     explained = command("verify", "main.xml", "--explain").out
     assert explained.count("waits at 2 s for the tree") == 1
-    assert explained.count("doubtful; who waits for whom is shown in the trace below\n") == 2
-    assert "\n  who waits for whom is shown above, at the end of the trace of `delivered`\n" in explained
+    assert explained.count("doubtful; the waiting automata are shown in the trace below\n") == 2
+    assert "\n  the waiting automata are shown above, at the end of the trace of `delivered`\n" in explained
     assert explained.count("nodes of the behavior tree:") == 1
 
 
@@ -254,7 +255,7 @@ def test_a_trace_that_goes_wrong_after_its_goal_is_told(command: Command, tmp_pa
     done = command("verify", "main.xml")
     assert done.status == 0
     assert "delivered: 1 in" in done.out
-    assert "probability of getting stuck: not known, since a trace that ran on went wrong: " in done.out
+    assert "probability of getting stuck: unknown, because a longer trace failed: " in done.out
 
 
 def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path) -> None:

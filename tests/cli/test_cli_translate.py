@@ -205,8 +205,8 @@ def test_parameters(command: Command, robot: Path) -> None:
         (("--max-array-size", "0"), "at least one element"),
         (("--indent", "-1"), "from 0 to 16"),
         (("--output", "-", "--map", "-"), "cannot both go to standard output"),
-        (("--output", "nodes/battery.ascxml"), "belongs to the system"),
-        (("--map", "./tree.xml"), "belongs to the system"),
+        (("--output", "nodes/battery.ascxml"), "is part of the system"),
+        (("--map", "./tree.xml"), "is part of the system"),
         (("--output", "nowhere/x.jani"), "nowhere/x.jani: No such file or directory"),
         (("--scxml-dir", "main.xml"), "main.xml: File exists"),
     ],
@@ -221,7 +221,7 @@ def test_wrong_use(command: Command, robot: Path, options: tuple[str, ...], mess
 
 
 def test_no_system_file(command: Command, robot: Path) -> None:
-    for path, message in (("nothing.xml", "there is no such file"), ("tree.xml", "this is no system file")):
+    for path, message in (("nothing.xml", "there is no such file"), ("tree.xml", "not a system file")):
         done = command("translate", path)
         assert done.status == 2
         assert message in done.err
@@ -234,7 +234,7 @@ def test_a_property_file_of_the_default_name_is_kept(command: Command, robot: Pa
     before = (robot / "main.jani").read_bytes()
     done = command("translate", "main.xml")
     assert done.status == 2
-    assert "main.jani belongs to the system; the translation must go to another file" in done.err
+    assert "main.jani is part of the system; write the translation to another file" in done.err
     assert (robot / "main.jani").read_bytes() == before
 
 

@@ -334,7 +334,7 @@ def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
         out, _ = running.communicate(timeout=PATIENCE)
     os.close(ours)
     assert b"heads" in seen
-    assert "interrupted; this is what was known by then" in out
+    assert "interrupted; this is the result so far" in out
 
 
 def endless() -> Json:
@@ -449,7 +449,7 @@ def test_what_cannot_be_read(command: Command, tmp_path: Path) -> None:
     ("change", "message", "at_text"),
     [
         ({"ref": "x", "value": "y"}, "no variable `y`", '"y"'),
-        ({"ref": "x", "value": True}, "`x` is an int, but this is a bool", '"value": true'),
+        ({"ref": "x", "value": True}, "`x` must be an int, not a bool", '"value": true'),
         ({"ref": "x", "value": at("v", 7)}, "index 7 is outside of the array, which has 2 elements", '"op": "aa"'),
         ({"ref": "x", "value": op("%", 1, "x")}, "division by zero", '"op": "%"'),
         ({"ref": "x", "value": op("+", "big", 1)}, "integer overflow", '"op": "+"'),

@@ -53,7 +53,7 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
     assert done.status == 1
     assert "warning: this is the value under uniform choices, and `Pmin` asks for the minimum" in done.out
-    assert "schedulers reach from 0 " in done.out
+    assert "schedulers range from 0 " in done.out
     assert "expected ≥ 0.9: NOT MET" in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["p"]
     assert row["probability"] == 1
@@ -81,7 +81,7 @@ def test_the_side_that_is_asked_for_decides(command: Command, tmp_path: Path) ->
 def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.4")
     assert done.status == 0
-    assert "all schedulers agree: nothing is left to choose in any of 3 states" in done.out
+    assert "all schedulers agree: there is only one choice in each of 3 states" in done.out
     assert "expected ≤ 0.4: met\n" in done.out
     assert "warning" not in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["heads"]
@@ -231,7 +231,7 @@ def test_too_many_combinations_are_told(command: Command, tmp_path: Path) -> Non
     written = document(*parts, variables=variables, syncs=[["a"] * 64], properties=goals)
     done = command("verify", write(tmp_path, written), "--exact")
     assert (done.status, done.out) == (2, "")
-    assert "in one state there are more than 1,048,576 combinations of edges; leave --exact out to estimate" in done.err
+    assert "in one state there are more than 1,048,576 combinations of edges; omit --exact to estimate" in done.err
 
 
 @pytest.mark.parametrize("way_of_saying", ["configuration", "option"])
@@ -303,15 +303,15 @@ def test_constants(command: Command, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("N", "a constant is given like N=20, not 'N'"),
+        ("N", "a constant must have the form N=20, not 'N'"),
         ("N=", "a constant is given like N=20"),
-        ("N=2.5", "the constant N is a whole number, not '2.5'"),
+        ("N=2.5", "the constant N must be a whole number, not '2.5'"),
         ("N=99999999999999999999", "the constant N is a whole number"),
-        ("p=nan", "the constant p is a number, not 'nan'"),
-        ("p=1e999", "the constant p is a number, not '1e999'"),
-        ("on=1", "the constant on is true or false, not '1'"),
-        ("k=0", "the constant k is at least 1, not 0"),
-        ("k=21", "the constant k is at most 20, not 21"),
+        ("p=nan", "the constant p must be a number, not 'nan'"),
+        ("p=1e999", "the constant p must be a number, not '1e999'"),
+        ("on=1", "the constant on must be true or false, not '1'"),
+        ("k=0", "the constant k must be at least 1, not 0"),
+        ("k=21", "the constant k must be at most 20, not 21"),
         ("fixd=1", "there is no constant fixd; did you mean fixed?"),
         ("fixed=1", "the constant fixed has a value in the model"),
         ("N=3", "the constant N is given twice"),
@@ -441,9 +441,9 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
         (("--method", "fixed"), "the method `fixed` needs a number of traces (--max-traces)"),
         (("--epsilon", "1e-300"), "a number from 1e-09 on is expected"),
         (("--epsilon", "1e-300", "--method", "okamoto"), "a number from 1e-09 on is expected"),
-        (("--epsilon", "nan"), "a number between 0 and 1 is expected"),
-        (("--epsilon", "small"), "a number between 0 and 1 is expected"),
-        (("--max-traces", "9" * 5000), "a whole number from 1 on is expected"),
+        (("--epsilon", "nan"), "expected a number between 0 and 1"),
+        (("--epsilon", "small"), "expected a number between 0 and 1"),
+        (("--max-traces", "9" * 5000), "expected a whole number of at least 1"),
         (("--expect", "heads > 2"), "heads is a probability and can only be compared with a number from 0 to 1, not 2"),
         (("--expect", "heads >= -0.5"), "not -0.5"),
         (("--expect", "heads <= inf"), "not inf"),
@@ -552,4 +552,4 @@ def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "state.json")
     done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
     assert done.status == 2
-    assert "state.json: it is no regular file" in done.err
+    assert "state.json: it is not a regular file" in done.err

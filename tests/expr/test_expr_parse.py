@@ -104,7 +104,7 @@ TOO_LARGE = ["1e309", "9" * 400, "9" * 6000, "0" + "9" * 6000, "0x" + "f" * 6000
 def test_numbers_that_are_too_large(text: str) -> None:
     expr, findings = parse(Decoded(text, 0))
     assert show(expr) == "_"
-    assert found(findings) == [(0, len(text), "the number is too large: the greatest is 1.8e308")]
+    assert found(findings) == [(0, len(text), "the number is too large; the maximum is 1.8e308")]
 
 
 STRINGS = [
@@ -135,29 +135,29 @@ def test_strings(text: str, value: str) -> None:
 UNSUPPORTED_CASES = [
     """
 a ** b
-  ^^ `**` is not supported here: use `Math.pow(x, y)`
+  ^^ `**` is not supported: use `Math.pow(x, y)`
 => _<a b>
 """,
     """
 a & b
-  ^ `&` is not supported here: for a logical and write `&&`
+  ^ `&` is not supported: write `&&` for a logical and
 => _<a b>
 """,
     """
 a | b == c
-  ^ `|` is not supported here: for a logical or write `||`
+  ^ `|` is not supported: write `||` for a logical or
 => _<a (== b c)>
 """,
     """
 a ^ b
-  ^ `^` is not supported here: bit operations are not supported
+  ^ `^` is not supported: bit operations are not supported
 => _<a b>
 """,
     """
 a << b >> c >>> d
-  ^^ `<<` is not supported here: bit operations are not supported
-       ^^ `>>` is not supported here: bit operations are not supported
-            ^^^ `>>>` is not supported here: bit operations are not supported
+  ^^ `<<` is not supported: bit operations are not supported
+       ^^ `>>` is not supported: bit operations are not supported
+            ^^^ `>>>` is not supported: bit operations are not supported
 => _<_<_<a b> c> d>
 """,
     """
@@ -177,43 +177,43 @@ void
 """,
     """
 a = 1
-  ^ `=` is not supported here: to compare write `==`; to store a value use `<assign>`
+  ^ `=` is not supported: write `==` to compare; use `<assign>` to store a value
 => _<a 1>
 """,
     """
 a += 1
-  ^^ `+=` is not supported here: to store a value use `<assign>`
+  ^^ `+=` is not supported: use `<assign>` to store a value
 => _<a 1>
 """,
     """
 a++ + b
- ^^ `++` is not supported: to change a variable use `<assign>`
+ ^^ `++` is not supported; use `<assign>` to change a variable
 => (+ _<a> b)
 """,
     """
 --a
-^^ `--` is not supported: to change a variable use `<assign>`
+^^ `--` is not supported: use `<assign>` to change a variable
 => a
 """,
     """
 a, b
- ^ `,` is not supported here: an expression is a single value
+ ^ `,` is not supported: an expression is a single value
 => a
 """,
     """
 (a, b) + c
-  ^ `,` is not supported here: an expression is a single value
+  ^ `,` is not supported: an expression is a single value
 => (+ a c)
 """,
     """
 a; b
- ^ one expression only: statements are not supported
+ ^ an expression must be a single value; statements are not supported
 => a
 """,
     """
 v[i++] == (b & c)
-   ^^ `++` is not supported: to change a variable use `<assign>`
-             ^ `&` is not supported here: for a logical and write `&&`
+   ^^ `++` is not supported; use `<assign>` to change a variable
+             ^ `&` is not supported: write `&&` for a logical and
 => (== v[_<i>] _<b c>)
 """,
     """
@@ -228,7 +228,7 @@ function (x) { return x }
 """,
     """
 x => x + 1
-  ^^ `=>` is not supported here: to compare write `>=`; functions are not supported
+  ^^ `=>` is not supported: write `>=` to compare; functions are not supported
 => _<x (+ x 1)>
 """,
     """
@@ -238,12 +238,12 @@ if (a) b
 """,
     """
 this.x
-^^^^ `this` is not supported: a variable is named as such
+^^^^ `this` is not supported; use the name of the variable
 => _.x
 """,
     """
 a in b
-  ^^ `in` is not supported here: write the comparison out
+  ^^ `in` is not supported: write the comparison explicitly
 => _<a b>
 """,
     """
@@ -253,17 +253,17 @@ a in b
 """,
     """
 `a${b}`
-^^^^^^^ template strings are not supported: write the text in single quotes
+^^^^^^^ template strings are not supported; write the string in single quotes
 => _
 """,
     """
 a <> b
-  ^^ `<>` is not supported here: to compare write `!=`
+  ^^ `<>` is not supported: write `!=` to compare
 => _<a b>
 """,
     """
 a =< b
-  ^^ `=<` is not supported here: to compare write `<=`
+  ^^ `=<` is not supported: write `<=` to compare
 => _<a b>
 """,
 ]
@@ -281,17 +281,17 @@ def test_unsupported(written: str) -> None:
 MISTAKES = [
     """
 _msg.
-    ^ a name is missing behind the `.`
+    ^ a name is missing after the `.`
 => _msg._
 """,
     """
 _msg. + 1
-    ^ a name is missing behind the `.`
+    ^ a name is missing after the `.`
 => (+ _msg._ 1)
 """,
     """
 a +
-  ^ a value is missing behind `+`
+  ^ a value is missing after `+`
 => (+ a _)
 """,
     """
@@ -306,12 +306,12 @@ a + * b
 """,
     """
 a &&
-  ^^ a value is missing behind `&&`
+  ^^ a value is missing after `&&`
 => (&& a _)
 """,
     """
 !
-^ a value is missing behind `!`
+^ a value is missing after `!`
 => (! _)
 """,
     """
@@ -357,7 +357,7 @@ f(a b (c) d, e) + g
 """,
     """
 a[
- ^ a value is missing behind `[`
+ ^ a value is missing after `[`
 => a[_]
 """,
     """
@@ -377,7 +377,7 @@ a[]
 """,
     """
 {'a'}
- ^^^ `:` and a value are missing behind `'a'`
+ ^^^ `:` and a value are missing after `'a'`
 => {a: _}
 """,
     """
@@ -387,12 +387,12 @@ a[]
 """,
     """
 'abc
-^^^^ the text has no closing '
+^^^^ the string has no closing '
 => 'abc'
 """,
     """
 a == "b + 1
-     ^^^^^^ the text has no closing "
+     ^^^^^^ the string has no closing "
 => (== a 'b + 1')
 """,
     """
@@ -407,7 +407,7 @@ a b
 """,
     """
 a ? b
-    ^ `:` and the other value of `?` is missing behind `b`
+    ^ `:` and the other value of `?` is missing after `b`
 => (? a b _)
 """,
     """
@@ -429,7 +429,7 @@ a @ b
 """,
     """
 a = = b
-  ^ `=` is not supported here: to compare write `==`; to store a value use `<assign>`
+  ^ `=` is not supported: write `==` to compare; use `<assign>` to store a value
     ^ a value is missing before `=`
 => _<_<a _> b>
 """,
@@ -471,7 +471,7 @@ DEEP += ["f(" * 5000, "a?b:" * 5000 + "c", "a++" + "++" * 5000]
 def test_nested_too_deep(text: str) -> None:
     expr, findings = parse(Decoded(text, 0))
     assert show(expr) == "_"
-    assert found(findings) == [(0, len(text), f"the expression is nested more than {MAX_DEPTH} deep")]
+    assert found(findings) == [(0, len(text), f"the expression is nested more than {MAX_DEPTH} levels deep")]
 
 
 def test_deep_but_not_too_deep() -> None:

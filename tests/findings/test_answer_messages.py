@@ -36,7 +36,7 @@ def test_both_answers_in_one_body_are_named(tmp_path: Path) -> None:
 def test_the_first_answer_of_an_earlier_step_is_named(tmp_path: Path) -> None:
     title = "answered at once and again when the response comes"
     [(message, related)] = said(tmp_path, "paths_tick", title, "repeated-answer")
-    assert "it was answered before, by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
+    assert "it was already answered by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
     assert [text for _, text in related] == ["the first answer", "the second answer"]
     assert related[0][0] < related[1][0]
 
@@ -49,22 +49,24 @@ def test_the_answer_on_entering_a_state_is_named(tmp_path: Path) -> None:
 
 def test_a_halt_names_the_plugin_that_runs(tmp_path: Path) -> None:
     [(message, _)] = said(tmp_path, "paths_tick", "a waiting state that takes no halt", "unanswered-halt")
-    assert message.startswith("a halt that comes while the plugin is running in the state `c`")
+    assert message.startswith("a halt that arrives while the plugin is running in the state `c`")
 
 
 def test_the_variable_with_the_new_goal_is_named(tmp_path: Path) -> None:
     title = "the running goal is rejected instead of the new one"
     [(message, _)] = said(tmp_path, "paths_goal", title, "wrong-goal-id")
-    assert message.endswith("holds the id of an earlier goal, not of the one that has come; name it by `other`")
+    assert message.endswith(
+        "holds the id of an earlier goal, not of the one that has just arrived; use `other` as `goal_id`"
+    )
 
 
 def test_one_mistake_with_an_id_gives_one_advice(tmp_path: Path) -> None:
     """The variable holds nothing on one path, and the id of a rejected goal on another."""
     [(message, _)] = said(tmp_path, "paths_goal", "ended by a variable of rejected goals only", "wrong-goal-id")
-    assert "was rejected; keep the id of the accepted goal in another variable" in message
+    assert "was rejected; store the id of the accepted goal in another variable" in message
 
 
 def test_constants_name_the_client_that_they_mean(tmp_path: Path) -> None:
     [(message, related)] = said(tmp_path, "paths_goal", "a constant id with two clients", "wrong-goal-id")
-    assert "which is always that of `Client`, though `/draw` has 2 clients" in message
+    assert "which is always the id of `Client`, but `/draw` has 2 clients" in message
     assert [text for _, text in related] == ["here, too"]

@@ -91,7 +91,7 @@ def test_halt_in_one_state() -> None:
 
 
 def test_halt_in_all_states() -> None:
-    title = "Add `<bt_halt>` to every state that takes ticks"
+    title = "Add `<bt_halt>` to every state with `<bt_tick>`"
     every = PLUGIN.replace("‸", "").replace("</bt_tick>", "</bt_tick>" + HALT)
     assert done(PLUGIN, title) == {"machine.ascxml": every}
     assert titles(every.replace("<bt_tick", "‸<bt_tick", 1)) == []
@@ -314,7 +314,7 @@ def test_all_of_a_rule(line_end: str) -> None:
 def test_all_safe_fixes() -> None:
     """What is a guess is left alone."""
     text = LOGS.replace('event="e"', 'event="e" tpye="external"')
-    after = done(text, "Make all safe fixes in this file")
+    after = done(text, "Apply all safe fixes in this file")
     assert after == {"machine.ascxml": WITHOUT_LOGS.replace('event="e"', 'event="e" tpye="external"')}
     assert not list(offered(WITHOUT_LOGS.replace("<asign", "‸<asign"), FIX_ALL))
 

@@ -226,7 +226,7 @@ state  <transition event="go" target="‸"/>
 
 state  <transition event="‸"/>
     go : from Other
-    done : nobody sends it
+    done : never sent
 
 go  <send event="‸"/>
     go : to Node

@@ -44,7 +44,7 @@ robot  tree.xml  <W|alk  plugin Walk | in goal : int32 | BT_plugin_1001_Walk | g
 robot  tree.xml  <S|equence>  control node Sequence | Ticks its children | BT_plugin_1000_Sequence
 robot  tree.xml  name="|w"  node w | BT_plugin_1002_w
 robot  tree.xml  go|al="{g}"  in goal : int32 | Holds {g} in bt_1001, bt_1002
-robot  tree.xml  <Act|ion  A leaf that does something
+robot  tree.xml  <Act|ion  A leaf that executes an action
 robot  plugin.ascxml  <bt_ti|ck  the parent ticks this node | In plain SCXML bt_1001_tick, bt_1002_tick
 robot  plugin.ascxml  <bt_return_|halted  In plain SCXML bt_1001_halt_response, bt_1002_halt_response
 robot  main.xml  max_time value="|1"  1 s: 1 000 000 000 ns of the clock
@@ -53,7 +53,7 @@ robot  main.xml  src="a|.ascxml"  node A
 robot  main.xml  src="tree|.xml"  Behavior trees Main, Sub
 robot  main.xml  src="prop|erties.jani"  p: go.valid ∧ (go__to__x <
 robot  main.xml  src="ty|pes.xml"  Structs Pose
-robot  properties.jani  "|go.valid  go.valid : bool | was ever sent | event go
+robot  properties.jani  "|go.valid  go.valid : bool | has been sent | event go
 robot  properties.jani  go__to__|x  go__to__x : float64 | member of struct Pose
 robot  properties.jani  ros_fields__d|ata  int32 data | Field of std_msgs/Int32
 robot  properties.jani  "|∧"  go.valid ∧ | Both hold
@@ -66,7 +66,7 @@ corners  server.ascxml  service_name="/c|alc"  service /calc | Served by Server 
 corners  server.ascxml  sum &lt; 3 &|amp;&amp;  bool && bool | both
 corners  server.ascxml  sum &l|t; 3  number < number
 corners  tree.xml  ID="Sa|me" v="{=}"  tree Same | 4 nodes
-corners  properties.jani  "op": "Pm|in"  Pmin(F ( | least probability
+corners  properties.jani  "op": "Pm|in"  Pmin(F ( | minimum probability
 """
 
 
@@ -145,14 +145,14 @@ M|ath.pow  Math|Functions: abs, ceil, cos, floor, log, max, min, pow, random, si
 Math.p|ow  Math.pow(x, y) : float|x to the power of y.
 "|-Math  -number : int or float|The negative.
 a[0] |% 2  number % number : int or float|The remainder of the division.
-1 |? 2  bool ? x : y|The first of both where the condition holds, else the second.
-a.l|ength  length : int|How many elements a has now. Assigning a smaller number shortens it, 0 empties it.
-SUCC|ESS  SUCCESS = 1|An answer of a node of the tree.
-_b|t.status  _bt|  status : int8|The answer of the child.
-"|b" t  b : float64|Meant from 0.0 to 9.0 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
-id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · up to 3 elements · starts as []|Read 3 times
+1 |? 2  bool ? x : y|The first value if the condition holds, otherwise the second.
+a.l|ength  length : int|The current number of elements of a. Assigning a smaller number shortens it, 0 empties it.
+SUCC|ESS  SUCCESS = 1|The status of a tree node.
+_b|t.status  _bt|  status : int8|The status that the child has returned.
+"|b" t  b : float64|Intended range 0.0 to 9.0 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once
+id="|a" type  a : int32[3]|From −2 147 483 648 to 2 147 483 647 · at most 3 elements · starts as []|Read 3 times
 n="|c" expr  c : int|Not declared|Gets 1 + a[0]|Written once
-target="|done  state done|Not defined|From s on the timer t|Nothing leads away
+target="|done  state done|Not defined|From s on the timer t|No transition leads away
 """
 
 

@@ -36,25 +36,25 @@ REFUSALS = """
 a.ascxml         _msg.|data              x         `data` is defined by ROS
 a.ascxml         std_msgs/|Int32         x         is defined by ROS
 tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
-a.ascxml         |transition             x         no name stands here
-a.ascxml         id="|p" type            n         there is a variable `n` already
-a.ascxml         id="|p" type            p         it is called `p` already
-a.ascxml         id="|p" type            _msg      what received data are called
-a.ascxml         id="|p" type            a b       cannot name a variable
+a.ascxml         |transition             x         there is no name here
+a.ascxml         id="|p" type            n         a variable `n` already exists
+a.ascxml         id="|p" type            p         its name is already `p`
+a.ascxml         id="|p" type            _msg      the name of received data
+a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      divides the parts of names
-a.ascxml         event="|go" target      topic_x   the translation calls its own events so
+a.ascxml         event="|go" target      topic_x   the translation uses it for its own events
 types.xml        id="|Pose"              int32     cannot name a struct
 types.xml        id="|Pose"              true      cannot name a struct
 types.xml        id="|x"                 false     cannot name a member
 tree.xml         <|Walk                  Sequence  is a name of BehaviorTree.CPP
-tree.xml         <|Walk                  A         there is a state machine `A` already
-tree.xml         ID="|Sub"               Main      there is a behavior tree `Main` already
+tree.xml         <|Walk                  A         a state machine `A` already exists
+tree.xml         ID="|Sub"               Main      a behavior tree `Main` already exists
 tree.xml         {|own}"                 true      cannot name a blackboard variable
-tree.xml         {|own}"                 g         there is a blackboard variable `g` already
-plugin.ascxml    key="|goal"             out       there is a port `out` already
+tree.xml         {|own}"                 g         a blackboard variable `g` already exists
+plugin.ascxml    key="|goal"             out       a port `out` already exists
 plugin.ascxml    key="|goal"             ID        cannot name a port
-a.ascxml         topic="/|a/b"           /c        there is a topic `c` already
+a.ascxml         topic="/|a/b"           /c        a topic `c` already exists
 a.ascxml         topic="/|a/b"           c d       cannot name a topic
 """
 

@@ -195,23 +195,23 @@ duration[] d
     """,
     """
 Header header
-^^^^^^ a bare `Header` is taken as `std_msgs/Header`
+^^^^^^ a bare `Header` is read as `std_msgs/Header`
     """,
     """
 Geometry/Point p
-^^^^^^^^^^^^^^ `Geometry` is no package name; package names are lower_snake_case
+^^^^^^^^^^^^^^ `Geometry` is not a valid package name; package names are lower_snake_case
     """,
     """
 geometry_msgs/point p
-^^^^^^^^^^^^^^^^^^^ `point` is no message name; message names are CamelCase
+^^^^^^^^^^^^^^^^^^^ `point` is not a valid message name; message names are CamelCase
     """,
     """
 std_srvs/srv/Empty e
-^^^^^^^^^^^^^^^^^^ a field holds messages; `std_srvs/srv/Empty` is a service
+^^^^^^^^^^^^^^^^^^ a field contains messages; `std_srvs/srv/Empty` is a service
     """,
     """
 p/action/Go g
-^^^^^^^^^^^ a field holds messages; `p/action/Go` is an action
+^^^^^^^^^^^ a field contains messages; `p/action/Go` is an action
     """,
     """
 a/b/c/D d
@@ -219,7 +219,7 @@ a/b/c/D d
     """,
     """
 [3] x
-^^^ a type is missing here
+^^^ a type is missing
     """,
     # bounds and sizes
     """
@@ -232,7 +232,7 @@ string<10 s
     """,
     """
 int32<=5 x
-^^^^^^^^ only strings have a bound `<=N`; an array of at most N elements is written `T[<=N]`
+^^^^^^^^ only strings can have a bound `<=N`; an array of at most N elements is written `T[<=N]`
     """,
     """
 int32[0] x
@@ -256,15 +256,15 @@ int32[5 x
     """,
     """
 int32[][] x
-^^^^^^^^^ an array has one dimension; for more, make a message
+^^^^^^^^^ an array has only one dimension; for more, use an array of messages
     """,
     """
 string <= 10 s
-^^^^^^^^^^^^ no spaces inside a type; write `string<=10`
+^^^^^^^^^^^^ a type cannot contain spaces; write `string<=10`
     """,
     """
 int32 x[5]
-^^^^^^^^^^ the size of an array belongs to its type; write `int32[5] x`
+^^^^^^^^^^ the size of an array is part of its type; write `int32[5] x`
     """,
     # names
     """
@@ -273,27 +273,27 @@ int32
     """,
     """
 int32 myValue
-      ^^^^^^^ `myValue` is no field name; field names are lower_snake_case
+      ^^^^^^^ `myValue` is not a valid field name; field names are lower_snake_case
     """,
     """
 int32 X
-      ^ `X` is no field name; field names are lower_snake_case, and a constant is written `NAME=value`
+      ^ `X` is not a valid field name; field names are lower_snake_case, and a constant is written `NAME=value`
     """,
     """
 int32 x;
-      ^^ `x;` is no field name
+      ^^ `x;` is not a valid field name
     """,
     """
 int32 a__b
-      ^^^^ `a__b` is no field name
+      ^^^^ `a__b` is not a valid field name
     """,
     """
 int32 a_
-      ^^ `a_` is no field name
+      ^^ `a_` is not a valid field name
     """,
     """
 int32 class
-      ^^^^^ `class` is a keyword of C++; the code that ROS generates from it will not compile
+      ^^^^^ `class` is a keyword of C++; the code that ROS 2 generates will not compile
     """,
     """
 int32 lambda
@@ -301,70 +301,70 @@ int32 lambda
     """,
     """
 uint8 structure_needs_at_least_one_member
-      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ this name is kept for the member that ROS gives to an empty message
+      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ this name is reserved for the member that ROS 2 adds to an empty message
     """,
     """
 int32 Max=3
-      ^^^ `Max` is no constant name; constants are UPPER_SNAKE_CASE
+      ^^^ `Max` is not a valid constant name; constants are UPPER_SNAKE_CASE
     """,
     """
 int32 x = 3
-      ^ `x` is no constant name; constants are UPPER_SNAKE_CASE, and a default is written without `=`: `int32 x value`
+      ^ `x` is not a valid constant name; constants are UPPER_SNAKE_CASE
     """,
     """
 X=3
-^^^ a constant is written `type NAME=value`; the type is missing here
+^^^ the type of the constant is missing; write `type NAME=value`
     """,
     """
 int32 = 3
-      | a name is missing here; a constant is written `type NAME=value`
+      | a name is missing; a constant is written `type NAME=value`
     """,
     """
 int32 a
 string a
-       ^ there is already a `a` here
+       ^ `a` is defined twice; rename one of them
     """,
     # constants
     """
 int32[] X=[1]
-^^^^^^^ a constant is a single value; ROS 2 has no constants of array type
+^^^^^^^ a constant must be a single value; ROS 2 does not support array constants
     """,
     """
 Point P=1
-^^^^^ a constant has a primitive type; `my_pkg/Point` is a message type
+^^^^^ a constant must have a primitive type; `my_pkg/Point` is a message type
     """,
     """
 string<=5 S=abc
-^^^^^^^^^ the string of a constant has no bound; write `string`
+^^^^^^^^^ the string of a constant cannot have a bound; write `string`
     """,
     """
 int32 X=
-        | a value of type `int32` is missing here
+        | a value of type `int32` is missing
     """,
     # values
     """
 uint8 x 256
-        ^^^ 256 does not fit into `uint8`, which goes from 0 to 255
+        ^^^ 256 does not fit into `uint8`, whose range is 0 to 255
     """,
     """
 int8 X=-129 # too small
-       ^^^^ -129 does not fit into `int8`, which goes from -128 to 127
+       ^^^^ -129 does not fit into `int8`, whose range is -128 to 127
     """,
     """
 byte x -1
-       ^^ -1 does not fit into `byte`, which goes from 0 to 255
+       ^^ -1 does not fit into `byte`, whose range is 0 to 255
     """,
     """
 int32 x 1.0
-        ^^^ `1.0` is no integer; a `int32` is one from -2147483648 to 2147483647
+        ^^^ `1.0` is not an integer; a `int32` is an integer from -2147483648 to 2147483647
     """,
     """
 int32 x 1_000
-        ^^^^^ `1_000` is no integer
+        ^^^^^ `1_000` is not an integer
     """,
     """
 char c 'a'
-       ^^^ in ROS 2 a `char` is a number from 0 to 255; write `97`
+       ^^^ in ROS 2, a `char` is a number from 0 to 255; write `97`
     """,
     """
 float32 x 1e39
@@ -376,15 +376,15 @@ float64 x 1e999
     """,
     """
 float64 x 1.0f
-          ^^^^ `1.0f` is no number; write for example `1.5`, `-2` or `1e-3`
+          ^^^^ `1.0f` is not a number; write for example `1.5`, `-2` or `1e-3`
     """,
     """
 float64 x nan
-          ^^^ `nan` is no number
+          ^^^ `nan` is not a number
     """,
     """
 bool x yes
-       ^^^ `yes` is no bool; write `true` or `false`
+       ^^^ `yes` is not a bool; write `true` or `false`
     """,
     """
 string s "abc # def
@@ -392,15 +392,15 @@ string s "abc # def
     """,
     """
 string s "abc" def
-              ^^^^ the string ends before this; inside a string write \\" for "
+              ^^^^ the string ends before this; inside a string, write \\" for "
     """,
     """
 string<=2 s abc
-            ^^^ the string has 3 characters; `string<=2` has at most 2
+            ^^^ the string has 3 characters, but `string<=2` allows at most 2
     """,
     """
 int32 x [1]
-        ^^^ `int32` is no array, so its value is no list; write the array `int32[]` or `int32[N]`
+        ^^^ `int32` is not an array, so its value cannot be a list; use the type `int32[]` or `int32[N]`
     """,
     """
 Point p 3
@@ -408,7 +408,7 @@ Point p 3
     """,
     """
 int32[] x 1, 2
-          ^^^^ the default of an array is a list in brackets: `[1, 2]`
+          ^^^^ the default of an array must be a list in brackets: `[1, 2]`
     """,
     """
 int32[] x [1, 2
@@ -416,25 +416,25 @@ int32[] x [1, 2
     """,
     """
 int32[] x [1] 2
-             ^^ unexpected text behind the list; only a comment may follow
+             ^^ unexpected text after the list; only a comment may follow
     """,
     """
 int32[2] x [1]
-           ^^^ `int32[2]` has exactly 2 elements, this list has 1
+           ^^^ `int32[2]` must have exactly 2 elements, not 1
     """,
     """
 int32[<=2] x [1, 2, 3]
-             ^^^^^^^^^ `int32[<=2]` has at most 2 elements, this list has 3
+             ^^^^^^^^^ `int32[<=2]` must have at most 2 elements, not 3
     """,
     """
 uint8[] x [1, 300, -1,]
               ^^^ 300 does not fit into `uint8`
                    ^^ -1 does not fit into `uint8`
-                      | a value of type `uint8` is missing here
+                      | a value of type `uint8` is missing
     """,
     """
 string<=1[] x ["a", "bc"]
-                    ^^^^ the string has 2 characters; `string<=1` has at most 1
+                    ^^^^ the string has 2 characters, but `string<=1` allows at most 1
     """,
     # sections
     """
@@ -446,25 +446,25 @@ int32 a
     """srv
 ---
 ---
-^^^ a service has 2 sections, request and response; this `---` begins one more
+^^^ a service has 2 sections, request and response; this `---` begins an additional one
     """,
     """srv
 int32 a
 -----
-^^^^^ the line between two sections is `---` and nothing else
+^^^^^ the line between two sections must be exactly `---`
 int32 b
     """,
     """srv
 --- # response
-^^^^^^^^^^^^^^ the line between two sections is `---` and nothing else
+^^^^^^^^^^^^^^ the line between two sections must be exactly `---`
     """,
     """srv
 int32 a
-| a service has the sections request and response, divided by lines `---`; missing here: response
+| a service has the sections request and response, separated by lines `---`; missing here: response
     """,
     """action
 ---
-| an action has the sections goal, result and feedback, divided by lines `---`; missing here: feedback
+| an action has the sections goal, result and feedback, separated by lines `---`; missing here: feedback
     """,
 ]
 

@@ -153,7 +153,7 @@ NOT_FOUND = [
         Reason.UNKNOWN_PACKAGE,
         "there is no package `geometry`; did you mean `geometry_msgs/Twist`?",
     ),
-    ("msg", "his_own/Thing", Reason.UNKNOWN_PACKAGE, "there is no package `his_own`; looked in the workspace /"),
+    ("msg", "his_own/Thing", Reason.UNKNOWN_PACKAGE, "there is no package `his_own`; searched the workspace /"),
     (
         "msg",
         "std_msgs/Int33",

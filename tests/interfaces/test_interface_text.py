@@ -137,5 +137,5 @@ def test_too_long_a_text_is_said_so() -> None:
     definition, findings = parse(text, "p", "N", "msg")
     assert [field.name for field in definition.sections[0].fields] == ["x"]
     assert [finding.message for finding in findings] == [
-        "this is too long for an interface definition; only 1,000,000 characters are read"
+        "too long for an interface definition; only the first 1,000,000 characters are read"
     ]

@@ -90,20 +90,20 @@ def test_the_model_of_the_examples_is_sound() -> None:
 
 SYNTAX = [
     ("type", "⟦'mdpp'⟧", "there is no model type `mdpp`; did you mean `mdp`?"),
-    ("type", "⟦1⟧", "a model type is written as a string, not as a number"),
+    ("type", "⟦1⟧", "a model type must be a string, not as a number"),
     ("features", "['⟦array⟧']", "there is no feature `array`; did you mean `arrays`?"),
-    ("features", "[⟦'edge-priorities'⟧]", "what the feature `edge-priorities` adds to JANI is not read"),
-    ("features", "[⟦1⟧]", "a feature is written as a string, not as a number"),
-    ("metadata", "⟦'me'⟧", "metadata is written as an object `{ }`, not as a string"),
+    ("features", "[⟦'edge-priorities'⟧]", "the feature `edge-priorities` of JANI is not supported"),
+    ("features", "[⟦1⟧]", "a feature must be a string, not as a number"),
+    ("metadata", "⟦'me'⟧", "metadata must be an object `{ }`, not as a string"),
     ("metadata", "{'⟦autor⟧': 'me'}", "metadata has no member `autor`; did you mean `author`?"),
-    ("metadata", "{'url': ⟦1⟧}", "`url` is written as a string, not as a number"),
+    ("metadata", "{'url': ⟦1⟧}", "`url` must be a string, not as a number"),
     (
         "constants",
         "[{'name': 'C', 'type': {'kind': 'bounded', 'base': ⟦'bool'⟧}}]",
         "only int and real can have bounds",
     ),
-    ("variables", "⟦{}⟧", "`variables` is written as a list `[ ]`, not as an object"),
-    ("variables", "[⟦1⟧]", "a variable is written as an object `{ }`, not as a number"),
+    ("variables", "⟦{}⟧", "`variables` must be a list `[ ]`, not as an object"),
+    ("variables", "[⟦1⟧]", "a variable must be an object `{ }`, not as a number"),
     ("variables", "[⟦{⟧}]", "a variable needs `name` and `type`"),
     ("variables", "[{'name': ⟦''⟧, 'type': 'int'}]", "`name` must not be empty"),
     ("variables", "[{'name': 'n', 'type': ⟦'integer'⟧}]", "there is no type `integer`"),
@@ -114,12 +114,12 @@ SYNTAX = [
     ),
     ("variables", "[{'name': 'n', 'type': ⟦{⟧'base': 'int'}}]", "a type needs `kind`"),
     ("variables", "[{'name': 'n', 'type': ⟦{⟧'kind': 'array'}}]", "an array type needs `base`"),
-    ("variables", "[{'name': 'n', 'type': 'int', 'transient': ⟦1⟧}]", "`transient` is written as true or false"),
-    ("guard", "⟦null⟧", "an expression is written as a number, true, false, a name or an object `{ }`, not as null"),
+    ("variables", "[{'name': 'n', 'type': 'int', 'transient': ⟦1⟧}]", "`transient` must be true or false"),
+    ("guard", "⟦null⟧", "an expression must be a number, true, false, a name or an object `{ }`, not as null"),
     ("guard", "⟦1e999⟧", "this number is too large"),
     ("guard", "⟦''⟧", "a name must not be empty"),
     ("guard", "⟦{⟧}", "an expression needs `op`"),
-    ("guard", "{'op': ⟦1⟧}", "`op` is written as a string, not as a number"),
+    ("guard", "{'op': ⟦1⟧}", "`op` must be a string, not as a number"),
     ("guard", "{'op': '⟦xor⟧', 'left': true, 'right': true}", "there is no operator `xor`; did you mean `or`?"),
     ("guard", "⟦{⟧'op': '∧', 'left': true}", "`∧` needs `right`"),
     (
@@ -127,28 +127,28 @@ SYNTAX = [
         "{'op': '¬', 'exp': true, '⟦left⟧': true}",
         "`¬` has no member `left`",
     ),
-    ("guard", "⟦{'op': 'deadlock'}⟧", "this can only stand in a property, not in an expression"),
+    ("guard", "⟦{'op': 'deadlock'}⟧", "this is only allowed in a property, not in an expression"),
     ("guard", "{'constant': '⟦pi⟧'}", "there is no constant `pi`"),
-    ("guard", "{'constant': ⟦3⟧}", "`constant` is written as a string, not as a number"),
+    ("guard", "{'constant': ⟦3⟧}", "`constant` must be a string, not as a number"),
     ("guard", "{'op': '=', 'left': {'distribution': '⟦Uniforn⟧', 'args': []}, 'right': 1}", "did you mean `Uniform`?"),
     (
         "guard",
         "{'op': '=', 'left': {'distribution': 'Uniform', 'args': ⟦[1]⟧}, 'right': 1}",
-        "`Uniform` has 2 arguments, not 1",
+        "`Uniform` needs 2 arguments, not 1",
     ),
-    ("guard", "{'op': '=', 'left': {'op': 'av', 'elements': ⟦1⟧}, 'right': 'a'}", "`elements` is written as a list"),
+    ("guard", "{'op': '=', 'left': {'op': 'av', 'elements': ⟦1⟧}, 'right': 'a'}", "`elements` must be a list"),
     (
         "assignments",
         "[{'ref': ⟦{'op': '+', 'left': 'n', 'right': 1}⟧, 'value': 1}]",
         "only a variable or a part of one",
     ),
     ("assignments", "[{'ref': ⟦{'op': 'aa', 'exp': 1, 'index': 0}⟧, 'value': 1}]", "only a variable or a part of one"),
-    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦1.5⟧}]", "`index` is a whole number"),
-    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` is written as a whole number, not as true"),
+    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦1.5⟧}]", "`index` must be a whole number"),
+    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` must be a whole number, not as true"),
     ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "an assignment has no member `guard`"),
     ("edges", "[⟦{⟧'location': 'idle'}]", "an edge needs `destinations`"),
     ("syncs", "[{'synchronise': ⟦['go', null]⟧}]", "the vector has 2 entries, but the system has 1 elements"),
-    ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action is written as a string, or null, not as a number"),
+    ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action must be a string or null, not as a number"),
     (
         "property",
         "{'op': '⟦Pmn⟧', 'exp': {'op': 'F', 'exp': true}}",
@@ -167,7 +167,7 @@ SYNTAX = [
     (
         "property",
         "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': true, 'step-bounds': ⟦3⟧}}",
-        "an interval is written as an object `{ }`, not as a number",
+        "an interval must be an object `{ }`, not as a number",
     ),
     (
         "property",
@@ -182,7 +182,7 @@ NAMES = [
     ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides the one of the model"),
     ("locations", "[{'name': 'idle'}, {'name': '⟦idle⟧'}]", "location `idle` is declared twice"),
     ("initial", "['⟦idel⟧']", "there is no location `idel`; did you mean `idle`?"),
-    ("initial", "[⟦3⟧]", "an entry of `initial-locations` is written as a string, not as a number"),
+    ("initial", "[⟦3⟧]", "an entry of `initial-locations` must be a string, not as a number"),
     ("edges", "[{'location': '⟦x⟧', 'destinations': []}]", "there is no location `x`"),
     ("edges", "[{'location': 'idle', 'destinations': [{'location': '⟦x⟧'}]}]", "there is no location `x`"),
     ("edges", "[{'location': 'idle', 'action': '⟦goo⟧', 'destinations': []}]", "there is no action `goo`; did you"),
@@ -225,17 +225,17 @@ NAMES = [
 ]
 
 TYPES = [
-    ("guard", "⟦1⟧", "a guard must be true or false, but this is an int"),
+    ("guard", "⟦1⟧", "a guard must be true or false, not an int"),
     (
         "guard",
         "{'op': '∧', 'left': ⟦'n'⟧, 'right': true}",
-        "an operand of `∧` must be true or false, but this is an int",
+        "an operand of `∧` must be true or false, not an int",
     ),
-    ("guard", "{'op': '<', 'left': 'n', 'right': ⟦'ok'⟧}", "an operand of `<` must be a number, but this is a bool"),
+    ("guard", "{'op': '<', 'left': 'n', 'right': ⟦'ok'⟧}", "an operand of `<` must be a number, not a bool"),
     (
         "guard",
         "⟦{'op': '=', 'left': 'n', 'right': 'ok'}⟧",
-        "the two values must be of one type, but they are an int and a bool",
+        "the two values must have one type, but they are an int and a bool",
     ),
     ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': 'a', 'index': ⟦'r'⟧}, 'right': 1}", "an index must be an int"),
     ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': ⟦'n'⟧, 'index': 0}, 'right': 1}", "only an array has elements"),
@@ -247,12 +247,12 @@ TYPES = [
     (
         "guard",
         "{'op': '=', 'left': {'op': 'oa', 'exp': ⟦'n'⟧}, 'right': 1}",
-        "this must be an option, but it is an int",
+        "this must be an option, not an int",
     ),
     (
         "guard",
         "{'op': '=', 'left': {'op': 'call', 'function': 'f', 'args': [⟦true⟧]}, 'right': 1}",
-        "`k` of `f` must be an int, but this is a bool",
+        "`k` of `f` must be an int, not a bool",
     ),
     (
         "guard",
@@ -268,24 +268,24 @@ TYPES = [
     (
         "assignments",
         "[{'ref': 'n', 'value': ⟦'r'⟧}]",
-        "`n` is an int, but this is a real; `floor` or `ceil` make it an int",
+        "`n` must be an int, not a real; use `floor` or `ceil` for an int",
     ),
     (
         "assignments",
         "[{'ref': 'n', 'value': ⟦{'op': '/', 'left': 4, 'right': 2}⟧}]",
-        "`n` is an int, but this is a real",
+        "`n` must be an int, not a real",
     ),
     (
         "assignments",
         "[{'ref': 'n', 'value': ⟦{'op': 'pow', 'left': 2, 'right': 'n'}⟧}]",
-        "`n` is an int, but this is a real",
+        "`n` must be an int, not a real",
     ),
     ("assignments", "[{'ref': 'r', 'value': 'n'}, {'ref': 'n', 'value': {'op': 'pow', 'left': 2, 'right': 2}}]", None),
     ("assignments", "[{'ref': '⟦C⟧', 'value': '⟦k⟧'}]", None),
     (
         "assignments",
         "[{'ref': {'op': 'aa', 'exp': 'a', 'index': 0}, 'value': ⟦true⟧}]",
-        "this is an int, but this is a bool",
+        "this must be an int, not a bool",
     ),
     (
         "assignments",
@@ -295,37 +295,37 @@ TYPES = [
     (
         "assignments",
         "[{'ref': 'a', 'value': ⟦{'op': 'av', 'elements': [1.5]}⟧}]",
-        "`a` is an array of int, but this is an array of real",
+        "`a` must be an array of int, not an array of real",
     ),
     (
         "assignments",
         "[{'ref': 'a', 'value': {'op': 'av', 'elements': [1, ⟦true⟧]}}]",
-        "the two values must be of one type",
+        "the two values must have one type",
     ),
     ("assignments", "[{'ref': 'n', 'value': {'distribution': 'DiscreteUniform', 'args': [0, 9]}}]", None),
     (
         "assignments",
         "[{'ref': 'n', 'value': ⟦{'distribution': 'Uniform', 'args': [0, 9]}⟧}]",
-        "`n` is an int, but this is a real",
+        "`n` must be an int, not a real",
     ),
     ("assignments", "[{'ref': 'n', 'value': {'op': 'nondet', 'var': 'i', 'exp': 'i'}}]", None),
     ("assignments", "[{'ref': 'r', 'value': {'op': 'der', 'var': 'c'}}]", None),
-    ("variables", "[{'name': 'v', 'type': 'int', 'initial-value': ⟦true⟧}]", "`v` is an int, but this is a bool"),
+    ("variables", "[{'name': 'v', 'type': 'int', 'initial-value': ⟦true⟧}]", "`v` must be an int, not a bool"),
     (
         "variables",
         "[{'name': 'v', 'type': {'kind': 'bounded', 'base': 'int', 'upper-bound': ⟦1.5⟧}}]",
-        "a bound of this type is an int, but this is a real",
+        "a bound of this type must be an int, not a real",
     ),
-    ("constants", "[{'name': 'C', 'type': 'bool', 'value': ⟦3⟧}]", "the constant `C` is a bool, but this is an int"),
+    ("constants", "[{'name': 'C', 'type': 'bool', 'value': ⟦3⟧}]", "the constant `C` must be a bool, not an int"),
     (
         "functions",
         "[{'name': 'f', 'type': 'bool', 'parameters': [], 'body': ⟦3⟧}]",
-        "`f` gives a bool, but this is an int",
+        "`f` must return a bool, not an int",
     ),
     (
         "property",
         "⟦{'op': 'F', 'exp': 'ok'}⟧",
-        "a property cannot be a formula about paths; put it into `Pmin` or `Pmax`",
+        "a property cannot be a formula about paths; use it in `Pmin` or `Pmax`",
     ),
     ("property", "{'op': 'Pmin', 'exp': ⟦'ok'⟧}", "`Pmin` needs a formula about paths, with `F`, `G` or `U`"),
     (
@@ -336,7 +336,7 @@ TYPES = [
     (
         "property",
         "{'op': '≥', 'left': {'op': 'Pmin', 'exp': {'op': 'G', 'exp': 'ok'}}, 'right': ⟦'ok'⟧}",
-        "an operand of `≥` must be a number, but this is a bool",
+        "an operand of `≥` must be a number, not a bool",
     ),
     (
         "property",
@@ -347,17 +347,17 @@ TYPES = [
     (
         "property",
         "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': 'ok', 'step-bounds': {'upper': ⟦1.5⟧}}}",
-        "a bound must be an int, but this is a real",
+        "a bound must be an int, not a real",
     ),
     (
         "property",
         "{'op': 'filter', 'fun': '∀', 'values': ⟦'n'⟧, 'states': {'op': 'initial'}}",
-        "what `∀` looks at must be true",
+        "the argument of `∀` must be true",
     ),
     (
         "property",
         "{'op': 'filter', 'fun': 'max', 'values': ⟦'ok'⟧, 'states': true}",
-        "what `max` looks at must be a number",
+        "the argument of `max` must be a number",
     ),
     ("property", "{'op': 'filter', 'fun': 'count', 'values': ⟦1⟧, 'states': ⟦1⟧}", None),
     ("property", "{'op': 'Emin', 'exp': ⟦'ok'⟧, 'reach': ⟦1⟧, 'step-instant': ⟦0.5⟧}", None),
@@ -542,7 +542,7 @@ def test_an_empty_object_lacks_everything() -> None:
 def test_other_versions() -> None:
     text = model_with("guard", "true").replace('"jani-version": 1', '"jani-version": 2')
     _, findings = read(text)
-    assert [finding.message for finding in findings] == ["only version 1 of JANI is known"]
+    assert [finding.message for finding in findings] == ["only version 1 of JANI is supported"]
 
 
 def test_deep_expressions() -> None:

@@ -158,9 +158,9 @@ ERRORS = [
     ("⟦{'op': 'da', 'exp': 'n', 'member': 'x'}⟧", "this has no member `x`"),
     ("⟦{'op': 'call', 'function': 'f', 'args': []}⟧", "there is no function `f`"),
     ("⟦{'op': 'call', 'function': 'factorial', 'args': []}⟧", "`factorial` takes 1 arguments, not 0"),
-    ("{'op': 'call', 'function': 'endless', 'args': []}", "the calls of `endless` do not end"),
-    ("⟦{'distribution': 'Uniform', 'args': [0, 1]}⟧", "a random value is not known beforehand"),
-    ("⟦{'op': 'nondet', 'var': 'i', 'exp': true}⟧", "a nondeterministic choice has no value of its own"),
+    ("{'op': 'call', 'function': 'endless', 'args': []}", "the calls of `endless` do not terminate"),
+    ("⟦{'distribution': 'Uniform', 'args': [0, 1]}⟧", "a random value is not known in advance"),
+    ("⟦{'op': 'nondet', 'var': 'i', 'exp': true}⟧", "a nondeterministic choice has no single value"),
     ("{'op': 'der', 'var': '⟦n⟧'}", "the derivative of `n` is not known in a state"),
 ]
 

@@ -73,7 +73,7 @@ MISTAKES = [
     (
         """
         [1, 2, ]
-             ^ no comma before `]`
+             ^ unexpected comma before `]`
         """,
         [1, 2],
         "[1, 2 ]",
@@ -81,7 +81,7 @@ MISTAKES = [
     (
         """
         [1,, ,2, 3]
-           ^^^ one comma is enough
+           ^^^ surplus comma; remove it
         """,
         [1, 2, 3],
         "[1,2, 3]",
@@ -89,7 +89,7 @@ MISTAKES = [
     (
         """
         [,1]
-         ^ no comma here
+         ^ unexpected comma
         """,
         [1],
         "[1]",
@@ -105,8 +105,8 @@ MISTAKES = [
     (
         """
         {"a" = 1, "b" => 2}
-             ^ a name is followed by `:`
-                      ^^ a name is followed by `:`
+             ^ a name must be followed by `:`
+                      ^^ a name must be followed by `:`
         """,
         {"a": 1, "b": 2},
         '{"a" : 1, "b" : 2}',
@@ -133,10 +133,10 @@ MISTAKES = [
     (
         """
         {'a': 'it''s'}
-         ^^^ strings stand in double quotes
-              ^^^^ strings stand in double quotes
+         ^^^ a string needs double quotes
+              ^^^^ a string needs double quotes
                   ^ a comma is missing before this
-                  ^^^ strings stand in double quotes
+                  ^^^ a string needs double quotes
                   ^^^ `:` and a value must follow `s`
         """,
         {"a": "it"},
@@ -145,8 +145,8 @@ MISTAKES = [
     (
         """
         {'say "hi"': 'it\\'s'}
-         ^^^^^^^^^^ strings stand in double quotes
-                     ^^^^^^^ strings stand in double quotes
+         ^^^^^^^^^^ a string needs double quotes
+                     ^^^^^^^ a string needs double quotes
         """,
         {'say "hi"': "it's"},
         '{"say \\"hi\\"": "it\'s"}',
@@ -154,9 +154,9 @@ MISTAKES = [
     (
         """
         {name: a < b, seen: true}
-         ^^^^ names stand in double quotes
-               ^^^^^ `a < b` is a string and stands in double quotes
-                      ^^^^ names stand in double quotes
+         ^^^^ a name needs double quotes
+               ^^^^^ `a < b` is a string and needs double quotes
+                      ^^^^ a name needs double quotes
         """,
         {"name": "a < b", "seen": True},
         '{"name": "a < b", "seen": true}',
@@ -164,10 +164,10 @@ MISTAKES = [
     (
         """
         [1, // one
-            ^^^^^^ JSON has no comments
+            ^^^^^^ JSON does not support comments
         2, /* two */ 3 # three
-           ^^^^^^^^^ JSON has no comments
-                       ^^^^^^^ JSON has no comments
+           ^^^^^^^^^ JSON does not support comments
+                       ^^^^^^^ JSON does not support comments
         ]
         """,
         [1, 2, 3],
@@ -186,8 +186,8 @@ MISTAKES = [
         """
         ["\\d", "\\u12", "\\u12x4", "c:\\temp"]
           ^^ JSON has no escape `\\d`; a backslash itself is written `\\\\`
-                ^^ `\\u` is followed by four hexadecimal digits
-                        ^^ `\\u` is followed by four hexadecimal digits
+                ^^ `\\u` must be followed by four hexadecimal digits
+                        ^^ `\\u` must be followed by four hexadecimal digits
         """,
         ["d", "u12", "u12x4", "c:\temp"],
         '["\\\\d", "\\\\u12", "\\\\u12x4", "c:\\temp"]',
@@ -195,7 +195,7 @@ MISTAKES = [
     (
         """
         ["a\tb"]
-           ^ inside a string this character is written `\\t`
+           ^ inside a string this character must be written `\\t`
         """,
         ["a\tb"],
         '["a\\tb"]',
@@ -203,13 +203,13 @@ MISTAKES = [
     (
         """
         [NaN, -Infinity, 007, .5, 1., +2, -.5e3, 0x10, 1-2]
-         ^^^ JSON has no number `NaN`
-              ^^^^^^^^^ JSON has no number `-Infinity`
-                         ^^^ JSON writes this number as `7`
-                              ^^ JSON writes this number as `0.5`
-                                  ^^ JSON writes this number as `1.0`
-                                      ^^ JSON writes this number as `2`
-                                          ^^^^^ JSON writes this number as `-0.5e3`
+         ^^^ JSON does not support the number `NaN`
+              ^^^^^^^^^ JSON does not support the number `-Infinity`
+                         ^^^ this number must be written as `7` in JSON
+                              ^^ this number must be written as `0.5` in JSON
+                                  ^^ this number must be written as `1.0` in JSON
+                                      ^^ this number must be written as `2` in JSON
+                                          ^^^^^ this number must be written as `-0.5e3` in JSON
                                                  ^^^^ `0x10` is not a number
                                                        ^^^ `1-2` is not a number
         """,
@@ -221,7 +221,7 @@ MISTAKES = [
         [True, None, undefined]
          ^^^^ JSON writes `true`
                ^^^^ JSON writes `null`
-                     ^^^^^^^^^ `undefined` is a string and stands in double quotes
+                     ^^^^^^^^^ `undefined` is a string and needs double quotes
         """,
         [True, None, "undefined"],
         '[true, null, "undefined"]',
@@ -229,7 +229,7 @@ MISTAKES = [
     (
         """
         {"a": 1} and more
-                 ^^^^^^^^ nothing may follow the value
+                 ^^^^^^^^ unexpected text after the value
         """,
         {"a": 1},
         '{"a": 1} ',
@@ -261,7 +261,7 @@ MISTAKES = [
     (
         """
         ["a": 1]
-         ^^^ a name with a value stands in `{ }`, not here
+         ^^^ a name with a value is only allowed in `{ }`
               ^ a comma is missing before this
         """,
         ["a", 1],
@@ -280,7 +280,7 @@ MISTAKES = [
     (
         """
         [1; 2]
-          ^ values are separated by commas
+          ^ values must be separated by commas
         """,
         [1, 2],
         "[1, 2]",
@@ -288,8 +288,8 @@ MISTAKES = [
     (
         """
         [1,\u00a02 :]
-           ^ this is no white space in JSON
-              ^ no colon here
+           ^ this character is not white space in JSON
+              ^ unexpected colon
         """,
         [1, 2],
         "[1, 2 ]",
@@ -297,7 +297,7 @@ MISTAKES = [
     (
         """
         {"a": 1, "a": 2}
-                 ^^^ `a` stands twice in this object; only the last one counts
+                 ^^^ duplicate key `a`; only the last value is used
         """,
         {"a": 2},
         None,
@@ -377,7 +377,7 @@ def test_nothing(text: str, message: str) -> None:
 def test_deep_nesting_is_one_finding(brackets: str) -> None:
     _, findings = parse(brackets)
     assert [finding.message for finding in findings] == [
-        f"nested too deeply: more than {MAX_DEPTH} brackets are open",
+        f"nested too deeply: at most {MAX_DEPTH} brackets may be open",
     ]
 
 

@@ -106,7 +106,7 @@ async def test_plain_scxml(tmp_path: Path) -> None:
     written = next(i for i, line in enumerate(source) if '<assign location="count"' in line)
     assert plain["lines"][at]["uri"] == (tmp_path / "clock.ascxml").as_uri()
     assert plain["lines"][at]["range"]["start"]["line"] == written
-    assert no_machine == {"text": "", "lines": [], "problem": "This is no machine of a system."}
+    assert no_machine == {"text": "", "lines": [], "problem": "This is not a machine of a system."}
 
 
 async def test_plain_scxml_of_plugins(tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ async def test_plain_scxml_of_a_broken_system(tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     (plain,) = await asked(tmp_path, "as2fm/plainScxml", "clock.ascxml")
     assert plain["text"] == ""
-    assert plain["problem"] == "The system has 1 error; there is no plain SCXML of it."
+    assert plain["problem"] == "The system has 1 error, so it has no plain SCXML."
 
 
 async def test_migrate(tmp_path: Path) -> None:
@@ -149,12 +149,12 @@ async def test_what_cannot_be_migrated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
     assert current == {"edit": None, "files": [], "problem": ""}
-    assert no_system["problem"].endswith("only systems are migrated; name their system file")
+    assert no_system["problem"].endswith("not a system file; only systems can be migrated, so name the system file")
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
     (taken,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
     assert taken["edit"] is None
-    assert taken["problem"].endswith("clock.ascxml: there is such a file already")
+    assert taken["problem"].endswith("clock.ascxml already exists")
 
 
 async def test_unsaved_text_is_drawn(tmp_path: Path) -> None:

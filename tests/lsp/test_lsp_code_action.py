@@ -118,7 +118,7 @@ async def test_only_what_is_asked_for(tmp_path: Path) -> None:
         client.open(path, WARNED)
         whole = await ask(client, path, WARNED, "|<!--", "source.fixAll")
         assert [(action.kind, action.title) for action in whole] == [
-            ("source.fixAll.as2fm", "Make all safe fixes in this file")
+            ("source.fixAll.as2fm", "Apply all safe fixes in this file")
         ]
         resolved = await client.code_action_resolve_async(whole[0])
         assert "<log" not in changed(resolved, path, WARNED)

@@ -184,12 +184,12 @@ async def test_it_ends_with_its_client() -> None:
     [
         (("--tcp", "0.0.0.0:0"), "--tcp 0.0.0.0:0: other machines could connect there; use 127.0.0.1, or add --allow-"),
         (("--tcp", "[::]:0"), "--tcp [::]:0: other machines could connect there"),
-        (("--tcp", "127.0.0.1:99999"), "--tcp takes HOST:PORT, not 127.0.0.1:99999"),
-        (("--tcp", "nonsense"), "--tcp takes HOST:PORT, not nonsense"),
+        (("--tcp", "127.0.0.1:99999"), "--tcp needs HOST:PORT, not 127.0.0.1:99999"),
+        (("--tcp", "nonsense"), "--tcp needs HOST:PORT, not nonsense"),
         (("--tcp", ":1", "--socket", "x"), "--tcp and --socket exclude each other"),
-        (("--allow-remote",), "--allow-remote is used with --tcp only"),
+        (("--allow-remote",), "--allow-remote needs --tcp"),
         (("--socket", "/nowhere/x.sock"), "--socket /nowhere/x.sock: No such file or directory"),
-        (("--socket", "/dev/null"), "--socket /dev/null: there is another file of that name"),
+        (("--socket", "/dev/null"), "--socket /dev/null: a file with this name already exists"),
     ],
     ids=str,
 )
@@ -228,7 +228,7 @@ async def test_a_socket_file(tmp_path: Path) -> None:
     async with listening("--socket", str(path)) as server:
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
         status, _, log = await (await start_raw("--socket", str(path))).end()
-        assert (status, "another server listens there" in log) == (2, True)
+        assert (status, "another server is listening there" in log) == (2, True)
         reader, writer = await asyncio.open_unix_connection(str(path))
         writer.write(b"GET / HTTP/1.1\r\n\r\n")
         assert await asyncio.wait_for(reader.read(), PATIENCE) == b""

@@ -80,9 +80,9 @@ async def test_errors_are_told_and_nothing_is_written(tmp_path: Path) -> None:
         texts = [text for kind, text in told(client) if kind is types.MessageType.Error]
     expected = (
         "main.xml has 1 error and was not translated.",
-        "clock.ascxml: this is no system file",
-        "none.xml: this is no system file",
-        "properties.jani belongs to the system; the translation must go to another file",
+        "clock.ascxml: not a system file",
+        "none.xml: not a system file",
+        "properties.jani is part of the system; write the translation to another file",
         "x.jani cannot be written: No such file or directory",
     )
     assert len(texts) == len(expected)

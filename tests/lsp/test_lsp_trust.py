@@ -37,7 +37,7 @@ async def test_it_writes_nothing(tmp_path: Path, said: object) -> None:
         commands = {lens.command.command for lens in lenses or () if lens.command} | set(COMMANDS)
         for command in sorted(commands & set(COMMANDS)):
             with pytest.raises(
-                JsonRpcException, match=f"`{command}` is off because the workspace is not trusted"
+                JsonRpcException, match=f"`{command}` is disabled because the workspace is not trusted"
             ) as no:
                 await execute(client, command, main)
             assert no.value.code == REFUSED

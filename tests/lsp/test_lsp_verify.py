@@ -95,7 +95,10 @@ async def test_all_properties_and_messages(robot: Path) -> None:
     assert len(names) == len(set(names)) > 1
     placed = next(row for row in answer["results"] if row["property"] == PLACED)
     assert placed["expectations"][0]["expected"] == "> 0.9"
-    assert told[0] == (types.MessageType.Warning, "What is expected of nonsense must be like '>= 0.95', not 'much'.")
+    assert told[0] == (
+        types.MessageType.Warning,
+        "The expectation of nonsense must have a form like '>= 0.95', not 'much'.",
+    )
     assert [text.split(":")[0] for kind, text in told[1:] if kind is types.MessageType.Info] == names
 
 
@@ -291,7 +294,7 @@ async def test_errors_of_the_model_have_their_place(tmp_path: Path) -> None:
         assert (error["code"], error["uri"]) == ("undeclared-variable", (tmp_path / "clock.ascxml").as_uri())
         assert error["range"]["start"] == {"line": 8, "character": 30}
         missing = await verify(client, tmp_path / "none.xml", [], {"silent": True})
-        assert missing["errors"][0]["message"].endswith("none.xml: this is no system file")
+        assert missing["errors"][0]["message"].endswith("none.xml: not a system file")
         assert [message.message for message in client.messages] == ["main.xml has 1 error and was not verified."]
 
 
@@ -329,12 +332,12 @@ async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) ->
         assert "traces got stuck and say nothing about the property, so its value is doubtful" in result["warning"]
         (own,) = (message.message for message in client.messages if message.message.startswith("delivered: "))
         assert own.splitlines()[1].endswith(
-            "so its value is doubtful; who waits for whom is shown in a message of its own"
+            "so its value is doubtful; the waiting automata are shown in a separate message"
         )
         # At the property and at the system.
         assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))
         assert "Show counterexample" in await lenses(client, properties)
-        assert "Gets stuck: show who waits for whom" in await lenses(client, main)
+        assert "Gets stuck: show the waiting automata" in await lenses(client, main)
         ((hint, _),) = await hints(client, properties)
         assert hint.startswith("⚠ ")
         for name in ("delivered", "stuck"):
@@ -354,7 +357,7 @@ async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) ->
         # Mended, the old result is stale, the new one good.
         fetch = tmp_path / "fetch.ascxml"
         client.open(fetch, hospital(mended=True)["fetch.ascxml"])
-        assert "Gets stuck, stale: show who waits for whom" in await lenses(client, main)
+        assert "Gets stuck, stale: show the waiting automata" in await lenses(client, main)
         mended = await verify(client, main, ["delivered"], QUICK)
         assert mended["stuck"]["example"] is None
         assert [title for title in await lenses(client, main) if "stuck" in title] == []

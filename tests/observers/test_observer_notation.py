@@ -58,17 +58,17 @@ def test_atoms_keep_their_places_and_braces_in_strings_close_none() -> None:
 @pytest.mark.parametrize(
     ("text", "at", "message"),
     [
-        ("", "", "a condition in braces is expected: `{ level < 30 }`"),
-        ("{a} &&", "", "a condition in braces is expected: `{ level < 30 }`"),
-        ("level", "level", "a condition in braces is expected instead of `level`: `{ level < 30 }`"),
+        ("", "", "expected a condition in braces: `{ level < 30 }`"),
+        ("{a} &&", "", "expected a condition in braces: `{ level < 30 }`"),
+        ("level", "level", "expected a condition in braces instead of `level`: `{ level < 30 }`"),
         ("{ }", "{ }", "there is no condition in these braces"),
         ("({a}", "", "`)` is expected"),
-        ("{a} {b}", "{b}", "an operator or the end of the formula is expected before `{b}`"),
-        ("{a} S[5] {b}", "[5]", "bounds are whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),
-        ("O[-1:2] {b}", "[-1:2]", "bounds are whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),
+        ("{a} {b}", "{b}", "expected an operator or the end of the formula before `{b}`"),
+        ("{a} S[5] {b}", "[5]", "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),
+        ("O[-1:2] {b}", "[-1:2]", "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),
         ("O[3:2] {b}", "[3:2]", "the lower bound 3 is greater than the upper bound 2"),
-        ("[1:2] {a}", "[1:2]", "bounds belong to `S`, `H` or `O`: `O[:5] { alarm }`"),
-        ("{a", "{", "a condition in braces is expected instead of `{`: `{ level < 30 }`"),
+        ("[1:2] {a}", "[1:2]", "bounds are only allowed after `S`, `H` or `O`: `O[:5] { alarm }`"),
+        ("{a", "{", "expected a condition in braces instead of `{`: `{ level < 30 }`"),
     ],
 )
 def test_problem(text: str, at: str, message: str) -> None:

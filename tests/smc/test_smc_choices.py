@@ -53,7 +53,7 @@ def chain(length: int, type_: str = "mdp") -> Json:
 
 def test_nothing_to_choose() -> None:
     found = looked_at(chain(5))
-    assert found.agreement == "nothing is left to choose in any of 11 states"
+    assert found.agreement == "there is only one choice in each of 11 states"
     assert (found.minimum, found.differ) == (found.maximum, False)
     assert looked_at(chain(10**6, "dtmc")).agreement == "the model has no nondeterminism"
 
@@ -112,7 +112,7 @@ def test_rewards_are_not_sampled() -> None:
 def test_described() -> None:
     names = ["one", "two"]
     assert described(7, names) == "sampled scheduler 7, which decides by the state alone"
-    assert described(MEMORY | 3, names) == "sampled scheduler 3, which decides by the state and what was done last"
+    assert described(MEMORY | 3, names) == "sampled scheduler 3, which decides by the state and the last step"
     assert described(STARVE | (1 << 32) | 2, names) == (
         "sampled scheduler 2, which lets `two` act only where nothing else can act"
     )

@@ -61,7 +61,7 @@ def doubling(count: int) -> tuple[Any, ...]:
 
 def test_functions_that_double() -> None:
     model(call("f"), functions=doubling(8))
-    with pytest.raises(FaultError, match=r"`f\d+` stands for [\d,]+ operations with all that it calls") as error:
+    with pytest.raises(FaultError, match=r"`f\d+` expands to [\d,]+ operations with all calls in it") as error:
         model(call("f"), functions=doubling(40))
     assert error.value.origin is not None
 
@@ -71,7 +71,7 @@ def test_many_calls_of_one_function() -> None:
     many: Any = once
     for _ in range(400):
         many = {"op": "+", "left": many, "right": once}
-    with pytest.raises(FaultError, match="calls of functions stand for"):
+    with pytest.raises(FaultError, match="calls of functions expand to"):
         model(many, functions=doubling(10))
 
 

@@ -43,7 +43,7 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Fetch (bt_1002) to answer its tick (tree.xml:5)
 Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
 Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock goes on (pharmacy.ascxml:8)
-help: a tick must be answered before time goes on: let Fetch (bt_1002) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time passes; let Fetch (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -92,7 +92,7 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Move (bt_1001) to answer its tick (tree.xml:3)
 Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
 Arm waits in `busy` for its timer `step`, which ticks when the clock goes on (Arm.ascxml:11)
-help: a tick must be answered before time goes on: let Move (bt_1001) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time passes; let Move (bt_1001) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -136,7 +136,7 @@ the tree waits for Ask (bt_1002) to answer its tick (tree.xml:3)
 Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
 Publisher waits in `s` for its timer `t`, which ticks when the clock goes on (Publisher.ascxml:5)
-help: a tick must be answered before time goes on: let Ask (bt_1002) answer RUNNING, and the result at a later tick
+help: a tick must be answered before time passes; let Ask (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -151,7 +151,7 @@ def test_a_server_that_never_responds(tmp_path: Path) -> None:
     found = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
     assert found[2:4] == [
         "Ask (bt_1000) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)",
-        "Deaf waits for a condition that nothing can change any more (Deaf.ascxml:4)",
+        "Deaf waits for a condition that can never become true (Deaf.ascxml:4)",
     ]
     assert len(found) == 5
 
@@ -202,7 +202,7 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
         "the tree waits for Slow (bt_1002) to answer its halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock goes on (Server.ascxml:5)",
-        "help: a halt must be answered before time goes on: let Slow (bt_1002) answer it at once",
+        "help: a halt must be answered before time passes; let Slow (bt_1002) answer it at once",
         "[answer-needs-time]",
     ]
 

@@ -29,7 +29,7 @@ CASES = {
 <a>
   <b x="1" y
   ^^ the start tag `<b` has no `>`
-           ^ attribute `y` has no value
+           ^ the attribute `y` has no value
   <c/><d/>
 </a>
 => a(b[x=1 y]~ c/ d/)
@@ -51,13 +51,13 @@ CASES = {
 """,
     "only a bracket": """
 <a><</a>
-   ^ `<` begins no tag here; as text it is written `&lt;`
+   ^ `<` does not begin a tag here; write `&lt;` for the character
 => a('<')
 """,
     "less than in text": """
 <a>1 < 2 and 3 <4</a>
-     ^ `<` begins no tag here; as text it is written `&lt;`
-               ^ `<` begins no tag here; as text it is written `&lt;`
+     ^ `<` does not begin a tag here; write `&lt;` for the character
+               ^ `<` does not begin a tag here; write `&lt;` for the character
 => a('1' '<' '2 and 3' '<' '4')
 """,
     "slash that closes nothing": """
@@ -73,8 +73,8 @@ CASES = {
 """,
     "no name that XML knows": """
 <a$b><c#/></a$b>
- ^^^ `a$b` is not a name that XML allows
-      ^^ `c#` is not a name that XML allows
+ ^^^ `a$b` is not a valid XML name
+      ^^ `c#` is not a valid XML name
 => a$b(c#/)
 """,
     # ------------------------------------------------------------ attributes
@@ -127,22 +127,22 @@ CASES = {
 """,
     "no quotes": """
 <a b=c d="e"/>
-     ^ an attribute value stands in quotes
+     ^ an attribute value needs quotes
 => a[b=c d=e]/
 """,
     "no value": """
 <a b= c="d"/>
-   ^^ attribute `b` has no value; write `b="…"`
+   ^^ the attribute `b` has no value; write `b="…"`
 => a[b c=d]/
 """,
     "no equals sign": """
 <a b c="d"/>
-   ^ attribute `b` has no value
+   ^ the attribute `b` has no value
 => a[b c=d]/
 """,
     "value without equals sign": """
 <a b "c"/>
-   ^ attribute `b` has no value
+   ^ the attribute `b` has no value
      ^^^ `"c"` is not an attribute
 => a[b]/
 """,
@@ -153,32 +153,32 @@ CASES = {
 """,
     "given twice": """
 <a b="1" c="2" b="3"/>
-               ^ attribute `b` is given twice
+               ^ the attribute `b` is given twice
 => a[b=1 c=2 b=3]/
 """,
     "given twice beside another mistake": """
 <a b="1" b="3" c/>
-         ^ attribute `b` is given twice
-               ^ attribute `c` has no value
+         ^ the attribute `b` is given twice
+               ^ the attribute `c` has no value
 => a[b=1 b=3 c]/
 """,
     "less than in a value": """
 <a b="c < d" e="f<g"/>
-        ^ `<` in an attribute value is written `&lt;`
-                 ^ `<` in an attribute value is written `&lt;`
+        ^ `<` in an attribute value must be written `&lt;`
+                 ^ `<` in an attribute value must be written `&lt;`
 => a[b=c < d e=f<g]/
 """,
     "ampersands in a value": """
 <a b="c && d"/>
-        ^ `&` as such is written `&amp;`
-         ^ `&` as such is written `&amp;`
+        ^ a literal `&` must be written `&amp;`
+         ^ a literal `&` must be written `&amp;`
 => a[b=c && d]/
 """,
     "name that XML does not know": """
 <a @b="1" 2c="3" d:e:f="4"/>
-   ^^ `@b` is not a name that XML allows
-          ^^ `2c` is not a name that XML allows
-                 ^^^^^ `d:e:f` is not a name that XML allows
+   ^^ `@b` is not a valid XML name
+          ^^ `2c` is not a valid XML name
+                 ^^^^^ `d:e:f` is not a valid XML name
                  ^ the prefix `d` is not declared with `xmlns:d`
 => a[@b=1 2c=3 d:e:f=4]/
 """,
@@ -216,7 +216,7 @@ CASES = {
 """,
     "stray end tag": """
 <a><b/></xyz><c/></a>
-       ^^^^^^ `</xyz>` closes nothing; `<a>` is open
+       ^^^^^^ `</xyz>` closes nothing; the open element is `<a>`
 => a(b/ c/)
 """,
     "end tag behind the root": """
@@ -237,23 +237,23 @@ CASES = {
 """,
     "end tag without name": """
 <a><b></></a>
-      ^^^ the end tag has no name; `<b>` is open
+      ^^^ the end tag has no name; the open element is `<b>`
 => a(b)
 """,
     "end tag being typed": """
 <a><b></
-      ^^ the end tag has no name; `<b>` is open
+      ^^ the end tag has no name; the open element is `<b>`
  ^ `<a>` is never closed
 => a(b)~
 """,
     "end tag with a space before its name": """
 <a></ a>
-     ^ the name stands right behind `</`
+     ^ the name must follow `</` directly
 => a
 """,
     "end tag with more than a name": """
 <a><b></b c="d"></a>
-         ^^^^^^ an end tag holds nothing but its name
+         ^^^^^^ an end tag contains only its name
 => a(b)
 """,
     "end tag with another prefix": """
@@ -286,7 +286,7 @@ CASES = {
 """,
     "end of CDATA in text": """
 <a>b ]]> c</a>
-     ^^^ `]]>` stands only at the end of a CDATA section; as text write `]]&gt;`
+     ^^^ `]]>` is only allowed at the end of a CDATA section; write `]]&gt;` for the text
 => a('b ]]> c')
 """,
     "instruction without end": """
@@ -297,54 +297,54 @@ CASES = {
 """,
     "instruction without name": """
 <a><? b?></a>
-   ^^^^^^ a processing instruction begins with a name
+   ^^^^^^ a processing instruction must begin with a name
 => a(?b)
 """,
     "declaration behind something": """
  <?xml version="1.0"?>
- ^^^^^^^^^^^^^^^^^^^^^ the XML declaration must be the very first thing in the file
+ ^^^^^^^^^^^^^^^^^^^^^ the XML declaration must be at the very beginning of the file
 <a/>
 => ?xml a/
 """,
     "declaration without version": """
 <?xml encoding="UTF-8"?><a/>
-^^^^^^^^^^^^^^^^^^^^^^^^ an XML declaration has the form `<?xml version="1.0" encoding="UTF-8"?>`
+^^^^^^^^^^^^^^^^^^^^^^^^ an XML declaration must have the form `<?xml version="1.0" encoding="UTF-8"?>`
 => ?xml a/
 """,
     "encoding that does not exist": """
 <?xml version="1.0" encoding="UTF-9"?><a/>
-                              ^^^^^ there is no encoding `UTF-9`; the file was read as UTF-8
+                              ^^^^^ unknown encoding `UTF-9`; the file was read as UTF-8
 => ?xml a/
 """,
     "document type": """
 <!DOCTYPE a><a/>
-^^^^^^^^^^^^ a document type declaration has no effect here and is not read
+^^^^^^^^^^^^ a document type declaration has no effect and is not read
 => ?DOCTYPE a/
 """,
     "document type with entities": """
 <!DOCTYPE a [<!ENTITY b "]>"><!-- ]> -->]><a>&b;</a>
-^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ entities are not expanded here: write out what they stand for
-                                             ^^^ the entity `&b;` is not defined; entities are not expanded here
+^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ entities are not expanded; write out their text
+                                             ^^^ the entity `&b;` is not defined; entities are not expanded
 => ?DOCTYPE a('&b;')
 """,
     "document type without end": """
 <!DOCTYPE a [ <a/>
-^^^^^^^^^^^^^^^^^^ a document type declaration has no effect here and is not read
-^ the file has no element
+^^^^^^^^^^^^^^^^^^ a document type declaration has no effect and is not read
+^ the file contains no element
 => ?DOCTYPE
 """,
     "document type with an apostrophe": """
 <!DOCTYPE it's><a b="c"/>
-^^^^^^^^^^^^^^^ a document type declaration has no effect here and is not read
+^^^^^^^^^^^^^^^ a document type declaration has no effect and is not read
 => ?DOCTYPE a[b=c]/
 """,
     "references": """
 <a>&lt; &nbsp; & &#0; &#x110000; &; &#65;</a>
-        ^^^^^^ the entity `&nbsp;` is not defined; entities are not expanded here
-               ^ `&` as such is written `&amp;`
-                 ^^^^ `&#0;` stands for no character that XML allows
-                      ^^^^^^^^^^ `&#x110000;` stands for no character that XML allows
-                                 ^ `&` as such is written `&amp;`
+        ^^^^^^ the entity `&nbsp;` is not defined; entities are not expanded
+               ^ a literal `&` must be written `&amp;`
+                 ^^^^ `&#0;` is not a character that XML allows
+                      ^^^^^^^^^^ `&#x110000;` is not a character that XML allows
+                                 ^ a literal `&` must be written `&amp;`
 => a('< &nbsp; & &#0; &#x110000; &; A')
 """,
     "prefix that nobody declares": """
@@ -356,25 +356,25 @@ CASES = {
     "two roots": """
 <a/>
 <b/>
- ^ a document has one root; `<b>` stands outside `<a>`
+ ^ a document must have one root; `<b>` is outside of `<a>`
 => a/ b/
 """,
     "text outside the root": """
 hello
-^^^^^ text outside the root element
+^^^^^ text outside of the root element
 <a/>
  &amp; bye
- ^^^^^^^^^ text outside the root element
+ ^^^^^^^^^ text outside of the root element
 => 'hello' a/ '& bye'
 """,
     "CDATA outside the root": """
 <![CDATA[ ]]><a/>
-^^^^^^^^^^^^^ text outside the root element
+^^^^^^^^^^^^^ text outside of the root element
 => { } a/
 """,
     "no element": """
 <!-- nothing -->
-^ the file has no element
+^ the file contains no element
 => !nothing
 """,
 }
@@ -389,7 +389,7 @@ def test_recovery(written: str) -> None:
 
 
 def test_nothing_at_all() -> None:
-    assert found(parse("").findings) == [(0, 0, "the file has no element")]
+    assert found(parse("").findings) == [(0, 0, "the file contains no element")]
 
 
 CHARACTERS = [

@@ -18,12 +18,12 @@ export function walkthrough(stage: Stage): void {
             await page.locator(".quick-input-list", { hasText: "Model a robot with HL-SCXML" }).waitFor();
             await window.press("Enter");
             const step = page.locator(".gettingStartedContainer");
-            await step.getByText("See a mistake and fix it").waitFor();
+            await step.getByText("Find an error and fix it").waitFor();
             await step.getByText("Open a sample system").click();
             await step.getByRole("button", { name: "Open Sample" }).waitFor();
             await window.screenshot("walkthrough");
             await step.getByRole("button", { name: "Open Sample" }).click();
-            await page.locator(".quick-input-widget", { hasText: "Where to put the sample" }).waitFor();
+            await page.locator(".quick-input-widget", { hasText: "Folder for the sample" }).waitFor();
             await window.press("Enter");
             await page.locator('.tab[data-resource-name="battery.ascxml"]').waitFor();
             await window.squiggles.first().waitFor();

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line: one module for each thing that it does."""
+"""The command line: one module for each command."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments of the command line; a misspelled option, command or rule is answered with the nearest one."""
+"""Arguments of the command line; the error for a misspelled option, command or rule suggests the nearest one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ArgumentParser(argparse.ArgumentParser):
-    """Like that of the standard library; what it does not know, it compares with what it knows."""
+    """Like that of the standard library, with suggestions for unknown arguments."""
 
     def parse_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: None = None
@@ -50,5 +50,5 @@ class ArgumentParser(argparse.ArgumentParser):
 
 
 def unknown_rule(code: str) -> str:
-    """What is wrong with a code that no rule has."""
+    """The error message for an unknown rule code."""
     return f"there is no rule `{code}`{did_you_mean(close_names(code, BY_CODE))}"

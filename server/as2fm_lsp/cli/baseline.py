@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`--baseline FILE`: adopt the tool in an old project by not telling what was there before.
+"""`--baseline FILE`: introduce the tool in an existing project by suppressing the diagnostics that it already has.
 
-The file lists fingerprints with their number, made of names relative to the folder that it lies in, so that it holds
-wherever the tool is called from. If it does not exist yet, it is written with everything found now.
+The file lists fingerprints with their number, computed from names relative to the folder of the file, so that it is
+valid wherever the tool is called from. If the file does not exist yet, it is written with all current diagnostics.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ VERSION = 1
 
 
 class BaselineError(ValueError):
-    """A baseline that cannot be used; the message says why."""
+    """A baseline that cannot be used; the message contains the reason."""
 
 
 def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
-    """The entries that the baseline does not know."""
+    """The entries that are not in the baseline."""
     if not os.path.exists(path):
         _write(path, entries)
         complain(f"wrote {path} with {len(entries)} known diagnostics")
@@ -43,7 +43,7 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
 
 
 def _name(entry: Entry, path: str) -> str:
-    """The entry's file as seen from the baseline."""
+    """The entry's file, relative to the baseline."""
     return seen_from(entry.diagnostic.path, os.path.abspath(path))
 
 
@@ -64,4 +64,4 @@ def _read(path: str) -> Counter[str]:
     except OSError as error:
         raise BaselineError(f"{path}: {error.strerror or error}") from None
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
-        raise BaselineError(f"{path}: this is no baseline; remove it to write a new one") from None
+        raise BaselineError(f"{path}: not a baseline; remove it to write a new one") from None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m as2fm_lsp.cli.build_kernel`: compile the kernel of the model checker where it is installed.
+"""`python -m as2fm_lsp.cli.build_kernel`: compile the kernel of the model checker in its installation.
 
-A wheel for every platform carries the kernel as Python and as the C text that Cython has made of it. Where there is a C
-compiler, as on most machines with ROS, verification becomes about a hundred times as fast by this. Nothing is lost
-if it fails: the kernel stays what it was.
+A universal wheel contains the kernel as Python and as C code that Cython has generated from it. If there is a C
+compiler, as on most machines with ROS, this makes verification about a hundred times as fast. If the compilation fails,
+the kernel stays as it is.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
 
 
 class BuildError(Exception):
-    """There is no compiled kernel, for a reason that people understand."""
+    """The kernel could not be compiled; the message is a readable reason."""
 
 
 def build(source: Path = SOURCE) -> Path:
-    """Compile the C text, and put the extension beside it.
+    """Compile the C code, and write the extension beside it.
 
     Returns:
-        The extension, which is complete or not there.
+        The extension, which is complete or missing.
 
     Raises:
         BuildError: it cannot be compiled here.
         InterruptedError: the compiler was ended by a signal.
     """
     if not source.exists():
-        raise BuildError("this installation does not carry the kernel as C")
+        raise BuildError("this installation does not contain the kernel as C code")
     linker = shlex.split(sysconfig.get_config_var("LDSHARED") or "")
     if not linker:
-        raise BuildError("this Python does not say how extensions are compiled")
+        raise BuildError("this Python does not provide the compiler flags for extensions")
     target = source.with_name(f"kernel{sysconfig.get_config_var('EXT_SUFFIX')}")
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / target.name
@@ -69,7 +69,7 @@ def main(source: Path = SOURCE) -> int:
     try:
         build(source)
     except InterruptedError as error:
-        print(f"{error}; the kernel is compiled another time", file=sys.stderr)
+        print(f"{error}; the kernel will be compiled at the next attempt", file=sys.stderr)
         return 2
     except (BuildError, OSError) as error:
         print(f"{error}; verification runs as plain Python", file=sys.stderr)

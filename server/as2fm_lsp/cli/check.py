@@ -63,9 +63,9 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     stdin = options.stdin_filename
     if not options.paths and stdin is None:
-        return _usage(f"{name} needs a PATH")
+        return _usage(f"{name} needs at least one PATH")
     if stdin is not None and os.path.isdir(stdin):
-        return _usage(f"{stdin}: --stdin-filename takes the name of a file")
+        return _usage(f"{stdin}: --stdin-filename needs the name of a file")
     if options.fix and stdin is not None:
         return _usage("--fix changes files; it cannot be used with --stdin-filename")
     unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
@@ -73,7 +73,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
         return _usage(*map(unknown_rule, unknown))
     paths = [*options.paths, *([] if stdin is None else [stdin])]
     settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
-    if problems and not settings.origin:  # else they are among the diagnostics
+    if problems and not settings.origin:  # otherwise they are among the diagnostics
         for problem in problems:
             complain(problem)
         return USAGE
@@ -121,7 +121,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
 
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
-    """Which findings have fixes that are made only by somebody who looks at them; "" if none has."""
+    """A line about the findings with fixes that need a review; "" if there are none."""
     counts = Counter(
         diagnostic.code for diagnostic in diagnostics if diagnostic.fixes and not any(f.safe for f in diagnostic.fixes)
     )
@@ -130,7 +130,7 @@ def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
     total = sum(counts.values())
     have = "finding has a fix that is" if total == 1 else "findings have fixes that are"
     names = ", ".join(f"{code} ({count})" if count > 1 else code for code, count in sorted(counts.items()))
-    return f"{total} more {have} not safe to make without a look; an editor offers them: {names}"
+    return f"{total} more {have} not safe to apply without a review; an editor offers them: {names}"
 
 
 def _write(options: argparse.Namespace, report: CheckReport) -> None:
@@ -142,12 +142,12 @@ def _write(options: argparse.Namespace, report: CheckReport) -> None:
 
 
 def takes_color(stream: TextIO) -> bool:
-    """Whether a terminal reads what is written, and wants it colored (https://no-color.org)."""
+    """Whether the output goes to a terminal that supports and wants colors (https://no-color.org)."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def _statistics(entries: Sequence[Entry]) -> str:
-    """How often each rule was broken, the most frequent first."""
+    """The number of findings of each rule, the most frequent first."""
     counts = Counter((e.code, e.severity) for e in entries)
     rows = sorted(counts.items(), key=lambda row: (-row[1], row[0]))
     return "".join(f"{count:6} {severity:<12} {code}\n" for (code, severity), count in rows)

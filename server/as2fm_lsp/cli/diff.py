@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Differences as `patch` and `git apply` read them: there, lines end at LF and nowhere else."""
+"""Diffs in the format of `patch` and `git apply`, in which lines end only at LF."""
 
 from __future__ import annotations
 

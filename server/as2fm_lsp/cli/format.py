@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp format PATH...`: lay files out."""
+"""`as2fm-lsp format PATH...`: format files."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def run(arguments: Sequence[str]) -> int:
         if source is None:
             continue
         if source.undecodable is not None or not can_format(analysis, path):
-            complain(f"{shown_path(path)}: not well-formed, so it stays as it is")
+            complain(f"{shown_path(path)}: not well-formed, so it is not changed")
             status = FOUND
             continue
         text = apply_edits(source.text, format_edits(analysis, path))
@@ -76,21 +76,22 @@ def run(arguments: Sequence[str]) -> int:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp format",
-        description="Lay out machines, trees, system files, struct declarations and property files. Nothing but white "
-        "space is changed, so never what a file means. Plain SCXML, JANI models and files of other tools are laid out "
+        description="Format machines, trees, system files, struct declarations and property files. Only white "
+        "space is changed, never the meaning of a file. Plain SCXML, JANI models and files of other tools are "
+        "formatted "
         "only if they are named.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders in which they are looked for")
+    result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders that are searched for them")
     mode = result.add_mutually_exclusive_group()
-    mode.add_argument("--check", action="store_true", help="name the files that would change and write nothing")
-    mode.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    mode.add_argument("--check", action="store_true", help="list the files that would change and write nothing")
+    mode.add_argument("--diff", action="store_true", help="show the changes and write nothing")
     return result
 
 
 def _problem(analysis: Analysis, path: str) -> str:
-    """Why a file that was named cannot be formatted."""
+    """Why a given file cannot be formatted."""
     source = analysis.files.read(path)
     if isinstance(source, UnreadableReason):
         return source.value
@@ -98,7 +99,7 @@ def _problem(analysis: Analysis, path: str) -> str:
 
 
 def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
-    """The files that are named, and those in folders that are certainly written by hand and in our languages."""
+    """The given files, and those in folders that are hand-written and in our languages."""
     for path in map(os.path.abspath, paths):
         if not os.path.isdir(path):
             yield path
@@ -109,7 +110,7 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:
-    """Whether a file is neither the output of a tool nor, if no system lists it, of a format that looks like ours."""
+    """Whether a file is neither the output of a tool nor, if no system lists it, in a similar format."""
     kind, document = analysis.kind(path), analysis.document(path)
     if kind is FileKind.JANI_MODEL or path in analysis.memberships:
         return kind is not FileKind.JANI_MODEL

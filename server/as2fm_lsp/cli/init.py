@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp init DIR`: write a small working system to start from."""
+"""`as2fm-lsp init DIR`: write a small working system as a starting point."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def run(arguments: Sequence[str]) -> int:
     files = dict(template("delivery_robot"))
     for name in files:
         if os.path.exists(os.path.join(folder, name)):
-            complain(f"{os.path.join(folder, name)} exists already; nothing was written")
+            complain(f"{os.path.join(folder, name)} already exists; nothing was written")
             return USAGE
     try:
         for name, text in files.items():
@@ -48,11 +48,11 @@ def run(arguments: Sequence[str]) -> int:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp init",
-        description="Write a small working system to start from.",
+        description="Write a small working system as a starting point.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("folder", metavar="DIR", help="the folder to write into; it is made if it does not exist")
+    result.add_argument("folder", metavar="DIR", help="the folder to write into; it is created if it does not exist")
     return result
 
 

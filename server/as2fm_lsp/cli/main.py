@@ -54,11 +54,11 @@ exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
 
 
 INTERRUPTED, PIPE_CLOSED = 130, 141
-"""As shells count what a signal has ended: 128 + SIGINT, 128 + SIGPIPE."""
+"""Exit statuses of programs that were ended by a signal, as in shells: 128 + SIGINT, 128 + SIGPIPE."""
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Do what the command line says; the exit status."""
+    """Run the command line; return the exit status."""
     sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - None if it was closed, as by `>&-`
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     try:
@@ -67,7 +67,7 @@ def run(arguments: Sequence[str]) -> int:
         return status
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:  # the reader has seen enough
+    except BrokenPipeError:  # the reader has closed the pipe
         return PIPE_CLOSED
     except Exception as error:
         return _failed(error)
@@ -76,12 +76,12 @@ def run(arguments: Sequence[str]) -> int:
 def _status(arguments: Sequence[str]) -> int:
     try:
         return _dispatch(arguments)
-    except SystemExit as end:  # as argparse ends; what it has printed is not flushed yet
+    except SystemExit as end:  # argparse exits this way; its output is not flushed yet
         return end.code if isinstance(end.code, int) else CLEAN
 
 
 def _failed(error: Exception) -> int:
-    """Tell what has ended the command; the exit status."""
+    """Report the error that has ended the command; return the exit status."""
     if isinstance(error, OSError) and error.filename == STANDARD_OUTPUT:
         complain(f"{STANDARD_OUTPUT}: {error.strerror or error}")
         return USAGE
@@ -124,17 +124,17 @@ _ALSO_OPTIONS = ("check", "explain", "serve")
 """Commands that are newer than the options that do the same; `--check` still takes folders of these names."""
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("help", "version")
-"""Options that people take for commands."""
+"""Options that users mistake for commands."""
 
 
 def _misused(first: str) -> str:
-    """What is wrong with arguments that begin with `first`, which is no command, and do not ask for a check."""
+    """The error for arguments that begin with `first`, which is not a command, and do not request a check."""
     if first.startswith("-") or os.path.exists(first):
-        return "PATH and the options for checking are used with --check only; see --help"
+        return "PATH and the options for checking need --check; see --help"
     meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
     if meant:
         return f"there is no command `{first}`{did_you_mean(meant)}"
-    return f"there is no command `{first}`, and no such file; the commands are {listing(tuple(COMMANDS))}; see --help"
+    return f"there is no command or file `{first}`; the commands are {listing(tuple(COMMANDS))}; see --help"
 
 
 def _listed() -> str:
@@ -151,8 +151,8 @@ def parser() -> ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
-    result.add_argument("--explain", metavar="CODE", help="print what a rule means and exit")
-    serve_options(result.add_argument_group("serving an editor"))
+    result.add_argument("--explain", metavar="CODE", help="print the document of a rule and exit")
+    serve_options(result.add_argument_group("language server"))
     checking = result.add_argument_group("checking")
     checking.add_argument("--check", action="store_true", help="check files and exit")
     check_options(checking)

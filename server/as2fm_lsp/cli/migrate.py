@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp migrate PATH...`: move systems of an older dialect to the current one."""
+"""`as2fm-lsp migrate PATH...`: migrate systems of an older dialect to the current one."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def run(arguments: Sequence[str]) -> int:
         return FOUND if migrations else CLEAN
     for migration in migrations:
         if migration.new_path != migration.path and os.path.exists(migration.new_path):
-            return _fail(f"{migration.new_path}: there is such a file already; nothing was changed")
+            return _fail(f"{migration.new_path} already exists; nothing was changed")
     try:
         _write(migrations)
     except OSError as error:
@@ -55,16 +55,16 @@ def run(arguments: Sequence[str]) -> int:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp migrate",
-        description="Move systems of an older dialect to the current one, keeping comments and layout.",
+        description="Migrate systems of an older dialect to the current one. Comments and layout are kept.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
-    result.add_argument("--diff", action="store_true", help="show what would change and write nothing")
+    result.add_argument("--diff", action="store_true", help="show the changes and write nothing")
     result.add_argument(
         "--with-related",
         action="store_true",
-        help="migrate the systems that would break, too: they share a file",
+        help="also migrate the systems that would break because they share a file",
     )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
     return result
@@ -76,8 +76,8 @@ def _diff(migration: Migration) -> str:
 
 
 def _write(migrations: Sequence[Migration]) -> None:
-    """Machines come before the systems that name them, and what is replaced goes last: whatever fails, each system
-    names files that are there."""
+    """Machines are written before the systems that name them, and old files are removed last: after any failure, each
+    system names existing files."""
     for migration in reversed(migrations):
         write_file(migration.new_path, migration.data)
         shutil.copymode(migration.path, migration.new_path)
@@ -87,7 +87,7 @@ def _write(migrations: Sequence[Migration]) -> None:
 
 
 def _shared(error: api.SharedFileError) -> str:
-    """What keeps systems from being migrated alone, and what to do."""
+    """The shared files that prevent a migration of only some systems, and what to do."""
     path, systems = next(iter(error.shared.items()))
     more = f", and {len(error.shared) - 1} more" if len(error.shared) > 1 else ""
     owners = ", ".join(map(shown_path, systems))

@@ -21,7 +21,7 @@ def positive(text: str) -> int:
     """
     value = _whole(text)
     if not 1 <= value < 1 << 62:
-        raise argparse.ArgumentTypeError("a whole number from 1 on is expected")
+        raise argparse.ArgumentTypeError("expected a whole number of at least 1")
     return value
 
 
@@ -33,5 +33,5 @@ def natural(text: str) -> int:
     """
     value = _whole(text)
     if not 0 <= value < 1 << 63:
-        raise argparse.ArgumentTypeError("a whole number from 0 to 2^63 - 1 is expected")
+        raise argparse.ArgumentTypeError("expected a whole number from 0 to 2^63 - 1")
     return value

@@ -13,7 +13,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
     check.add_argument(
         "--fix",
         action="store_true",
-        help="make all safe fixes first: those that guess nothing and do not change what a model does",
+        help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
     )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
     formats = ("text", "json", "github", "gitlab", "sarif", "junit")
@@ -22,11 +22,11 @@ def check_options(check: argparse._ActionsContainer) -> None:
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
     )
-    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report these rules only")
+    check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
     check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
-    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the least severity to report")
-    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings, too")
-    check.add_argument("--statistics", action="store_true", help="count how often each rule is broken")
+    check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")
+    check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings as well")
+    check.add_argument("--statistics", action="store_true", help="count the findings of each rule")
     check.add_argument(
         "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
     )
@@ -42,9 +42,11 @@ def serve_options(serve: argparse._ActionsContainer) -> None:
         help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
         "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
     )
-    serve.add_argument("--allow-remote", action="store_true", help="with --tcp: let other machines connect, too")
     serve.add_argument(
-        "--socket", metavar="FILE", help="serve one editor on a socket file to which only you can connect"
+        "--allow-remote", action="store_true", help="with --tcp: also accept connections from other machines"
+    )
+    serve.add_argument(
+        "--socket", metavar="FILE", help="serve one editor on a socket file that only its owner can open"
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writing to a terminal or pipe whatever it can take."""
+"""Output to a terminal or pipe with any encoding."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from contextlib import contextmanager, suppress
 from typing import TextIO
 
 STANDARD_OUTPUT = "standard output"
-"""The `filename` of an `OSError` that standard output has raised."""
+"""The `filename` of an `OSError` raised for standard output."""
 
 
 def print_text(text: str, encoding: str | None = None, stream: TextIO | None = None) -> None:
-    """Write to standard output or `stream`, in its own encoding if none is asked for. What that cannot express is
-    escaped: names of files may hold anything.
+    """Write to standard output or `stream`, in its own encoding unless another is given. Characters that the encoding
+    does not support are escaped: names of files may contain any.
 
     Raises:
-        OSError: standard output cannot be written to. Standard error raises none: this is where it would be told.
+        OSError: standard output cannot be written to. Errors of standard error are ignored, because they could not be
+            reported.
     """
     stream = stream or sys.stdout
     with _open(stream):
@@ -29,28 +30,28 @@ def print_text(text: str, encoding: str | None = None, stream: TextIO | None = N
 
 
 def complain(message: str) -> None:
-    """Tell on standard error what is wrong. If that cannot be written to, the exit status alone must do."""
+    """Report an error on standard error. If that cannot be written to, only the exit status reports it."""
     print_text(f"as2fm-lsp: {message}\n", stream=sys.stderr)
 
 
 def flush() -> None:
-    """Hand on what has been written to standard output.
+    """Flush standard output.
 
     Raises:
         OSError: standard output cannot be written to.
     """
-    if not sys.stdout.closed:  # as the server does to say that it has ended
+    if not sys.stdout.closed:  # the server closes it to signal its end
         with _open(sys.stdout):
             sys.stdout.flush()
 
 
 @contextmanager
 def _open(stream: TextIO) -> Iterator[None]:
-    """What is written within goes nowhere, from the first failure on; Python would complain again at exit."""
+    """After the first failure, further output is discarded; Python would report it again at exit."""
     try:
         yield
     except OSError as error:
-        with suppress(OSError, ValueError):  # it is no file
+        with suppress(OSError, ValueError):  # it is not a file
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if stream is not sys.stderr:
             error.filename = STANDARD_OUTPUT

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far a verification is, on one line of a terminal."""
+"""The progress of a verification, on one line of a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ BAR_CHARACTERS = 20
 
 
 class ProgressBar:
-    """Within `with`; shows nothing where standard error is not a terminal. The line is gone at the end."""
+    """Use it in a `with` statement; shows nothing if standard error is not a terminal. The line is removed at the
+    end."""
 
     def __init__(self) -> None:
         self._line = StatusLine()
@@ -36,18 +37,18 @@ class ProgressBar:
         self._line.__exit__(kind, error, at)
 
     def begin(self, question: Question, options: Options, tally: Tally) -> None:
-        """What is shown from here on."""
+        """Begin with a new label."""
         self._question, self._options, self._tally = question, options, tally
         self._began, self._first = time.monotonic(), tally.traces
         self._search = None
 
     def watch(self, tally: Tally) -> None:
-        """A batch has come in."""
+        """Update after a batch."""
         self._tally = tally
         self._show()
 
     def search(self, search: Search) -> None:
-        """Schedulers are looked for, or traces are made with one that was found."""
+        """Update during a search for schedulers, or traces with one that was found."""
         self._search = search
         side = search.found.get(search.side)
         if side is not None:
@@ -55,7 +56,7 @@ class ProgressBar:
         self._show()
 
     def pulse(self, trace: int, steps: int) -> None:
-        """A trace is at so many steps."""
+        """Update within a trace, with its number of steps."""
         self._show(f", trace {trace:,} at step {steps:,}" if steps else "")
 
     def _show(self, more: str = "") -> None:
@@ -69,7 +70,7 @@ class ProgressBar:
 
 
 def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
-    """The line: name, bar, traces, the estimate so far, the time that is left."""
+    """The line: name, bar, traces, the current estimate, the remaining time."""
     if tally.traces == 0:
         return f"{question.name} …"
     share = progress(question, options, tally)
@@ -85,7 +86,7 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
 
 
 def search_line(question: Question, search: Search, options: Options) -> str:
-    """The line while schedulers are looked for: the round and the best share so far; then the estimate."""
+    """The line during a search for schedulers: the round and the best share so far; then the estimate."""
     text = f"{question.name}, {search.side} probability"
     side = search.found.get(search.side)
     if side is not None and side.tally.traces:
@@ -97,12 +98,12 @@ def search_line(question: Question, search: Search, options: Options) -> str:
 
 
 def progress(question: Question, options: Options, tally: Tally) -> float:
-    """The part of the work that is done, between 0 and 1."""
+    """The finished part of the work, between 0 and 1."""
     total = wanted_traces(options)
     if total is None:
         half = bounds_of(tally, question, options, tally.is_revised).half_width
         target = options.epsilon * (max(abs(tally.mean.mean), 1e-9) if question.is_reward else 1)
-        # The interval narrows with the root of the number of traces.
+        # The width of the interval decreases with the square root of the number of traces.
         share = 0.0 if math.isinf(half) or math.isnan(half) else 1.0 if half <= target else (target / half) ** 2
     else:
         share = tally.traces / total

@@ -18,19 +18,19 @@ from as2fm_lsp.cli.options import serve_options
 from as2fm_lsp.server import create
 
 UNEXPECTED_END = 1
-"""The status that the protocol asks for when a server ends that was not told to shut down."""
+"""The exit status that the protocol requires if a server ends without a `shutdown` request."""
 
 SWITCH_INTERVAL_S = 0.001
 """After this time, a computation gives a turn to the thread that reads what the client sends."""
 
 TOKEN = "AS2FM_TOKEN"
-"""The variable of the environment that holds the token of a client, so that it need not be read from the log."""
+"""The environment variable with the token of a client, so that it need not be read from the log."""
 
 MIN_TOKEN_CHARACTERS = 16
 
 
 class _UsageError(ValueError):
-    """The message says what is wrong."""
+    """A usage error; the message contains the reason."""
 
 
 EXAMPLES = """\
@@ -64,18 +64,18 @@ def serve(tcp: str | None = None, socket_file: str | None = None, allow_remote: 
 
     Args:
         tcp: `HOST:PORT`.
-        socket_file: the path of a socket that is made.
-        allow_remote: `HOST` may be an address at which other machines can connect.
+        socket_file: the path of the socket to create.
+        allow_remote: whether `HOST` may be an address to which other machines can connect.
     """
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
-    logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server tells of errors itself
+    logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server itself logs errors
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     server = create()
     try:
         if tcp is not None and socket_file is not None:
             raise _UsageError("--tcp and --socket exclude each other")
         if allow_remote and tcp is None:
-            raise _UsageError("--allow-remote is used with --tcp only")
+            raise _UsageError("--allow-remote needs --tcp")
         if tcp is not None:
             server.serve_client(_tcp_client(tcp, allow_remote))
         elif socket_file is not None:
@@ -91,7 +91,7 @@ def serve(tcp: str | None = None, socket_file: str | None = None, allow_remote: 
 def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
     host, _, port = tcp.rpartition(":")
     if not (port.isascii() and port.isdigit() and len(port) < 6 and int(port) < 65536):
-        raise _UsageError(f"--tcp takes HOST:PORT, not {tcp}")
+        raise _UsageError(f"--tcp needs HOST:PORT, not {tcp}")
     token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe()
     if len(token) < MIN_TOKEN_CHARACTERS:
         raise _UsageError(f"{TOKEN} is too short to be a secret; it takes {MIN_TOKEN_CHARACTERS} characters or more")
@@ -111,7 +111,7 @@ def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
 
 def _socket_file_client(path: str) -> sockets.Connection:
     if not hasattr(socket, "AF_UNIX"):
-        raise _UsageError("--socket: this system has no socket files; use --tcp")
+        raise _UsageError("--socket: this system does not support socket files; use --tcp")
     try:
         with sockets.listening_at(path) as listeners:
             _say(f"listening on {path}")
@@ -121,5 +121,5 @@ def _socket_file_client(path: str) -> sockets.Connection:
 
 
 def _say(text: str) -> None:
-    """Where a log is read: standard output may belong to a client."""
+    """Log on standard error: standard output may be used for a client."""
     print(f"as2fm-lsp: {text}", file=sys.stderr, flush=True)

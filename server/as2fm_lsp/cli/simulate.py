@@ -48,7 +48,7 @@ exit status: 0 success; 1 the model has errors, or the run goes wrong; 2 usage e
 
 
 class UsageError(ValueError):
-    """Something on the command line is wrong; the message says what."""
+    """Wrong arguments; the message contains the reason."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -70,9 +70,9 @@ def _run(options: argparse.Namespace) -> int:
     if problems:
         raise UsageError(problems[0])
     if options.constant and not options.main.endswith(".jani"):
-        raise UsageError("--constant is for JANI models; a system has no constants")
+        raise UsageError("--constant needs a JANI model; a system has no constants")
     if options.max_time is not None and options.main.endswith(".jani"):
-        raise UsageError("--max-time is for systems; a JANI model has no such parameter")
+        raise UsageError("--max-time needs a system; a JANI model has no such parameter")
     settings = replace(settings, ament_prefixes=ament_prefixes())
     overrides = Overrides(options.max_time, None)
     try:
@@ -255,7 +255,7 @@ def parser() -> ArgumentParser:
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
     add("--html", metavar="FILE", help="write the run as a page")
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="gives a value to a constant that "
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
         "MODEL.jani declares without one; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     return result

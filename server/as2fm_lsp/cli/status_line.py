@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One line on a terminal that says what is being done, for as long as it is done."""
+"""A status line on a terminal, for the duration of some work."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import time
 from types import TracebackType
 
 SHOW_DELAY_S = 0.7
-"""How long a command works before the line appears."""
+"""The delay before the line appears, in s."""
 REFRESH_INTERVAL_S = 0.1
 
 _CLEAR = "\r\033[K"
 
 
 class StatusLine:
-    """A line on standard error, within `with`. Nothing is written where standard error is not a terminal."""
+    """A line on standard error, in a `with` statement. Nothing is written if standard error is not a terminal."""
 
     def __init__(self) -> None:
         self.shown = threading.Event()
@@ -41,11 +41,11 @@ class StatusLine:
 
     @property
     def is_due(self) -> bool:
-        """Whether the line is worth another text: it appears now, or was last written a while ago."""
+        """Whether the line needs an update: it appears now, or was last written a while ago."""
         return self._is_terminal and time.monotonic() >= self._next
 
     def stage(self, text: str) -> None:
-        """Say what is done next; it is shown until something else is, as soon as the delay is over."""
+        """Set the text for the next stage; it is shown until the next one, after the delay."""
         with self._lock:
             self._text = f"{text} …"
             if self.shown.is_set():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Times on the command line."""
+"""Durations on the command line."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from roaml.model.system_file import duration
 
 
 def time_of(text: str) -> int:
-    """A time such as `100 s`, in nanoseconds.
+    """A duration such as `100 s`, in ns.
 
     Raises:
-        argparse.ArgumentTypeError: it is not written so.
+        argparse.ArgumentTypeError: the text is not a duration.
     """
     value = duration(text)
     if value is None:
-        raise argparse.ArgumentTypeError("a time is written as a whole number and s, ms, us or ns, such as '100 s'")
+        raise argparse.ArgumentTypeError("a time must be a whole number and s, ms, us or ns, such as '100 s'")
     return value

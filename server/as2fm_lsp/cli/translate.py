@@ -84,7 +84,7 @@ def run(arguments: Sequence[str]) -> int:
         _report(options, _reported(result.diagnostics, result.source, result.files))
         return _not_written(options, output)
     report = _reported(left_out, lambda path: _source(system, path), system.files)
-    if is_refused:  # What was named cannot be translated.
+    if is_refused:  # The named property cannot be translated.
         _report(options, report)
         return _not_written(options, output)
     if options.format == "text" or STANDARD_OUTPUT not in (output, options.map):
@@ -127,19 +127,19 @@ def parser() -> ArgumentParser:
 def _count(text: str) -> int:
     value = int(text)
     if not 0 <= value <= 16:
-        raise argparse.ArgumentTypeError("a number of spaces from 0 to 16 is expected")
+        raise argparse.ArgumentTypeError("expected a number of spaces from 0 to 16")
     return value
 
 
 def _size(text: str) -> int:
     value = int(text)
     if value < 1:
-        raise argparse.ArgumentTypeError("an array has room for at least one element")
+        raise argparse.ArgumentTypeError("expected a whole number of at least 1")
     return value
 
 
 def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, network: Network, model: Model) -> None:
-    """Write what was asked for; the JANI file comes last, so that a failure leaves it as it was."""
+    """Write the requested files; the JANI file is last, so that a failure leaves it unchanged."""
     if options.scxml_dir is not None:
         _write_folder(options.scxml_dir, ((f"{name}.scxml", text) for name, text in scxml_texts(network)))
     for notation in NOTATIONS.values():
@@ -196,7 +196,7 @@ def _reported(
 
 
 def _report(options: argparse.Namespace, report: CheckReport) -> None:
-    """The diagnostics, as `--check` writes them: for people where they look, for programs on standard output."""
+    """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
     if options.format == "json":
         print_text(FORMATS["json"](report), "utf-8")
     elif report.entries:

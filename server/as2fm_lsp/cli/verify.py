@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: do its properties hold, and if not, why?"""
+"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: estimate whether its properties hold, and explain failures."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ STANDARD_OUTPUT = "-"
 
 
 class UsageError(ValueError):
-    """Something on the command line is wrong; the message says what."""
+    """Wrong arguments; the message contains the reason."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -104,9 +104,9 @@ def _run(options: argparse.Namespace) -> int:
     overrides = Overrides(options.max_time, None)
     if options.main.endswith(".jani"):
         if overrides != NO_OVERRIDES:
-            raise UsageError("--max-time is for systems; a JANI model has no such parameter")
+            raise UsageError("--max-time needs a system; a JANI model has no such parameter")
     elif options.constant:
-        raise UsageError("--constant is for JANI models; a system has no constants")
+        raise UsageError("--constant needs a JANI model; a system has no constants")
     only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
     names = options.property or None
     try:
@@ -128,7 +128,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 class _Verification:
-    """One call of the command, after everything is read."""
+    """One call of the command, after all files have been read."""
 
     def __init__(self, options: argparse.Namespace, verifier: Verifier) -> None:
         self.options = options
@@ -167,7 +167,7 @@ class _Verification:
         return status
 
     def _refused(self, name: str, fault: FaultError) -> Result:
-        """The result of a property that cannot be answered, with a path as people read it."""
+        """The result of a property that cannot be decided, with a readable path."""
         result = self.verifier.refused(name, fault)
         why = result.refusal
         if why is None or why.place is None:
@@ -205,8 +205,7 @@ class _Verification:
         return result
 
     def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
-        """The least and the greatest probability that sampled schedulers achieve; as much as is known if that is
-        interrupted."""
+        """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
         search, interrupted = Search(), False
         try:
             self.verifier.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
@@ -215,7 +214,7 @@ class _Verification:
         return self.verifier.sampled(asked, search, time.monotonic() - began, is_interrupted=interrupted)
 
     def _look(self, bar: ProgressBar | None) -> stuck.Look:
-        """What is known of getting stuck; with a bar, traces are made for it."""
+        """The result of a check for stuck systems; with a progress bar, traces are generated for it."""
         level = self.options.stuck
         own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
@@ -238,7 +237,7 @@ class _Verification:
             return as_json(self.results, entries, stuck=row)
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
-        # A story of a stuck trace ends with who waits for whom.
+        # A story of a stuck trace ends with the waiting automata.
         is_told = STANDARD_OUTPUT in self.options.explain and any(result.answer for result in self.results)
         is_told = is_told and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
@@ -247,7 +246,7 @@ class _Verification:
         return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
 
     def _where_shown(self, is_told: bool) -> str:
-        """Where it was shown who waits for whom, as in the example that is known of getting stuck; "" if nowhere."""
+        """Where the waiting automata were shown, for the known example of a stuck trace; "" if nowhere."""
         if self.look is None or self.look.stuck is None:
             return ""
         same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
@@ -257,11 +256,11 @@ class _Verification:
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:
-        """What holds for all results, in one line."""
+        """The assumptions of all results, in one line."""
         if self.options.exact:
-            return "computed by Storm over all ways to resolve nondeterminism"
+            return "computed by Storm over all schedulers"
         if self.options.scheduler == "lss":
-            how = f"with each scheduler found; others may reach farther; seed {self.limits.seed}"
+            how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
         return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
 
@@ -274,7 +273,7 @@ class _Verification:
         return {"file": shown_path(path), "line": line, "column": column}
 
     def _fault_entries(self) -> list[Entry]:
-        """What could not be answered, with its place in the model."""
+        """The properties that could not be decided, with their positions in the model."""
         diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
         return [
             entry(diagnostic, _source_of(self.target), shown_path)
@@ -283,7 +282,7 @@ class _Verification:
         ]
 
     def _tell_faults(self) -> None:
-        """The same for people, on standard error."""
+        """Report the same to users, on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
@@ -299,7 +298,7 @@ class _Verification:
             traces = result.traces
             if result.answer is None or traces is None:
                 if result.sampled and (self.options.explain or self.options.traces is not None):
-                    complain(f"{result.name}: traces of sampled schedulers are neither explained nor written")
+                    complain(f"{result.name}: traces of sampled schedulers can be neither explained nor written")
                 continue
             if self.options.traces is not None:
                 recorder = traces.recorder()
@@ -315,7 +314,7 @@ class _Verification:
             self._write_stories(stories, file)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
-        """The stories, one after the other; what several have in common is said once."""
+        """The stories, one after the other; common parts are written once."""
         from roaml.views.story import as_text as story_text  # noqa: PLC0415
         from roaml.views.story import waits_of  # noqa: PLC0415
 
@@ -338,7 +337,7 @@ class _Verification:
         else:
             text = self._story_texts(stories)
         if file == STANDARD_OUTPUT:
-            # Programs read standard output; the story is for people.
+            # Programs read standard output; the story is for users.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
         else:
             write_file(file, text)
@@ -346,7 +345,7 @@ class _Verification:
 
 @contextmanager
 def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
-    """Where batches run: here, or on a Dask cluster; and how many workers that has."""
+    """The executor of batches: local, or a Dask cluster; and its number of workers."""
     if address is None:
         yield None, 0
         return
@@ -373,7 +372,7 @@ def parser() -> ArgumentParser:
     add = result.add_argument
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
-        "property NAME, with >=, <=, >, < or ==, and exit with 1 if it is not met; may be repeated")  # fmt: skip
+        "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
     add(
         "--confidence",
         type=_share,
@@ -383,10 +382,10 @@ def parser() -> ArgumentParser:
     )
     add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); for "
         "an expected reward relative to its value")  # fmt: skip
-    add("--method", choices=METHODS, default=ADAPTIVE, help="how many traces: until the interval is narrow enough "
+    add("--method", choices=METHODS, default=ADAPTIVE, help="the number of traces: until the interval is narrow enough "
         "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
-        "expectation is met (sprt), or --max-traces (fixed)")  # fmt: skip
-    add("--max-traces", type=positive, metavar="N", help="make at most N traces")
+        "expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
         "undecided (1000000)")  # fmt: skip
     add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
@@ -398,23 +397,23 @@ def parser() -> ArgumentParser:
         help="number of processes (all processors); does not change the results",
     )
     add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: uniformly at random, or by "
-        "schedulers that are sampled for the least and the greatest probability; default: uniformly at random, and a "
-        "warning or note says if other schedulers may give another value")  # fmt: skip
+        "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
+        "warning or note states if other schedulers may give another value")  # fmt: skip
     add("--exact", action="store_true", help="compute the minimum and the maximum exactly with Storm (needs stormpy)")
     add(
         "--max-states",
         type=positive,
         default=200_000,
         metavar="N",
-        help="with --exact: refuse models with more states (200000)",
+        help="with --exact: reject models with more states (200000)",
     )
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example '
         '"100 s"')  # fmt: skip
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="gives a value to a constant that "
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
         "MODEL.jani declares without one; may be repeated")  # fmt: skip
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
-    add("--resume", metavar="FILE", help="save what is known in FILE, and continue from it if it exists")
+    add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
     add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
@@ -438,14 +437,16 @@ def _share(text: str) -> float:
     except ValueError:
         value = math.nan
     if not 0 < value < 1:
-        raise argparse.ArgumentTypeError("a number between 0 and 1 is expected")
+        raise argparse.ArgumentTypeError("expected a number between 0 and 1")
     return value
 
 
 def _width(text: str) -> float:
     value = _share(text)
     if value < LEAST_EPSILON:
-        raise argparse.ArgumentTypeError(f"a number from {LEAST_EPSILON:g} on is expected: no run makes more traces")
+        raise argparse.ArgumentTypeError(
+            f"expected a number of at least {LEAST_EPSILON:g}: no run can generate more traces"
+        )
     return value
 
 
@@ -479,7 +480,8 @@ def _limits(options: argparse.Namespace) -> Options:
 
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:
-    """What a model does wrong while it runs: with its place, and the trace that shows it. None without a place."""
+    """A diagnostic for an undefined operation of the model: with its position, and the trace that shows it. `None`
+    without a position."""
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))

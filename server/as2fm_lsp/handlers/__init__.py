@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One module for each feature of the editor: convert in, one call, convert out."""
+"""One module for each editor feature: convert the input, make one call, convert the output."""
 
 from __future__ import annotations
 

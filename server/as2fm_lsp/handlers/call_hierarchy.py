@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who sends to whom, as a call hierarchy: machines, events and interfaces, trees."""
+"""Senders and receivers as a call hierarchy: machines, events and interfaces, trees."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def register(context: Context) -> None:
         return [session.convert.range(source, span) for span in spans] if source else []
 
     def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.HierarchyCall, ...]]:
-        """The calls of an item that was given to the client before."""
+        """The calls of an item that the client received before."""
         analysis = session.moment().snapshot(session.convert.path(item.uri)).analysis
         symbol = unpack(item.data)
         return analysis, question(analysis, symbol) if symbol else ()

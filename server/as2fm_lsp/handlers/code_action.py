@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/codeAction` and `codeAction/resolve`: what can be done at a place, and with a whole system.
+"""`textDocument/codeAction` and `codeAction/resolve`: actions at a place, and for a whole system.
 
-- An edit is worked out when the client resolves the action, if it can; nothing is remembered in between, so an action
-  is resolved against the text as it is then.
-- An action that makes or renames files is offered to clients that can do so.
+- An edit is computed when the client resolves the action, if it supports that; nothing is stored in between, so an
+  action is resolved against the current text.
+- An action that creates or renames files is offered to clients that support it.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _converted(
 
 
 def _identity(action: CodeAction) -> dict[str, Any] | None:
-    """What tells actions of one title apart: the diagnostic that they are about."""
+    """The key that distinguishes actions with equal titles: the diagnostic that they fix."""
     mended = action.mends
     if mended is None:
         return None
@@ -95,10 +95,10 @@ def _identity(action: CodeAction) -> dict[str, Any] | None:
 
 
 class _ClientDiagnostics:
-    """The diagnostics that actions mend, as the client has them: those that it sends along, others made anew.
+    """The diagnostics that actions fix, in the client's form: those that it sends, others converted anew.
 
-    What the client sends may be out of date or made up. It is used only if one diagnostic of ours has its code, place
-    and facts.
+    The client's data may be outdated or wrong. It is used only if a current diagnostic has the same code, place and
+    facts.
     """
 
     def __init__(
@@ -148,7 +148,7 @@ def _document_edit(uri: str, version: int | None, edits: list[types.TextEdit]) -
 
 
 def _resolves(context: Context) -> bool:
-    """Whether the client asks for the edit of an action when it is chosen."""
+    """Whether the client requests the edit of an action when it is selected."""
     document = context.client.capabilities.text_document
     action = document.code_action if document else None
     support = action.resolve_support if action else None
@@ -156,7 +156,7 @@ def _resolves(context: Context) -> bool:
 
 
 def _can(context: Context, action: CodeAction) -> bool:
-    """Whether the client can make and rename files, if an action does so."""
+    """Whether the client can create and rename files, if an action does so."""
     workspace = context.client.capabilities.workspace
     edit = workspace.workspace_edit if workspace else None
     operations: Sequence[str] = (edit.resource_operations if edit and edit.document_changes else None) or ()
@@ -164,8 +164,8 @@ def _can(context: Context, action: CodeAction) -> bool:
 
 
 def _is_wanted(kind: str, only: Sequence[str] | None) -> bool:
-    """Whether actions of `kind` are asked for: `quickfix` is part of `` and of itself. All fixes of a file are made
-    only for those who ask for them."""
+    """Whether actions of `kind` are requested: `quickfix` is part of `` and of itself. All fixes of a file are computed
+    only on request."""
     if not only:
         return kind != FIX_ALL
     return any(wanted in ("", kind) or kind.startswith(f"{wanted}.") for wanted in only)

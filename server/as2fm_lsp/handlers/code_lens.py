@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/codeLens` and `codeLens/resolve`: translate or verify a system; how much a thing is used.
+"""`textDocument/codeLens` and `codeLens/resolve`: translate or verify a system; the number of uses of a symbol.
 
 The protocol has no command that shows places. A client that has one names it in its initialization options, as
-`showReferences`: it is called with a URI, a position and the locations, all in terms of the protocol. Without it the
-lenses only tell.
+`showReferences`: it is called with a URI, a position and the locations, in the protocol's types. Without it, the lenses
+only show text.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/completion` and `completionItem/resolve`
+"""`textDocument/completion` and `completionItem/resolve`.
 
-The protocol has no command that asks for completions. A client that has one names it in its initialization options, as
-`triggerSuggest`: it is called after an item has been inserted whose first place to fill in is an empty value.
+The protocol has no command that requests completions. A client that has one names it in its initialization options, as
+`triggerSuggest`: it is called after an item has been inserted whose first placeholder is an empty value.
 """
 
 from __future__ import annotations
@@ -65,12 +65,12 @@ def register(context: Context) -> None:
 
 
 _EMPTY_VALUE = re.compile(r"""=["']\$1\b""")
-"""The first place of a snippet is an attribute's value for which nothing in particular is likely. Where there are a few
-choices, the editor lists them by itself."""
+"""The first placeholder of a snippet is an attribute's value without likely texts. If there are a few choices, the
+editor lists them itself."""
 
 
 class _ItemWriter:
-    """Writes items in the way that the client understands."""
+    """Converts items to the form that the client supports."""
 
     def __init__(self, context: Context) -> None:
         document = context.client.capabilities.text_document
@@ -110,4 +110,4 @@ class _ItemWriter:
 
 
 _MAX_LABEL_DETAIL_CHARACTERS = 40
-"""Longer details are not shown beside the label but with the documentation."""
+"""The maximum length of details beside the label; longer ones are shown with the documentation."""

@@ -28,10 +28,10 @@ def register(context: Context) -> None:
 
 
 async def fetch_settings(context: Context) -> bool:
-    """Ask the client for its settings; whether it can be asked."""
+    """Request the settings of the client; return whether it supports that."""
     settings = await context.client.settings()
     if settings is None:
         return False
-    if settings != context.session.client_settings:  # what is known was found out with the settings
+    if settings != context.session.client_settings:  # the known results depend on the settings
         context.session.configure(settings)
     return True

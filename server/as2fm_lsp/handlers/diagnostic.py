@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/diagnostic` and `workspace/diagnostic`: for clients that ask for diagnostics by themselves."""
+"""`textDocument/diagnostic` and `workspace/diagnostic`: for clients that request diagnostics themselves."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/about`: what a document is and which systems it belongs to, so that an editor offers what applies to it."""
+"""`as2fm/about`: the kind of a document and its systems, so that an editor offers the commands that apply to it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _KINDS = {
 
 
 class About(TypedDict):
-    """`kind` is "" for files that are none of ours; `hasTree` tells of the file itself or one of its systems."""
+    """`kind` is "" for unsupported files; `hasTree` is about the file itself or one of its systems."""
 
     kind: str
     systems: list[str]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm.showFirstError`: systems with errors are neither translated nor verified; lenses say so and lead to the cause.
+"""`as2fm.showFirstError`: systems with errors are neither translated nor verified; lenses state that and lead to the
+cause.
 
-The client shows the place if it can (`window/showDocument`); a message names it in any case.
+The client shows the place if it supports that (`window/showDocument`); a message names it in any case.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def register(context: Context) -> None:
 
     @context.command(COMMAND, needs_trust=False)
     async def show_first_error(*arguments: object) -> types.Location | None:
-        """Show the first error of a system, in whichever file it is.
+        """Show the first error of a system, in any of its files.
 
         Args:
             arguments: the URI of the system file.
@@ -36,7 +37,7 @@ def register(context: Context) -> None:
             The place; null if the system has no errors any more.
         """
         if len(arguments) != 1 or not isinstance(arguments[0], str):
-            text = f"{COMMAND} takes the URI of a system file."
+            text = f"{COMMAND} needs the URI of a system file."
             context.client.show_message(types.MessageType.Error, text)
             return None
         system = session.convert.path(arguments[0])
@@ -51,7 +52,7 @@ def register(context: Context) -> None:
 
 
 async def show(context: Context, snapshot: Snapshot, errors: Sequence[Diagnostic]) -> types.Location | None:
-    """Let the client show the place of the first error, if it can; the place."""
+    """Let the client show the place of the first error, if it supports that; return the place."""
     source = snapshot.analysis.source(errors[0].path)
     if source is None:
         return None
@@ -66,14 +67,14 @@ def counted(errors: tuple[Diagnostic, ...]) -> str:
 
 
 def errors_of(on: RequestedDocument) -> dict[str, tuple[Diagnostic, ...]]:
-    """The systems of a file that have errors, with these."""
+    """The systems of a file that have errors, with the errors."""
     systems = on.analysis.memberships.get(on.path, ())
     errors_in = {system: on.snapshot.checker.errors(system) for system in systems if is_on_disk(system)}
     return {system: errors for system, errors in errors_in.items() if errors}
 
 
 def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
-    """At a system file that has errors, and at the properties of such systems."""
+    """Lenses at a system file that has errors, and at the properties of these systems."""
     names = system_names(on.analysis.memberships.get(on.path, ()))
     for system, errors in broken.items():
         arguments = [on.convert.uri(system)]

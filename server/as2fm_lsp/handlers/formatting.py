@@ -24,7 +24,7 @@ def register(context: Context) -> None:
 
 
 def layout_of(options: types.FormattingOptions) -> FileLayout:
-    """The layout that a client asks for; what it may not mean is moved to the nearest that it may."""
+    """The layout that a client requests; invalid values are replaced by the nearest valid ones."""
     return FileLayout(width=min(max(options.tab_size, 1), _MAX_INDENT_WIDTH), tabs=not options.insert_spaces)
 
 

@@ -49,7 +49,7 @@ def register(context: Context) -> None:
 
 
 def _explains(context: Context) -> bool:
-    """Whether the client asks again about a hint that is looked at."""
+    """Whether the client requests the explanation of a hint separately."""
     document = context.client.capabilities.text_document
     return bool(document and document.inlay_hint and document.inlay_hint.resolve_support)
 

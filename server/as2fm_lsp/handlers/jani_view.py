@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/janiView`: a JANI file laid out for reading, with the outline of that text."""
+"""`as2fm/janiView`: a JANI file formatted for reading, with the outline of that text."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from roaml.text import SourceFile
 
 METHOD = "as2fm/janiView"
 MAX_CHARACTERS = 4_000_000
-"""Larger files are not laid out: editors do not fold or colour texts of that size either."""
+"""The maximum size of a file that is formatted: editors do not fold or color larger texts either."""
 
 
 class JaniText(TypedDict):
-    """`problem` tells why there is no text; else it is empty."""
+    """`problem` is the reason if there is no text; otherwise it is empty."""
 
     text: str
     symbols: list[types.DocumentSymbol]
@@ -38,7 +38,7 @@ def register(context: Context) -> None:
         if isinstance(source, UnreadableReason):
             return _problem(f"This file cannot be shown: {source.value}.")
         if len(source.text) > MAX_CHARACTERS:
-            return _problem(f"This file is too large to be laid out ({len(source.text) / 1e6:.0f} MB).")
+            return _problem(f"This file is too large to be formatted ({len(source.text) / 1e6:.0f} MB).")
         return await background.in_thread(lambda _: _converted(path, jani_view(source.text)), lambda: None)
 
     def _converted(path: str, laid_out: JaniView) -> JaniText:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/migrate`: moves a system to the current dialect, as an edit and a list of what it changes.
+"""`as2fm/migrate`: migrates a system to the current dialect, as an edit and a list of its changes.
 
-What stands on the disk is migrated: the client saves first.
+The files on the disk are migrated: the client saves first.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ METHOD = "as2fm/migrate"
 
 
 class Migrated(TypedDict):
-    """`files` tells which ones change and are renamed. `problem` tells why nothing can be done; else it is empty."""
+    """`files` are the files that change and are renamed. `problem` is the reason if a migration is not possible;
+    otherwise it is empty."""
 
     edit: types.WorkspaceEdit | None
     files: list[str]
@@ -30,7 +31,7 @@ class Migrated(TypedDict):
 
 
 def shown(migration: Migration, system: str) -> str:
-    """A file as its system would name it, with its new name."""
+    """The path of a file relative to its system, with its new name."""
     names = (seen_from(path, system) for path in (migration.path, migration.new_path))
     return " → ".join(dict.fromkeys(names))
 
@@ -48,7 +49,7 @@ def register(context: Context) -> None:
             return {"edit": None, "files": [], "problem": str(error)}
         taken = [m.new_path for m in migrations if m.new_path != m.path and os.path.exists(m.new_path)]
         if taken:
-            return {"edit": None, "files": [], "problem": f"{taken[0]}: there is such a file already"}
+            return {"edit": None, "files": [], "problem": f"{taken[0]} already exists"}
         changes = [change for migration in migrations for change in edits(migration)]
         edit = types.WorkspaceEdit(document_changes=changes)
         return {

@@ -25,7 +25,7 @@ Find = Callable[[Analysis, str, int], Iterable[Location]]
 
 def register(context: Context) -> None:
     def locations(document: types.TextDocumentIdentifier, position: types.Position, find: Find) -> list[types.Location]:
-        """What `find` says about a place."""
+        """The results of `find` at a place."""
         on = requested_document(context, document)
         if on is None:
             return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of the requests that are not of the protocol. They are plain data that nobody has looked at."""
+"""Parameters of custom requests, which pygls does not validate."""
 
 from __future__ import annotations
 

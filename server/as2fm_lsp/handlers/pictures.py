@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/picture`: a machine, the behavior tree or the ROS graph, to be drawn."""
+"""`as2fm/picture`: a machine, the behavior tree or the ROS graph as a diagram."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def register(context: Context) -> None:
 
     @context.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
-        """null where there is nothing of the kind to draw."""
+        """The diagram; null if the file has none of this kind."""
         kind = string(params, "kind")
         make = _PICTURES.get(kind)
         path = session.convert.path(document_uri(params))

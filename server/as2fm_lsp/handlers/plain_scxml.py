@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/plainScxml`: what a machine becomes in its system, line by line with the places that the lines exist for."""
+"""`as2fm/plainScxml`: the plain SCXML of a machine in its system, with the places from which its lines come."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ METHOD = "as2fm/plainScxml"
 
 
 class PlainLine(TypedDict):
-    """A line, counted from 0, that stands for a place in the models."""
+    """A line, counted from 0, with the place in the models from which it comes."""
 
     line: int
     uri: str
@@ -27,7 +27,7 @@ class PlainLine(TypedDict):
 
 
 class PlainScxml(TypedDict):
-    """`problem` tells why there is no text; else it is empty."""
+    """`problem` is the reason if there is no text; otherwise it is empty."""
 
     text: str
     lines: list[PlainLine]
@@ -48,23 +48,24 @@ def register(context: Context) -> None:
 
     @context.feature(METHOD)
     def plain_scxml(params: Any) -> PlainScxml:
-        """Of a plugin that the tree has several times, the first: the others differ in their ports only."""
+        """The plain SCXML of a machine. If the tree uses a plugin several times, that of the first node: the others
+        differ only in their ports."""
         path = session.convert.path(document_uri(params))
         snapshot = session.moment().snapshot(path)
         analysis = snapshot.analysis
         systems = analysis.memberships.get(path, ())
         if not systems or analysis.machine(path) is None:
-            return _problem("This is no machine of a system.")
+            return _problem("This is not a machine of a system.")
         try:
             network = api.to_scxml(api.loaded(snapshot, systems[0]))
         except api.ModelError as error:
-            return _problem(f"The system has {counted(error.result.diagnostics)}; there is no plain SCXML of it.")
+            return _problem(f"The system has {counted(error.result.diagnostics)}, so it has no plain SCXML.")
         linked = analysis.system(systems[0])
         automata = linked.automata_of(path) if linked else ()
         if not automata:
             return _problem("The behavior tree does not use this plugin.")
         documents = [(a.name, list(lines)) for a, lines in write_lines(network) if _is_of(a.role, a.origin.path, path)]
-        # The automata of action threads come with the machine's own.
+        # The automata of action threads are included with that of the machine.
         first = automata[0].name
         shown = [lines for name, lines in documents if automata[0].instance is None or name.startswith(first)]
         return convert(analysis, [line for lines in shown for line in lines])

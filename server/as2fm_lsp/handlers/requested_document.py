@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The document that a request is about, as the library sees it."""
+"""The document of a request, as the library represents it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.text import SourceFile, Span
 
 @dataclass(frozen=True)
 class RequestedDocument:
-    """A file, with all that is known at the moment of the request."""
+    """A file, with the state of the workspace at the time of the request."""
 
     path: str
     snapshot: Snapshot
@@ -38,7 +38,7 @@ class RequestedDocument:
 
 
 def requested_document(context: Context, document: types.TextDocumentIdentifier) -> RequestedDocument | None:
-    """None if there is no such file."""
+    """The document; `None` if there is no such file."""
     session = context.session
     path = session.convert.path(document.uri)
     snapshot = session.moment().snapshot(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/semanticTokens`: whole files, what has changed since the last answer, ranges."""
+"""`textDocument/semanticTokens`: whole files, changes since the last answer, ranges."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _TYPE_NUMBERS = {kind: LEGEND.token_types.index(type_.value) for kind, type_ in 
 _BITS = {modifier: 1 << number for number, modifier in enumerate(_MODIFIERS)}
 
 _MAX_REMEMBERED_FILES = 64
-"""Files whose last answer is kept, to tell what has changed since."""
+"""The maximum number of files whose last answer is stored, to compute the changes since then."""
 
 
 def register(context: Context) -> None:
@@ -96,7 +96,7 @@ def register(context: Context) -> None:
 
 
 def encoded(file: RequestedDocument, tokens: Sequence[SemanticToken]) -> list[int]:
-    """Five numbers for each token, its place relative to the one before."""
+    """Five numbers for each token, its position relative to the previous one."""
     data: list[int] = []
     line = character = 0
     columns = file.convert.columns(file.source, (token.span for token in tokens))
@@ -114,7 +114,7 @@ def _bits(modifiers: frozenset[Modifier]) -> int:
 
 
 def changes(before: Sequence[int], after: Sequence[int]) -> list[types.SemanticTokensEdit]:
-    """What makes `after` of `before`: one stretch at most."""
+    """The edits that change `before` to `after`: at most one."""
     least = min(len(before), len(after))
     head = next((i for i in range(least) if before[i] != after[i]), least)
     least -= head

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an editor shows of a file's structure: folding, growing selections, outline, links to other files."""
+"""The structure of a file in an editor: folding, selection ranges, outline, links to other files."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _selection(file: RequestedDocument, spans: Sequence[Span]) -> types.Selectio
 
 
 def nested(symbol: DocumentSymbol, range_of: Callable[[Span], types.Range]) -> types.DocumentSymbol:
-    """An entry of an outline with all below it, in terms of the protocol."""
+    """An entry of an outline with its children, in the protocol's types."""
     return types.DocumentSymbol(
         symbol.name,
         _KINDS[symbol.kind],
@@ -98,7 +98,7 @@ def nested(symbol: DocumentSymbol, range_of: Callable[[Span], types.Range]) -> t
 def _flat(
     file: RequestedDocument, symbols: Sequence[DocumentSymbol], container: str | None = None
 ) -> Sequence[types.SymbolInformation]:
-    """For clients that know no outline."""
+    """For clients without outlines."""
     flat: list[types.SymbolInformation] = []
     for symbol in symbols:
         place = types.Location(file.convert.uri(file.path), file.range(symbol.span))

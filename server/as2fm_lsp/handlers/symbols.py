@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symbols on their way to the client and back, and their kinds as those of the protocol."""
+"""Conversion of symbols to the client and back, and their kinds in the protocol."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ def symbol_kind(kind: SymbolKind) -> types.SymbolKind:
 
 
 def pack(symbol: Symbol) -> list[str]:
-    """As a client keeps it for us."""
+    """A symbol in the form in which a client stores it."""
     return [symbol.path, symbol.kind.value, symbol.name, symbol.scope]
 
 
 def unpack(data: object) -> Symbol | None:
-    """What `pack` made; None if it is something else."""
+    """The inverse of `pack`; `None` for other data."""
     if not isinstance(data, (list, tuple)) or len(data) != 4:
         return None
     path, kind, name, scope = map(str, data)

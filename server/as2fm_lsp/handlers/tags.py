@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/linkedEditingRange` and `textDocument/onTypeFormatting`: both tags of an element are kept alike."""
+"""`textDocument/linkedEditingRange` and `textDocument/onTypeFormatting`: keep both tags of an element equal."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ TITLE = "Translate to JANI"
 
 
 class Translated(TypedDict):
-    """What the command answers: the file that was written, and its size in words."""
+    """The result of the command: the file that was written, and its size in words."""
 
     uri: str
     summary: str
@@ -42,16 +42,16 @@ def register(context: Context) -> None:
 
     @context.command(COMMAND)
     async def translate(*arguments: object) -> Translated | None:
-        """Translate a system as it stands in the editor.
+        """Translate a system as it is in the editor.
 
         Args:
-            arguments: the URI of the system file, and that of the JANI file if it is not to lie beside it.
+            arguments: the URI of the system file, and that of the JANI file unless it is beside the system file.
 
         Returns:
-            null if the system cannot be translated; the user is told why.
+            null if the system cannot be translated; a message states the reason.
         """
         if not 1 <= len(arguments) <= 2 or not all(isinstance(argument, str) for argument in arguments):
-            text = f"{COMMAND} takes the URI of a system file, and that of the output."
+            text = f"{COMMAND} needs the URI of a system file, and optionally that of the output."
             context.client.show_message(types.MessageType.Error, text)
             return None
         path, *output = (session.convert.path(str(uri)) for uri in arguments)
@@ -86,7 +86,7 @@ def register(context: Context) -> None:
 
 
 def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:
-    """One for a system file that lies on the disk."""
+    """One for a system file on the disk."""
     file = snapshot.analysis.system_file(path)
     if file is not None and is_on_disk(path):
         command = types.Command(TITLE, COMMAND, arguments=[convert.uri(path)])
@@ -94,13 +94,13 @@ def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter
 
 
 async def _write(context: Context, shown: Progress, path: str, target: str) -> tuple[Model, tuple[Diagnostic, ...]]:
-    """Translate a system, as it is now, into a file. Between the steps other messages are handled.
+    """Translate the current state of a system into a file. Between the steps other messages are handled.
 
     Returns:
-        The model, and what is left out of it.
+        The model, and the properties that are left out of it.
 
     Raises:
-        Interrupted: the client does not want it any more. The file is as it was before.
+        Interrupted: the client has cancelled it. The file is unchanged.
     """
     snapshot = context.session.moment().snapshot(path)
     await shown.step("checking")
@@ -120,7 +120,7 @@ def _while_wanted(context: Context, pieces: Iterable[str]) -> Iterator[str]:
 
 
 def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types.CodeAction]:
-    """One for each system that a file belongs to; a system file belongs to itself."""
+    """One for each system of a file; a system file is its own system."""
     for system, name in system_names(snapshot.analysis.memberships.get(path, ())).items():
         title = TITLE if system == path else f"Translate {name} to JANI"
         command = types.Command(title, COMMAND, arguments=[convert.uri(system)])

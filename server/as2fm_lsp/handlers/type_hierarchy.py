@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What messages and structs are made of, as a type hierarchy: the parts of a type are its subtypes."""
+"""The parts of messages and structs as a type hierarchy: the parts of a type are its subtypes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def register(context: Context) -> None:
     def ask(
         item: types.TypeHierarchyItem, question: Callable[[Analysis, Symbol], Iterable[TypeItem]]
     ) -> list[types.TypeHierarchyItem]:
-        """About a type that was given to the client before, as it is seen from where it was first asked about."""
+        """The hierarchy of a type that the client received before, as seen from the file of the first request."""
         if not isinstance(item.data, (list, tuple)) or len(item.data) != 2:
             return []
         path, symbol = str(item.data[0]), unpack(item.data[1])

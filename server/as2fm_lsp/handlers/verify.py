@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm.verify`, with its lenses and hints; `as2fm/properties`, what there is to verify and what is known of it;
+"""`as2fm.verify`, with its lenses and hints; `as2fm/properties`, the properties and their known results;
 `as2fm/counterexample`, why a property fails.
 
 The protocol has no command that shows a counterexample. A client that has one names it in its initialization options,
@@ -63,18 +63,18 @@ def register(context: Context) -> None:
 
     @context.command(COMMAND)
     async def verify(*arguments: object) -> Json | None:
-        """Verify properties of a system as it stands in the editor.
+        """Verify properties of a system as it is in the editor.
 
         Args:
             arguments: the URI of the system file, the names of the properties (all if none are given), and options.
 
         Returns:
-            `results`, one for each property as `as2fm-lsp verify --format json` writes them, or with an `error` in
-            place of the numbers; `stuck`, what is known of getting stuck, in the same form, null if nothing is; and
-            `errors`, those of the model. null if the user does not want it any more.
+            `results`, one for each property as `as2fm-lsp verify --format json` writes them, or with an `error` instead
+                of the numbers; `stuck`, whether the system gets stuck, in the same form, null if unknown; and `errors`,
+                those of the model. null if the user has cancelled it.
         """
         if not _are_arguments(arguments):
-            text = f"{COMMAND} takes the URI of a system file, a list of names, and options."
+            text = f"{COMMAND} needs the URI of a system file, and optionally a list of names and options."
             context.client.show_message(types.MessageType.Error, text)
             return None
         path = session.convert.path(str(arguments[0]))
@@ -96,7 +96,7 @@ def register(context: Context) -> None:
 
     @context.feature(PROPERTIES)
     def properties(_: Any) -> list[Json]:
-        """The systems with their properties, and what is known of these."""
+        """The systems with their properties, and the known results."""
         moment = session.moment()
         systems = []
         for path in moment.files():
@@ -108,7 +108,7 @@ def register(context: Context) -> None:
 
     @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
-        """The shortest trace that speaks against a property; null if none is known."""
+        """The shortest trace that contradicts a property; null if none is known."""
         path = session.convert.path(document_uri(params))
         known = context.results.get(path, string(params, "property"))
         if known is None or known.result.traces is None:
@@ -132,8 +132,8 @@ def register(context: Context) -> None:
 
 
 def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
-    """At each property of a system that is not `broken`, and at the system file. Results stand in the hints behind the
-    names, and in the lenses only where no hints are shown."""
+    """Lenses at each property of a system that is not `broken`, and at the system file. Results are shown in the hints
+    after the names, and in the lenses only if no hints are shown."""
     tells = not _shows_hints(context)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
@@ -148,7 +148,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
             stuck_known = context.results.get(system, STUCK_PROPERTY)
             if context.client.show_counterexample and stuck_known and stuck_known.result.stuck:
                 stale = ", stale" if context.results.is_stale(stuck_known, on.analysis, system) else ""
-                title = f"Gets stuck{stale}: show who waits for whom"
+                title = f"Gets stuck{stale}: show the waiting automata"
                 show = types.Command(title, context.client.show_counterexample, arguments=[uri, STUCK_PROPERTY])
                 yield types.CodeLens(on.range(file.element.name_span), show)
         for property_ in properties:
@@ -169,7 +169,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
 
 
 def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
-    """What is known, behind the name of each property."""
+    """The known result, after the name of each property."""
     span = on.span(within)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
@@ -262,16 +262,16 @@ class _VerifyCommand:
         return {"results": rows, "errors": [], "stuck": look}
 
     def text(self, result: Result, target: VerificationTarget) -> str:
-        """A result as a message; another message shows who waits for whom."""
-        shown = "in a message of its own"
+        """A result as a message; another message shows the waiting automata."""
+        shown = "in a separate message"
         return one_as_text(result, partial(_place_in_words, target), self.settings.stuck, shown)
 
     def asked(self, target: VerificationTarget, name: str) -> tuple[Verifier, CompiledProperty]:
-        """A property, ready to be answered.
+        """A property, ready to be verified.
 
         Raises:
-            PropertyError, FaultError: it cannot be answered.
-            RangeError: no value of it can meet what is expected of it.
+            PropertyError, FaultError: it cannot be decided.
+            RangeError: no value of it can satisfy its expectation.
         """
         only_uniform = self.context.session.settings_of(self.path).scheduler == "uniform"
         checker = checker_of(target, [name])
@@ -284,7 +284,7 @@ class _VerifyCommand:
     async def look(
         self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
-        """What is known of getting stuck, by traces that are made for it if it was not asked."""
+        """Whether the system gets stuck, by traces that are generated for it unless it was requested as a property."""
         target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None
@@ -368,7 +368,7 @@ def _place_in_words(target: VerificationTarget | None, origin: Location) -> str:
 
 
 def _place(context: Context, analysis: Analysis, location: Location) -> Json:
-    """`uri` and `range`; nothing if the file is not there."""
+    """`uri` and `range`; empty if the file does not exist."""
     source = analysis.source(location.path)
     if source is None:
         return {}

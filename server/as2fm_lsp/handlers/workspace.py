@@ -15,7 +15,7 @@ WATCHED = (
     *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)),
     *(f"**/{name}" for name in CONFIG_FILES),
 )
-"""Patterns of the files whose changes on the disk matter."""
+"""Patterns of the files whose changes on the disk are relevant."""
 
 
 def register(context: Context) -> None:
@@ -40,13 +40,13 @@ def register(context: Context) -> None:
 
 
 def use_folders(context: Context, otherwise: Iterable[str] = ()) -> None:
-    """The folders that the client has open are the workspaces; `otherwise` are URIs to use if there are none."""
+    """The open folders of the client are the workspaces; `otherwise` are URIs to use if there are none."""
     session = context.session
     session.set_folders(session.convert.path(uri) for uri in context.client.folders or otherwise)
 
 
 def tell_problems(context: Context) -> None:
-    """Show what is wrong with the configuration and was not shown yet."""
+    """Show the problems of the configuration that were not shown yet."""
     for problem in dict.fromkeys(context.session.problems):
         context.client.show_message(types.MessageType.Warning, problem)
     context.session.problems.clear()

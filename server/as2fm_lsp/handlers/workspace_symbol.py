@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`workspace/symbol`: named things in all files, looked up by a part of their name."""
+"""`workspace/symbol`: search for symbols in all files by a part of their name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roaml.ide.navigation.workspace_symbols import search
 from roaml.text import Location
 
 MAX_SYMBOLS = 1000
-"""More than anybody reads; the user types another letter."""
+"""The maximum number of results; the user can refine the query."""
 
 
 def register(context: Context) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers a question while the server goes on: traces run in processes of their own, a thread waits for them."""
+"""Verification while the server stays responsive: traces run in separate processes, a thread waits for them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from roaml.verification.verifier import Verifier
 
 T = TypeVar("T")
 ESTIMATE_INTERVAL_S = 0.2
-"""The time between two estimates that are shown."""
+"""The interval between two estimates that are shown, in s."""
 
 
 async def answer(
@@ -30,12 +30,12 @@ async def answer(
 
     Args:
         checkpoint: called in the thread, several times a second; what it raises ends the work.
-        show: called on the event loop with what is known so far.
+        show: called on the event loop with the intermediate result.
 
     Raises:
         Interrupted: the result is not needed any more.
-        FaultError: a trace went wrong.
-        WorkersLostError: the processes die again and again.
+        FaultError: a trace failed.
+        WorkersLostError: the processes end again and again.
     """
     loop = asyncio.get_running_loop()
     latest = Tally()
@@ -57,7 +57,8 @@ async def answer(
 
 
 async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callable[[], None]) -> T:
-    """Do some work in a thread. It is given what it must call now and then, so that it ends when nobody waits."""
+    """Do some work in a thread. It gets a checkpoint that it must call regularly, so that it ends when it is not
+    needed."""
     abandoned = threading.Event()
 
     def checked() -> None:
@@ -72,6 +73,6 @@ async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callabl
 
 
 def _jobs() -> int:
-    """All processors but one, which is the editor's."""
+    """All processors but one, which is left for the editor."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, count - 1)

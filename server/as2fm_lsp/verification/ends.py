@@ -8,10 +8,10 @@ from roaml.smc.run import Tally
 
 
 def as_line(tally: Tally) -> str:
-    """For people: the reasons that there were, and how many traces have ended for each."""
+    """For readers: the reasons that occurred, with their numbers of traces."""
     return ", ".join(f"{reason.text} {tally.ends[reason].count:,}" for reason in End if reason in tally.ends)
 
 
 def as_row(tally: Tally) -> dict[str, int]:
-    """For JSON: every reason, and how many traces have ended for it."""
+    """For JSON: every reason, with its number of traces."""
     return {reason.key: tally.ended(reason) for reason in End}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the properties of an editor's systems: for as long as the server runs, in memory.
+"""The known results of the properties of an editor's systems, in memory while the server runs.
 
-A result belongs to the texts that it was computed for: it is stale as long as a file of the system differs, and is not
-when that is taken back.
+A result is valid for the texts for which it was computed: it is stale while a file of the system differs, and valid
+again when the change is undone.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roaml.verification.target import VerificationTarget
 
 @dataclass(frozen=True, slots=True)
 class KnownResult:
-    """A result, with the models and the texts that it was computed for."""
+    """A result, with the model and the texts for which it was computed."""
 
     result: Result
     analysis: Analysis
@@ -28,7 +28,7 @@ class KnownResult:
 
 @dataclass(slots=True)
 class KnownResults:
-    """System -> property -> what is known of it. `changes` is the number of results that were added."""
+    """System -> property -> result. `changes` is the number of results that were added."""
 
     changes: int = 0
     _known: dict[str, dict[str, KnownResult]] = field(default_factory=dict)
@@ -45,15 +45,15 @@ class KnownResults:
         return known.texts != fingerprint(analysis, system)
 
     def all(self) -> Iterator[tuple[str, KnownResult]]:
-        """All that is known, with the system that it is known of."""
+        """All results, with their systems."""
         for system, properties in self._known.items():
             yield from ((system, known) for known in properties.values())
 
     def has(self, system: str) -> bool:
-        """Whether anything is known of a system."""
+        """Whether there is a result for a system."""
         return system in self._known
 
-    # A user asks for one property after the other: the translation for the first serves the others.
+    # A user verifies one property after the other: they share the translation.
 
     def target(self, texts: Texts) -> VerificationTarget | None:
         """The last translation, if it was made from these texts."""
@@ -64,7 +64,7 @@ class KnownResults:
 
 
 def short(result: Result) -> str:
-    """A result in a few characters: `0.48 [0.47, 0.49]`."""
+    """A short form of a result: `0.48 [0.47, 0.49]`."""
     answer = result.answer
     if answer is None or answer.tally.traces == 0:
         return ""
@@ -73,7 +73,7 @@ def short(result: Result) -> str:
 
 
 def missed(result: Result) -> str:
-    """What was expected and is not met; empty if all is."""
+    """The expectations that do not hold; empty if all hold."""
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`: what they stand for.
+"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and their nodes.
 
-Properties use these names, and texts do where several nodes have the same name. Each text that does explains them once.
+Properties use these names, and texts do if several nodes have the same name. Each text that uses them explains them
+once.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ _MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")
 
 
 def explained(text: str, model: Model, place_of: PlaceOf) -> str:
-    """A line that says which nodes the names in a text stand for; "" if there are none.
+    """A line that explains the node names in a text; "" if there are none.
 
     Args:
         place_of: file and line of an origin; that of a node's tick is the place of the node in the tree.

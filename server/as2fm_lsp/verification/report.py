@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The answers, for people, programs and continuous integration."""
+"""Reports of the results, for users, programs and continuous integration."""
 
 from __future__ import annotations
 
@@ -23,13 +23,12 @@ from roaml.views.story import PlaceOf
 
 
 def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
-    """For people: all results of one call.
+    """For users: all results of one call.
 
     Args:
         place_of: file and line of an origin.
-        level: what it is that a trace gets stuck.
-        shown: where it is shown who waits for whom; where that is "", it is shown beneath the first result that it
-            makes doubtful.
+        level: the severity of a stuck trace.
+        shown: where the waiting automata are shown; "" to show them below the first result that they make doubtful.
     """
     blocks = []
     shown_at: dict[object, str] = {}
@@ -47,7 +46,7 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
-    """For people: a result that is read by itself. See `as_text`."""
+    """For users: a single result. See `as_text`."""
     return _block(result, place_of, level, shown, is_alone=True)
 
 
@@ -80,9 +79,9 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
             about = scheduler_report.remark(result.answer.question, result.choices)
             lines += [f"  {about}"] if about else []
         if not result.is_interrupted and not result.answer.is_complete:
-            lines.append("  the interval is wider than asked for (--epsilon)")
+            lines.append("  the interval is wider than requested (--epsilon)")
     if result.is_interrupted:
-        what = "this is what was known by then" if result.answer or result.sampled else "nothing was known by then"
+        what = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
         lines.append(f"  interrupted; {what}" if lines else f"{result.name}: interrupted; {what}")
     for verdict in result.verdicts:
         doubt = verdict.doubt(result.epsilon)
@@ -110,7 +109,7 @@ def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> lis
 def _estimate(answer: Answer) -> str:
     tally, (lower, upper) = answer.tally, answer.bounds
     if tally.traces == 0:
-        return "nothing is known yet"
+        return "no result yet"
     what = "infinite" if math.isinf(answer.value) else _number(answer.value)
     interval = f" in [{_number(lower)}, {_number(upper)}]"
     good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
@@ -132,7 +131,7 @@ def _remarks(answer: Answer) -> list[str]:
             f"value is between {low:.6g} and {high:.6g}"
         )
     if answer.is_anytime and answer.tally.traces:
-        lines.append("  the interval is valid whenever one stops: it is one of a confidence sequence")
+        lines.append("  the interval is valid at any stopping time: it is one of a confidence sequence")
     cut = answer.tally.ended(End.CUT)
     if cut:
         steps = f"{answer.options.max_steps:,}"
@@ -154,7 +153,7 @@ def _number(value: float) -> str:
 def as_json(
     results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
 ) -> str:
-    """For programs; `stuck` is what is known of getting stuck."""
+    """For programs; `stuck` is the result of the check for stuck systems."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
@@ -195,7 +194,7 @@ def row(result: Result) -> dict[str, Any]:
 
 
 def warning(result: Result) -> str:
-    """Why the value is not, or may not be, what was asked for; "" if it is."""
+    """Why the value is not, or may not be, the requested one; "" if it is."""
     parts = []
     if result.stuck is not None and not result.asks_stuck:
         parts.append(result.stuck.warning)
@@ -234,8 +233,8 @@ def _finite(value: float) -> float | str | None:
 
 
 def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Look | None = None) -> str:
-    """A test for each property; it fails if an expectation is not met, and is an error if there is no answer. One more
-    tells whether the system gets stuck: it fails if that is an error."""
+    """A test for each property; it fails if an expectation does not hold, and is an error if there is no result. One
+    more test fails if the system gets stuck and that is an error."""
     level = WARNING if look is None else look.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if look is not None:

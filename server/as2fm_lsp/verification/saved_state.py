@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known so far, in a file, so that a long run can be taken up again.
+"""The intermediate state in a file, so that a long run can be continued.
 
-The file belongs to a model, its properties, a seed and a limit of steps. It may be continued with other limits, a
-higher confidence or more traces; what has been counted stays right.
+The file is valid for one model, its properties, a seed and a limit of steps. It can be continued with other limits, a
+higher confidence or more traces; the counts so far stay valid.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from roaml.smc.stored import tally_from_json
 
 VERSION = 3
 MAX_STATE_BYTES = 64 * MEGABYTE
-"""The state of some hundred properties has a few million."""
+"""The maximum size of the file, in bytes; the state of some hundred properties takes a few million."""
 WRITE_INTERVAL_S = 1.0
 
 
 class StateError(ValueError):
-    """The file cannot be used; the message says why."""
+    """The file cannot be used; the message contains the reason."""
 
 
 class SavedState:
@@ -41,11 +41,11 @@ class SavedState:
             self._read()
 
     def tally(self, question: Question, payload: Payload) -> Tally:
-        """What is known of a property.
+        """The state of a property.
 
         Raises:
-            StateError: the file was written for another model, seed or limit of steps, or holds what traces cannot
-                have given.
+            StateError: the file was written for another model, seed or limit of steps, or contains values that traces
+                cannot have.
         """
         name = question.name
         known = self._properties.get(name)
@@ -54,21 +54,23 @@ class SavedState:
         if known.get("model") != payload.digest:
             raise StateError(f"{self.path} was written for another model; name another file")
         if (known.get("seed"), known.get("max_steps")) != (self.options.seed, self.options.max_steps):
-            raise StateError(f"{self.path} was written with another seed or limit of steps; use these, or another file")
+            raise StateError(
+                f"{self.path} was written with another seed or limit of steps; use the same ones, or another file"
+            )
         try:
             tally = tally_from_json(known.get("tally"), question, self.options)
         except ValueError as error:
-            raise StateError(f"{self.path} is damaged: of {name}, {error}; remove it to begin again") from None
+            raise StateError(f"{self.path} is damaged: {name}: {error}; remove it to start again") from None
         if known.get("options") != repr(self.options):
-            # Who changes the options knows what has come of the traces so far.
+            # A user who changes the options knows the results so far.
             tally.is_finished, tally.accepted, tally.is_revised = False, None, tally.traces > 0
         return tally
 
     def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
-        """Note what is known of a property; written now and then, or at once with `now`.
+        """Store the state of a property; written from time to time, or at once with `now`.
 
         Raises:
-            OSError: the file cannot be written; it is as it was.
+            OSError: the file cannot be written; it is unchanged.
         """
         if not now and time.monotonic() - self._written < WRITE_INTERVAL_S:
             return
@@ -91,7 +93,7 @@ class SavedState:
         if not isinstance(value, dict) or "version" not in value:
             raise StateError(f"{self.path} is not the state of a verification")
         if value["version"] != VERSION:
-            raise StateError(f"{self.path} was written by another version; remove it to begin again")
+            raise StateError(f"{self.path} was written by another version; remove it to start again")
         properties = value.get("properties")
         if not isinstance(properties, dict) or not all(isinstance(row, dict) for row in properties.values()):
             raise StateError(f"{self.path} is not the state of a verification")

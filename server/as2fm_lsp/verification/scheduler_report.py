@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of other schedulers than the uniform one, for people and programs."""
+"""Results about other schedulers than the uniform one, for users and programs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roaml.verification.schedulers import extreme_asked, interval_text
 
 
 def remark(question: Question, choices: Choices | None) -> str:
-    """One line for people; empty if uniform choices are what is wanted."""
+    """One line for users; empty if the question is about uniform choices."""
     if choices is None:
         return ""
     if choices.agreement:
@@ -22,21 +22,21 @@ def remark(question: Question, choices: Choices | None) -> str:
     head += f", and `{question.operator}` asks for the {extreme_asked(question)}"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
-        return f"{head}; schedulers reach from {_reached(least)} to {_reached(greatest)}"
+        return f"{head}; schedulers range from {_reached(least)} to {_reached(greatest)}"
     return f"{head}, which may differ; {_looked(question, choices)}"
 
 
 def warning(question: Question, choices: Choices | None) -> str:
-    """The same if it is a warning, for programs; else empty."""
+    """The same for programs if it is a warning; otherwise empty."""
     text = remark(question, choices)
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
 
 def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
-    """Said once of all properties whose minimum or maximum may differ from their values, and what one can do about it.
+    """A note about all properties whose minimum or maximum may differ from their values, and what to do.
 
     Args:
-        asked: these properties, with what is known of them.
+        asked: these properties, with their choices.
     """
     if not asked:
         return []
@@ -52,21 +52,21 @@ def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
         looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
         lines.append(f"  {', '.join(of)} (`{operator}` asks for the {extreme}): {looked}")
     lines.append(
-        "  help: use --scheduler uniform if you want uniform choices, --scheduler lss to sample more schedulers, "
+        "  help: use --scheduler uniform for uniform choices, --scheduler lss to sample more schedulers, "
         "or --exact to compute the minimum and the maximum if there are few states"
     )
     return lines
 
 
 def _looked(question: Question, choices: Choices) -> str:
-    """How a difference was looked for, and was not found."""
+    """How a difference was searched for and not found."""
     if choices.tried:
         return f"{choices.tried:,} sampled schedulers show no difference"
     return "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"
 
 
 def rows(choices: Choices | None) -> dict[str, Any]:
-    """For JSON: `schedulers`, whether all agree (null if that is not known) and why, `minimum` and `maximum`."""
+    """For JSON: `schedulers`, whether all agree (null if unknown) and why, `minimum` and `maximum`."""
     if choices is None:
         return {"schedulers": {"wanted": "uniform"}}
     agree = True if choices.agreement else False if choices.differ else None
@@ -94,7 +94,7 @@ def _row(extreme: Extreme) -> dict[str, Any]:
 
 def _reached(extreme: Extreme) -> str:
     if extreme.found == EXPLORATION:
-        return f"{extreme.value:.6g} (exactly, from all states)"
+        return f"{extreme.value:.6g} (exact, from all states)"
     who = extreme.scheduler if extreme.found == SAMPLING else "uniform choices"
     return f"{interval_text(extreme)} (by {who})"
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How an editor asks to verify properties: `as2fm.verify` of its settings, and the options of one call.
+"""Settings for the verification in an editor: `as2fm.verify`, and the options of one call.
 
     {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
                 "stuck": "warning"}}
 
-The options of a call have the same form, besides `seed` and `silent`, and take precedence. A value that is not valid is
+The options of a call have the same form, with `seed` and `silent` in addition, and take precedence. An invalid value is
 reported, and the default is used.
 """
 
@@ -35,9 +35,10 @@ class VerificationSettings:
 
 
 def verification_settings(settings: object, options: object = None) -> VerificationSettings:
-    """
+    """The settings.
+
     Args:
-        settings: the client's settings, as they came.
+        settings: the client's settings, as received.
         options: those of one call.
     """
     section = settings.get("verify") if isinstance(settings, Mapping) else None
@@ -65,7 +66,7 @@ def verification_settings(settings: object, options: object = None) -> Verificat
         try:
             expectations.append(parse(f"{name} {text}"))
         except ValueError:
-            problems.append(f"What is expected of {name} must be like '>= 0.95', not {text!r}.")
+            problems.append(f"The expectation of {name} must have a form like '>= 0.95', not {text!r}.")
     level = values.get("stuck", WARNING)
     if level not in LEVELS:
         problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a system gets stuck, for people and programs."""
+"""Reports on whether a system gets stuck, for users and programs."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ NOT_STUCK = "does not get stuck"
 
 
 def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
-    """For people.
+    """For users.
 
     Args:
-        shown: where it has been shown who waits for whom; it is shown here if that is "".
+        shown: where the waiting automata have been shown; "" to show them here.
     """
     answer, stuck = look.answer, look.stuck
     lines = []
@@ -32,11 +32,11 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
         value = f"{answer.value:.6g} in [{lower:.6g}, {upper:.6g}]"
         lines.append(f"{PROBABILITY}: {value} from {answer.tally.traces:,} traces{to}")
     if look.fault:
-        lines.append(f"{PROBABILITY}: not known, since a trace that ran on went wrong: {look.fault}")
+        lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {look.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else ", time stands still"
         if shown:
-            lines.append(f"{look.level}: the system gets stuck{still}; who waits for whom is shown {shown}")
+            lines.append(f"{look.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
         else:
             lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
             lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
@@ -44,15 +44,15 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
 
 
 def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
-    """For people, beneath the value that it makes doubtful; `shown` as in `as_text`."""
+    """For users, below the value that it makes doubtful; `shown` as in `as_text`."""
     if shown:
-        return [f"{level}: {stuck.warning}; who waits for whom is shown {shown}"]
+        return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
     lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
     return [*lines, *(f"  {line}" for line in waiting_lines(stuck, place_of))]
 
 
 def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
-    """Who waits for whom, and what to do about it."""
+    """The waiting automata, and how to fix it."""
     lines = []
     for wait in stuck.waits:
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"

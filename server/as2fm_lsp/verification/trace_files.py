@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Traces as files: CSV for plotting, and JSON with the places that each step exists for.
+"""Traces as files: CSV for plotting, and JSON with the places from which the steps come.
 
-CSV has a line for each state, the first one included, and a column for its number, the time in seconds where the model
-has a clock, why the trace has ended (in its last line), and each global variable; an array has a column for each of its
-elements; true is 1, false 0.
+CSV has a line for each state, including the first one, and columns for its number, the time in s if the model has a
+clock, the reason why the trace has ended (in its last line), and each global variable; an array has a column for each
+of its elements; true is 1, false 0.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _UNSAFE = re.compile(r"[^\w.-]")
 def write_traces(
     folder: str, target: VerificationTarget, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
 ) -> list[str]:
-    """Write the first traces of each verdict, and the shortest; the files' names.
+    """Write the first traces of each verdict, and the shortest; return the names of the files.
 
     Raises:
-        OSError: a file cannot be written; it is not there then, those before are whole.
+        OSError: a file cannot be written; it does not exist then, earlier ones are complete.
     """
     os.makedirs(folder, exist_ok=True)
     written = []
@@ -105,7 +105,7 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
 
 
 def end_of(recording: Recording) -> str:
-    """Why a trace that was walked again has ended."""
+    """Why the trace of a recorder has ended."""
     return "fault" if recording.problem is not None else recording.end.key
 
 
@@ -149,14 +149,14 @@ def _json(value: object) -> str:
 
 
 class _Echo:
-    """A file that returns what is written to it."""
+    """A file whose `write` returns the text."""
 
     def write(self, text: str) -> str:
         return text
 
 
 _CSV = csv.writer(_Echo())
-"""With its own line end, CR LF: the writer quotes a cell that holds a character of the line end."""
+"""With CR LF as line end: the writer quotes a cell that contains a character of the line end."""
 
 
 def csv_line(cells: Iterable[int | float | str]) -> str:

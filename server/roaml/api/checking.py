@@ -20,17 +20,17 @@ from roaml.text import SourceFile
 
 
 class PathError(ValueError):
-    """A path was named that cannot be checked; the message says why."""
+    """A given path cannot be checked; the message contains the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """What `check` found.
+    """The result of `check`.
 
     Attributes:
-        diagnostics: sorted by file, in the order in which files were checked, then by place.
+        diagnostics: sorted by file, in the order in which files were checked, then by position.
         files: the files that were checked.
-        problems: what is wrong with the configuration, in sentences.
+        problems: errors in the configuration, as sentences.
         snapshot: the models behind the diagnostics.
     """
 
@@ -55,17 +55,17 @@ def check(
     """Check system files, single files and folders.
 
     A system file is checked with all files that it names; a folder with all systems and files in it. Any other file is
-    checked as a part of the systems that name it, which are looked for in the configured roots, else in the enclosing
-    repository, else in its folder.
+    checked as a part of the systems that name it. They are searched for in the configured roots, otherwise in the
+    enclosing repository, otherwise in the folder of the file.
 
     Args:
-        paths: what to check.
-        ros_paths: folders with ROS interface packages, besides those configured.
-        settings: in place of the configuration found around the first path.
-        texts: path -> text, or the bytes of a file, that is taken in place of what the file holds.
+        paths: the files and folders to check.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        texts: path -> text, or the bytes of a file, used instead of the content of the file.
 
     Raises:
-        PathError: a path does not exist or cannot be read, and no text is given for it.
+        PathError: a path does not exist or cannot be read, and `texts` has no text for it.
     """
     named = [os.path.abspath(path) for path in paths]
     texts = {os.path.abspath(path): text for path, text in (texts or {}).items()}
@@ -85,10 +85,10 @@ def check(
 
 
 def fix(result: CheckResult) -> dict[str, bytes]:
-    """What becomes of the checked files when all safe fixes of what was found are made. Nothing is written.
+    """The texts of the checked files after all safe fixes have been applied. Nothing is written.
 
-    A safe fix takes away nothing that has an effect and guesses nothing. Files that stay as they are, and those that
-    hold bytes that are no text, are left out.
+    A safe fix removes nothing that has an effect and guesses nothing. Unchanged files and files that are not valid text
+    are left out.
     """
     sources = {path: result.source(path) for path in result.files}
     mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
@@ -100,14 +100,14 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:
-    """Whether a text that was not read from a file can be written to one: halves of characters cannot."""
+    """Whether a text that was not read from a file can be encoded: lone surrogates cannot."""
     return _HALF.search(text) is None
 
 
 def _workspace(
     named: list[str], settings: Settings, texts: Mapping[str, str | bytes]
 ) -> tuple[Workspace, dict[str, FileKind]]:
-    """The workspace in which the named paths are checked, and what kinds of files they are (folders left out)."""
+    """The workspace in which the named paths are checked, and the kinds of the files among them."""
     folders = [path for path in named if os.path.isdir(path)]
     single = Workspace((), settings)
     for path, text in texts.items():
@@ -125,7 +125,7 @@ def _workspace(
         if not any(is_below(path, folder) for folder in folders):
             roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
     interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
-    # Whoever names a link means the file that it leads to.
+    # A link stands for the file that it leads to.
     interfaces += [os.path.dirname(os.path.realpath(path)) for path in others if os.path.islink(path)]
     workspace = Workspace(dict.fromkeys(roots), settings, systems, packages=dict.fromkeys((*roots, *interfaces)))
     for path, text in texts.items():
@@ -134,9 +134,9 @@ def _workspace(
 
 
 def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
-    """The files that are reported on: the configuration, and what was named, in that order."""
+    """The files that are reported on, in this order: the configuration, and the named paths."""
     analysis, found = snapshot.analysis, dict[str, None]()
-    if origin := snapshot.checker.settings.origin:  # what is wrong in it matters to all of them
+    if origin := snapshot.checker.settings.origin:  # errors in it affect all of them
         found[origin] = None
     for path in named:
         if path not in kinds:

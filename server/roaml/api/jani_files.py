@@ -15,7 +15,7 @@ from roaml.text import SourceFile, decode
 
 
 class JaniError(ValueError):
-    """A JANI file has errors: `diagnostics`, with places in `source`."""
+    """A JANI file has errors: `diagnostics`, with positions in `source`."""
 
     def __init__(self, diagnostics: tuple[Diagnostic, ...], source: SourceFile) -> None:
         super().__init__(f"{diagnostics[0].path}: {diagnostics[0].message}")
@@ -24,7 +24,7 @@ class JaniError(ValueError):
 
 
 def read_jani(path: str) -> tuple[Model, SourceFile]:
-    """Read a JANI model; its places are those in the file.
+    """Read a JANI model; its positions are those in the file.
 
     Raises:
         PathError: the file cannot be read.
@@ -36,7 +36,7 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     except NotReadableError as error:
         raise PathError(str(error)) from None
     if source.undecodable is not None:
-        raise PathError(f"{path}: it holds bytes that are no text")
+        raise PathError(f"{path}: not valid UTF-8; fix the encoding")
     value, syntax = parse(source.text)
     model, findings = (None, ()) if syntax else read_model(value, path)
     diagnostics = tuple(

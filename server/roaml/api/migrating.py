@@ -17,16 +17,16 @@ from roaml.project.workspace import Snapshot, Workspace
 
 
 class SharedFileError(ValueError):
-    """Systems that are not migrated would break. `shared` is each file that they use and that would change."""
+    """Systems that are not migrated would break. `shared` are the files that they use and that would change."""
 
     def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
         path, systems = next(iter(shared.items()))
-        super().__init__(f"{path}: it belongs to {', '.join(systems)}, too")
+        super().__init__(f"{path}: also used by {', '.join(systems)}; migrate them together")
         self.shared = shared
 
     @property
     def systems(self) -> tuple[str, ...]:
-        """The systems that would have to be migrated as well, each once."""
+        """The systems that would have to be migrated as well, without duplicates."""
         return tuple(dict.fromkeys(system for systems in self.shared.values() for system in systems))
 
 
@@ -37,29 +37,29 @@ def migrate(
     *,
     with_related: bool = False,
 ) -> tuple[Migration, ...]:
-    """What becomes of systems when they are moved to the current dialect. Nothing is written.
+    """The changes that migrate systems to the current dialect. Nothing is written.
 
     Args:
-        paths: system files, or folders in which they are looked for.
-        ros_paths: folders with ROS interface packages, besides those configured.
-        settings: in place of the configuration found around the first path.
-        with_related: whether to migrate the systems, too, that would break because they share a file, and so on. They
-            are looked for in the repository around each system, or else in the folder around its files.
+        paths: system files, or folders that are searched for them.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: used instead of the configuration found around the first path.
+        with_related: whether to also migrate the systems that would break because they share a file, and so on. They
+            are searched for in the repository around each system, or in the folder around its files.
 
     Raises:
-        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is no proper text.
+        PathError: a path cannot be read, or is neither a folder nor a system file; or a file is not valid text.
         SharedFileError: another system would break; only if not `with_related`.
     """
     paths = [os.path.abspath(path) for path in paths]
     if settings is None:
         settings, _ = find_settings(paths[0] if paths else os.getcwd())
-    # What is not to be reported is moved all the same.
+    # Files that are not reported are migrated as well.
     settings = replace(settings, select=frozenset(), ignore=frozenset())
     result = check(paths, ros_paths, settings)
     systems = result.snapshot.analysis.system_paths
     for path in paths:
         if not os.path.isdir(path) and path not in systems:
-            raise PathError(f"{path}: only systems are migrated; name their system file")
+            raise PathError(f"{path}: not a system file; only systems can be migrated, so name the system file")
 
     def snapshot_of(texts: Mapping[str, str]) -> Snapshot:
         return check(systems, ros_paths, settings, texts).snapshot
@@ -67,7 +67,7 @@ def migrate(
     migrations = _migrate(systems, snapshot_of) if systems else ()
     for migration in migrations:
         if result.source(migration.path).undecodable is not None:
-            raise PathError(f"{migration.path}: it holds bytes that are no text; mend it first")
+            raise PathError(f"{migration.path}: not valid UTF-8; fix the encoding")
     around = _around(systems, result.snapshot.analysis, settings) if migrations else None
     shared = {} if around is None else _broken(migrations, frozenset(systems), around)
     if not shared:
@@ -79,7 +79,8 @@ def migrate(
 
 
 def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
-    """File that changes -> the systems, other than those migrated, that it breaks: it is renamed, or brings errors."""
+    """For each file that changes, the systems that it breaks, other than those being migrated: the file is renamed, or
+    causes errors."""
     memberships = around.analysis.memberships
     shared: dict[str, tuple[str, ...]] = {}
     for each in migrations:
@@ -93,7 +94,7 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
 
 
 def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
-    """All that lies in the configured roots, and in the repositories of some systems or else around their files."""
+    """The files in the configured roots, and in the repositories of some systems or otherwise around their files."""
     roots = dict.fromkeys(settings.roots)
     for system in systems:
         folders = {os.path.dirname(path) for path in analysis.files_of(system)}

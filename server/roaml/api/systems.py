@@ -27,7 +27,7 @@ from roaml.to_jani import translate
 
 
 class ModelError(ValueError):
-    """A system has errors and cannot be translated. `result` holds these errors and nothing else."""
+    """A system has errors and cannot be translated. `result` contains only these errors."""
 
     def __init__(self, result: CheckResult) -> None:
         first = result.diagnostics[0]
@@ -70,7 +70,7 @@ def load(
     Args:
         path: the system file.
         ros_paths, settings, texts: as for `check`.
-        overrides: parameters in place of those in the system file.
+        overrides: parameters that replace those in the system file.
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
@@ -87,7 +87,7 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     """A system of a workspace.
 
     Args:
-        path: absolute, of the system file.
+        path: the absolute path of the system file.
 
     Raises:
         PathError: the path is not a system file.
@@ -95,7 +95,7 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     """
     analysis = snapshot.analysis
     if analysis.kind(path) is not FileKind.SYSTEM or analysis.system(path) is None:
-        raise PathError(f"{path}: this is no system file")
+        raise PathError(f"{path}: not a system file")
     errors = snapshot.checker.errors(path)
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
@@ -103,18 +103,18 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
 
 
 def to_scxml(system: LoadedSystem) -> Network:
-    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` gives the files."""
+    """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` creates the files."""
     return lower(program_of(system.analysis, system.path))
 
 
 def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Model:
-    """The system as a network of Markov decision processes. `roaml.jani.write` gives the text.
+    """The system as a network of Markov decision processes. `roaml.jani.write` creates the text.
 
     Args:
-        properties: the names of the properties that the model shall have; all if not given.
+        properties: the names of the properties to include; `None` for all.
 
     Raises:
-        PropertyError: the system has no property of a name.
+        PropertyError: the system has no property with one of the names.
     """
     if properties is None:
         return translate(to_scxml(system), system.properties, system.observed)
@@ -127,5 +127,5 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Mo
 
 
 def source_map(system: LoadedSystem, model: Model) -> SourceMap:
-    """Where every automaton, edge and variable of a translated model comes from, as a value for JSON."""
+    """The sources of every automaton, edge and variable of a translated model, as a value for JSON."""
     return _source_map(model, system.analysis, system.path)

@@ -33,7 +33,7 @@ def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]
 
 
 def indent_of(text: str, element: Element) -> str:
-    """The white space with which the line of an element begins."""
+    """The white space at the beginning of the line of an element."""
     start = max(text.rfind("\n", 0, element.span.start), text.rfind("\r", 0, element.span.start)) + 1
     line = text[start : element.span.start]
     return line[: len(line) - len(line.lstrip())]
@@ -41,7 +41,7 @@ def indent_of(text: str, element: Element) -> str:
 
 @lru_cache(maxsize=16)
 def level_of(document: Document) -> str:
-    """The white space of one level, as the first nested element has it."""
+    """The white space of one level, taken from the first nested element."""
     text = document.text
     for parent in document.root.walk() if document.root else ():
         for child in parent.elements:
@@ -54,14 +54,14 @@ def level_of(document: Document) -> str:
 
 @_lazy
 def after(document: Document, element: Element, *lines: str) -> TextEdit:
-    """Put lines behind an element, as its next sibling."""
+    """Insert lines after an element, as its next sibling."""
     at = element.span.end
     return TextEdit(Span(at, at), _block(document, indent_of(document.text, element), lines))
 
 
 @_lazy
 def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
-    """Put lines into an element, before all that it holds."""
+    """Insert lines into an element, before all its content."""
     if parent.self_closing or not parent.elements:
         return _last_in(document, parent, *lines)
     at = parent.open_span.end
@@ -70,14 +70,14 @@ def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
 
 @_lazy
 def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
-    """Put lines into an element, behind all elements that it holds."""
+    """Insert lines into an element, after all its child elements."""
     return _last_in(document, parent, *lines)
 
 
 def remove(
     document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
 ) -> Fix:
-    """Take an element away."""
+    """Remove an element."""
     plan = (removal(document.text, element.span),)
     return Fix(title or f"Remove this `<{element.name}>`", plan, preferred or safe, safe)
 
@@ -100,7 +100,7 @@ def _last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
 
 
 def _inside(document: Document, parent: Element) -> str:
-    """The indentation of what an element with children holds."""
+    """The indentation of the content of an element with children."""
     child = parent.elements[-1]
     text = document.text
     own_line = not text[max(text.rfind("\n", 0, child.span.start), 0) : child.span.start].strip()
@@ -118,7 +118,7 @@ def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
 
 @_lazy
 def removal(text: str, span: Span) -> TextEdit:
-    """Takes away what stands at `span`, with the blanks before it and the line break before these."""
+    """An edit that removes the text at `span`, with the blanks before it and the line break before these."""
     start = span.start
     while start > 0 and text[start - 1] in " \t":
         start -= 1
@@ -134,7 +134,7 @@ def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
 
 
 def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[Edit, ...]:
-    """Add a `<bt_halt>` that goes to the initial state to each of some states that takes ticks and no halts."""
+    """Add a `<bt_halt>` that leads to the initial state to each of some states that handle ticks but not halts."""
     initial = root.get("initial")
     edits: list[Edit] = []
     for state in states:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expression tree -> text in one normal form: one space around binary operators, no needless parentheses.
+"""Expression tree -> text in one normal form: one space around binary operators, no superfluous parentheses.
 
-Parsing the text gives the same tree, its places aside; a tree with an `ErrorExpr` has no text.
+Parsing the text gives the same tree, except for positions; a tree with an `ErrorExpr` has no text.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def format_expr(expr: Expr) -> str:
     """The text of `expr`.
 
     Raises:
-        ValueError: something in it could not be read.
+        ValueError: a part of it could not be parsed.
     """
     return _text(expr, CONDITIONAL_PRECEDENCE)
 
@@ -68,14 +68,14 @@ def _text(expr: Expr, least: int) -> str:
         case Conditional():
             text, precedence = _conditional(expr), CONDITIONAL_PRECEDENCE
         case ErrorExpr():
-            raise ValueError("an expression that could not be read has no text")
+            raise ValueError("an expression that could not be parsed has no text")
         case _:
             _never(expr)
     return f"({text})" if precedence < least else text
 
 
 def format_number(number: Number) -> str:
-    """A whole number that is real keeps its point: `2.0`."""
+    """The text of a number. A real number with a whole value keeps its point: `2.0`."""
     if number.is_real:
         return repr(float(number.value))
     return str(int(number.value))
@@ -88,7 +88,7 @@ def format_string(value: str) -> str:
 
 
 def _owner(expr: Expr) -> str:
-    """What stands before a dot; `2.x` would be read as the number `2.`."""
+    """The text of an object before a dot; `2.x` would be read as the number `2.`."""
     return f"({format_number(expr)})" if isinstance(expr, Number) else _text(expr, _POSTFIX_PRECEDENCE)
 
 
@@ -103,7 +103,7 @@ def _unary(expr: Unary) -> str:
 
 
 def _binary(expr: Binary) -> str:
-    """All operators group to the left."""
+    """The text of a binary expression; all operators are left-associative."""
     operator: Operator = expr.operator
     left = _text(expr.left, operator.precedence)
     return f"{left} {operator.symbol} {_text(expr.right, operator.precedence + 1)}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The type of an expression, and everything in it that does not fit together (docs/spec/expressions.md#operators).
+"""The type of an expression, and its type errors (docs/spec/expressions.md#operators).
 
-- Pure: what a name stands for is asked of the caller, `Scope`.
-- Problems are data (`Problem`); the rules put them into words.
+- Pure: `Scope`, which the caller provides, resolves names.
+- Problems are data (`Problem`); the rules write the messages.
 - A part that is already reported has type `Unknown` and causes no further problems.
 """
 
@@ -52,7 +52,7 @@ from roaml.expr.types import (
 from roaml.text import Span
 
 Scope: TypeAlias = Callable[[str], Type | None]
-"""The type of a name that may begin an access path, or None if there is no such name."""
+"""The type of a name that may begin an access path; `None` if there is no such name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class UnknownName:
 
 @dataclass(frozen=True, slots=True)
 class UnknownMember:
-    """`owner` has no member called `name`; `owner` may be a scalar, which has none at all."""
+    """`owner` has no member `name`; `owner` may be a scalar, which has no members."""
 
     span: Span
     name: str
@@ -72,7 +72,7 @@ class UnknownMember:
 
 @dataclass(frozen=True, slots=True)
 class BadIndex:
-    """Either `indexed` is no array, or the index (of type `index`) is no integer."""
+    """Either `indexed` is not an array, or the index (of type `index`) is not an integer."""
 
     span: Span
     indexed: Type
@@ -106,7 +106,8 @@ class BadComparison:
 
 @dataclass(frozen=True, slots=True)
 class UnknownFunction:
-    """Called or read, but no function or constant of the language. `name` is as written, `Math.` included."""
+    """A name that is called or read, but is not a function or constant of the language. `name` is as written, including
+    `Math.`."""
 
     span: Span
     name: str
@@ -122,7 +123,7 @@ class WrongArgumentCount:
 
 @dataclass(frozen=True, slots=True)
 class MixedTypes:
-    """Elements of an array literal, or the values of `?:`, have no type in common."""
+    """Elements of an array literal, or the values of `?:`, have no common type."""
 
     span: Span
     first: Type
@@ -148,7 +149,7 @@ class RandomUsed:
 
 @dataclass(frozen=True, slots=True)
 class LengthOfStruct:
-    """`.length` of a struct that is no array (docs/spec/types.md#leaves)."""
+    """`.length` of a struct, which is not an array (docs/spec/types.md#leaves)."""
 
     span: Span
     struct: Struct
@@ -156,14 +157,14 @@ class LengthOfStruct:
 
 @dataclass(frozen=True, slots=True)
 class ObjectUsed:
-    """An object literal where no initial value is given (docs/spec/types.md#initial-values)."""
+    """An object literal that is not an initial value (docs/spec/types.md#initial-values)."""
 
     span: Span
 
 
 @dataclass(frozen=True, slots=True)
 class ElementComputed:
-    """An element of an array literal that is no literal itself (docs/spec/expressions.md#grammar)."""
+    """An element of an array literal that is not a literal (docs/spec/expressions.md#grammar)."""
 
     span: Span
 
@@ -190,11 +191,11 @@ Problem: TypeAlias = (
 def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, tuple[Problem, ...]]:
     """The type of `expr` and its problems, in the order of the text.
 
-    `reprinted` gives the type that the expression has after the translation printed its numbers: `2.0` has become `2`,
-    an int (docs/spec/expressions.md#whole-reals).
+    With `reprinted`, the type is the one after the translation has printed the numbers: `2.0` becomes `2`, an int
+    (docs/spec/expressions.md#whole-reals).
     """
     if isinstance(expr, Name) and (known := scope(expr.name)) is not None:
-        return known, ()  # as most are
+        return known, ()  # the common case
     inference = _Inference(scope, reprinted)
     type_ = inference.type_of(expr)
     problems = inference.problems
@@ -204,7 +205,8 @@ def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, t
 
 
 def constant(expr: Expr) -> int | float | None:
-    """The value of a numeric expression of literals, or None. Division is real division, as in JANI."""
+    """The value of a numeric expression of literals; `None` for other expressions. Division is real division, as in
+    JANI."""
     match expr:
         case Number():
             return expr.value
@@ -417,7 +419,7 @@ class _Inference:
         return Array(element, len(expr.elements))
 
     def common(self, first: Type, other: Expr) -> Type:
-        """The type that a value of type `first` and `other` have in common."""
+        """The common type of values of type `first` and `other`."""
         second = self.type_of(other)
         common = join(first, second)
         if common is None:

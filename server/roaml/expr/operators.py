@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operators and functions of the expression language (docs/spec/expressions.md#grammar), each with what it takes
-and gives.
+"""The operators and functions of the expression language (docs/spec/expressions.md#grammar), with the types of their
+operands and results.
 
-This is the only list of them: parser, typing, completion, signature help and translation all read it.
+This is the only list of them: parser, typing, completion, signature help and translation read it.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ class Function:
 
     Attributes:
         parameters: their names, in order.
-        result: `int`, `real`, or `same` (real if any argument is real, else int).
-        documentation: what it gives.
-        optional: how many parameters at the end may be left out.
+        result: `int`, `real`, or `same` (real if any argument is real, otherwise int).
+        documentation: a description of the result.
+        optional: the number of parameters at the end that may be omitted.
     """
 
     name: str
@@ -80,7 +80,9 @@ FUNCTIONS = {
         Function("ceil", ("x",), "int", "The smallest integer that is not less than x."),
         Function("cos", ("x",), "real", "The cosine of x, x in radians."),
         Function("floor", ("x",), "int", "The greatest integer that is not greater than x."),
-        Function("log", ("x", "base"), "real", "The logarithm of x to a base; without base the natural one.", 1),
+        Function(
+            "log", ("x", "base"), "real", "The logarithm of x to a base; the default is the natural logarithm.", 1
+        ),
         Function("max", ("a", "b"), "same", "The greater of a and b."),
         Function("min", ("a", "b"), "same", "The lesser of a and b."),
         Function("pow", ("x", "y"), "real", "x to the power of y."),
@@ -88,8 +90,8 @@ FUNCTIONS = {
             "random",
             (),
             "real",
-            "One of 0.00, 0.01, …, 0.99, each equally likely; `<random_values>` of the system can "
-            "ask for more. Only where a value is stored.",
+            "One of 0.00, 0.01, …, 0.99, each equally probable; `<random_values>` of the system can "
+            "increase their number. Only allowed where a value is stored.",
         ),
         Function("sin", ("x",), "real", "The sine of x, x in radians."),
     )

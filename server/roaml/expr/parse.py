@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text -> expression tree, by operator precedence (Pratt 1973), whatever the text.
+"""Text -> expression tree, by operator precedence (Pratt 1973), for any text.
 
-- Never fails: every mistake is a finding with a place, and the tree holds an `ErrorExpr` there.
-- Accepts what docs/spec/expressions.md#grammar accepts and, beyond the reference, `===`, `!==`, unary `+` and `?:`
-  (docs/spec/differences.md#accepted-expressions).
-- Legal ECMAScript outside the subset is named as such ("unsupported-expression"), not called a syntax mistake.
+- Never fails: every error is a finding with a position, and the tree contains an `ErrorExpr` there.
+- Accepts the grammar of docs/spec/expressions.md#grammar and, beyond the reference translator, `===`, `!==`, unary `+`
+  and `?:` (docs/spec/differences.md#accepted-expressions).
+- Reports valid ECMAScript outside the subset as "unsupported-expression", not as a syntax error.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ from roaml.expr.words import PREFIXES, STATEMENTS
 from roaml.text import Decoded, Span, TextEdit
 
 MAX_DEPTH = 150
-"""Deeper trees are refused, so that everything after the parser may recurse."""
+"""The maximum depth of a tree; everything after the parser may recurse."""
 
 MAX_FINDINGS = 20
-"""Of an expression with more mistakes, the first ones are told."""
+"""The maximum number of errors that are reported in one expression."""
 
 SYNTAX = "expression-syntax"
 UNSUPPORTED = "unsupported-expression"
@@ -70,33 +70,33 @@ _TOKEN = re.compile(
     )""",
     re.VERBOSE | re.DOTALL,
 )
-# What most expressions are: a name or members of one, a plain number.
+# The most common expressions: a name or its members, a plain number.
 _SIMPLE_PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*){0,8}\Z", re.ASCII)
 _SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
 _ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
 
 _MAX_REMEMBERED_LENGTH = 500
-"""Characters up to which an expression is remembered."""
+"""The maximum number of characters of an expression that is cached."""
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 _BITS = "bit operations are not supported"
-_STORE = "to store a value use `<assign>`"
+_STORE = "use `<assign>` to store a value"
 _FOREIGN_OPERATORS = {
     "**": "use `Math.pow(x, y)`",
-    "&": "for a logical and write `&&`",
-    "|": "for a logical or write `||`",
+    "&": "write `&&` for a logical and",
+    "|": "write `||` for a logical or",
     "^": _BITS,
     "<<": _BITS,
     ">>": _BITS,
     ">>>": _BITS,
-    "=": "to compare write `==`; " + _STORE,
-    "<>": "to compare write `!=`",
-    "=<": "to compare write `<=`",
-    "=>": "to compare write `>=`; functions are not supported",
-    "in": "write the comparison out",
-    "instanceof": "there are no objects",
+    "=": "write `==` to compare; " + _STORE,
+    "<>": "write `!=` to compare",
+    "=<": "write `<=` to compare",
+    "=>": "write `>=` to compare; functions are not supported",
+    "in": "write the comparison explicitly",
+    "instanceof": "objects are not supported",
 } | dict.fromkeys(("+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>=", ">>>=", "**="), _STORE)
 _REPLACEMENTS = {"&": "&&", "|": "||", "=": "==", "<>": "!=", "=<": "<="}
 _WORD_OPERATORS = {"and": Operator.AND, "or": Operator.OR}
@@ -108,12 +108,12 @@ _WORDS = PREFIXES | STATEMENTS | _LITERALS.keys() | {"this"}
 _CLOSERS = frozenset((")", "]", "}"))
 _OPENERS = frozenset(("(", "[", "{"))
 _PRIMARY = (Call, Index, Member, Name, Number)
-"""Expressions that stay together whatever stands beside them."""
+"""Expressions that need no parentheses in any context."""
 _OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
 
 
 def tokens(text: str) -> list[ExpressionToken]:
-    """The tokens of an expression; together with white space they cover all of it."""
+    """The tokens of an expression; together with white space they cover the whole text."""
     text_tokens = []
     for match in _TOKEN.finditer(text, 0, len(text.rstrip())):
         kind = match.lastgroup or "junk"
@@ -123,7 +123,7 @@ def tokens(text: str) -> list[ExpressionToken]:
 
 
 def parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
-    """The expression in `source` and all that is wrong with its form."""
+    """The expression in `source` and its syntax errors."""
     text = source.text
     if len(text) <= _MAX_REMEMBERED_LENGTH and (sound := _sound(text)) is not None:
         return placed(sound, source), ()
@@ -144,8 +144,10 @@ def _parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
 
 @lru_cache(maxsize=5000)
 def _sound(text: str) -> Expr | None:
-    """The tree of an expression in which nothing is wrong; its spans are places in `text`. Files say the same again and
-    again, and after each key nearly all that they said before."""
+    """The tree of an expression without errors; its spans are positions in `text`.
+
+    The result is cached: files repeat the same expressions, and after each keystroke nearly all of them are unchanged.
+    """
     expr, findings = _parse(Decoded(text, 0))
     return None if findings else expr
 
@@ -165,7 +167,7 @@ def _power(base: Expr, exponent: Expr) -> Fix:
         TextEdit(Span(base.span.end, exponent.span.start), ", "),
         TextEdit(Span(exponent.span.end, exponent.span.end), ")"),
     )
-    return Fix("Write it with `Math.pow`", edits)
+    return Fix("Use `Math.pow`", edits)
 
 
 class _TooDeepError(Exception):
@@ -178,7 +180,7 @@ class _Parser:
         self.tokens = tokens(source.text)
         self.at = 0
         self.depth = 0
-        self.gap = 0  # in the text, before the token where something was found missing last
+        self.gap = 0  # the position before the token where the last missing part was reported
         self.findings: list[Finding] = []
         self.reported: set[Span] = set()
 
@@ -191,28 +193,28 @@ class _Parser:
             expr = self.expression(0)
         except _TooDeepError:
             del self.findings[:]
-            self.report(everything, f"the expression is nested more than {MAX_DEPTH} deep")
+            self.report(everything, f"the expression is nested more than {MAX_DEPTH} levels deep")
             return ErrorExpr(everything)
         if (rest := self.peek()) is not None:
             self.superfluous(rest)
         return expr
 
     def superfluous(self, token: ExpressionToken) -> None:
-        """Something stands behind a complete expression."""
+        """Report text after a complete expression."""
         span = self.span(token)
         remove = Fix("Remove it", (TextEdit(span, ""),), preferred=False)
         if token.text == ",":
-            self.report(span, "`,` is not supported here: an expression is a single value", UNSUPPORTED)
+            self.report(span, "`,` is not supported: an expression is a single value", UNSUPPORTED)
         elif token.text == ";":
             last = (remove,) if token is self.tokens[-1] else ()
-            self.report(span, "one expression only: statements are not supported", UNSUPPORTED, *last)
+            self.report(span, "an expression must be a single value; statements are not supported", UNSUPPORTED, *last)
         elif token.text in _CLOSERS:
             self.report(span, f"`{token.text}` closes nothing", SYNTAX, remove)
         else:
             self.report(span, f"an operator is missing before `{token.text[:20]}`")
 
     def expression(self, precedence: int) -> Expr:
-        """An expression whose operators all bind at least as tight as `precedence`."""
+        """An expression whose operators all have at least this precedence."""
         start_depth, first = self.depth, self.at
         self.deeper()
         left = self.operand()
@@ -241,13 +243,13 @@ class _Parser:
         return left
 
     def foreign(self, left: Expr, first: int, token: ExpressionToken) -> Expr:
-        """A binary operator of ECMAScript, or of another language, that ours has not."""
+        """Report a binary operator of ECMAScript or of another language that is not supported."""
         span = self.span(token)
         replacement = _REPLACEMENTS.get(token.text)
         fixes = (Fix(f"Write `{replacement}`", (TextEdit(span, _in_xml(replacement)),)),) if replacement else ()
         hint = _FOREIGN_OPERATORS[token.text]
         number = len(self.findings)
-        self.report(span, f"`{token.text}` is not supported here: {hint}", UNSUPPORTED, *fixes)
+        self.report(span, f"`{token.text}` is not supported: {hint}", UNSUPPORTED, *fixes)
         self.at += 1
         self.deeper()
         right = self.expression(1)
@@ -257,7 +259,7 @@ class _Parser:
         return ErrorExpr(self.since(first), (left, right))
 
     def written(self, token: ExpressionToken, symbol: str) -> None:
-        """Report that `symbol` is written as a word."""
+        """Report that an operator must be written as `symbol`."""
         span = self.span(token)
         self.report(span, f"write `{symbol}`", SYNTAX, Fix(f"Write `{symbol}`", (TextEdit(span, _in_xml(symbol)),)))
 
@@ -278,7 +280,7 @@ class _Parser:
         return self.postfix(self.primary(token), first)
 
     def postfix(self, expr: Expr, first: int) -> Expr:
-        """What follows an operand that begins with token `first`."""
+        """Parse what follows an operand that begins with token `first`."""
         while (token := self.peek()) is not None and token.text in _POSTFIX and token.kind == "punctuator":
             self.at += 1
             self.deeper()
@@ -292,7 +294,7 @@ class _Parser:
                 arguments = self.items(")", token)
                 expr = Call(self.since(first), expr, arguments)
             else:
-                message = f"`{token.text}` is not supported: to change a variable use `<assign>`"
+                message = f"`{token.text}` is not supported; use `<assign>` to change a variable"
                 self.report(self.span(token), message, UNSUPPORTED)
                 expr = ErrorExpr(self.since(first), (expr,))
         return expr
@@ -303,7 +305,7 @@ class _Parser:
             self.at += 1
             return Member(self.since(first), expr, name.text, self.span(name))
         end = self.span(dot).end
-        self.report(self.span(dot), "a name is missing behind the `.`")
+        self.report(self.span(dot), "a name is missing after the `.`")
         return Member(self.since(first), expr, "", Span(end, end))
 
     def primary(self, token: ExpressionToken) -> Expr:
@@ -340,7 +342,7 @@ class _Parser:
             self.at = len(self.tokens)
             return ErrorExpr(span)
         if text == "this":
-            self.report(span, "`this` is not supported: a variable is named as such", UNSUPPORTED)
+            self.report(span, "`this` is not supported; use the name of the variable", UNSUPPORTED)
             return ErrorExpr(span)
         following = self.peek()
         if text in PREFIXES:
@@ -357,10 +359,10 @@ class _Parser:
         self.deeper()
         if token.kind == "template":
             self.at += 1
-            self.report(span, "template strings are not supported: write the text in single quotes", UNSUPPORTED)
+            self.report(span, "template strings are not supported; write the string in single quotes", UNSUPPORTED)
         elif token.text == "~" or token.text in _STEPS:
             self.at += 1
-            hint = _BITS if token.text == "~" else "to change a variable use `<assign>`"
+            hint = _BITS if token.text == "~" else "use `<assign>` to change a variable"
             self.report(span, f"`{token.text}` is not supported: {hint}", UNSUPPORTED)
             return self.operand()
         elif token.kind == "junk":
@@ -378,7 +380,7 @@ class _Parser:
         return ErrorExpr(span)
 
     def regular_expression(self) -> int:
-        """The number of the token behind the regular expression that begins here; 0 if there is none."""
+        """The number of tokens of the regular expression that begins here; 0 if there is none."""
         for at in range(self.at + 1, len(self.tokens)):
             if self.tokens[at].text == "/":
                 flags = at + 1 < len(self.tokens) and self.tokens[at + 1].start == self.tokens[at].end
@@ -390,7 +392,7 @@ class _Parser:
         opening = self.source.span(token.start, token.start + 1)
         written = quote if opening.end - opening.start == 1 else _QUOTES[quote]
         close = Fix(f"Insert {quote}", (TextEdit(Span(span.end, span.end), written),), preferred=False)
-        self.report(span, f"the text has no closing {quote}", SYNTAX, close)
+        self.report(span, f"the string has no closing {quote}", SYNTAX, close)
         return String(span, _string_value(token.text[1:]))
 
     def number(self, token: ExpressionToken, span: Span) -> Expr:
@@ -400,12 +402,12 @@ class _Parser:
             self.report(self.span(following), f"`{token.text}{following.text}` is neither a number nor a name")
         value = _number_value(token.text)
         if value is None:
-            self.report(span, "the number is too large: the greatest is 1.8e308")
+            self.report(span, "the number is too large; the maximum is 1.8e308")
             return ErrorExpr(span)
         return Number(span, value, isinstance(value, float))
 
     def items(self, closer: str, opener: ExpressionToken) -> tuple[Expr, ...]:
-        """Comma-separated expressions up to `closer`, which is stepped over."""
+        """Comma-separated expressions up to `closer`, which is consumed."""
         operands: list[Expr] = []
         while (token := self.peek()) is not None and token.text != closer:
             operands.append(self.expression(0))
@@ -425,7 +427,7 @@ class _Parser:
             self.at += 1
             name = key.text[1:-1] if key.kind == "string" else key.text
             if not self.accept(":"):
-                self.report(self.span(key), f"`:` and a value are missing behind `{key.text}`")
+                self.report(self.span(key), f"`:` and a value are missing after `{key.text}`")
                 value: Expr = ErrorExpr(Span(self.span(key).end, self.span(key).end))
             else:
                 value = self.expression(0)
@@ -448,7 +450,7 @@ class _Parser:
         return False
 
     def closing(self, closer: str, opener: ExpressionToken) -> None:
-        """Step over `closer`, and what superfluous stands before it, or report that `opener` is never closed."""
+        """Consume `closer` and superfluous tokens before it, or report that `opener` is never closed."""
         if self.accept(closer):
             return
         previous = self.span(self.tokens[self.at - 1]).end
@@ -462,7 +464,7 @@ class _Parser:
         self.report(self.span(opener), f"`{opener.text}` is never closed with `{closer}`", SYNTAX, insert)
 
     def skip_to_closer(self) -> None:
-        """Step over tokens up to the next bracket that closes one opened before them."""
+        """Skip tokens up to the next bracket that closes one opened before them."""
         opened = 0
         while (token := self.peek()) is not None:
             if token.text in _OPENERS:
@@ -482,7 +484,7 @@ class _Parser:
             self.gap = token.start
             return ErrorExpr(Span(span.start, span.start))
         last = self.span(self.tokens[-1])
-        self.report(last, f"{what} is missing behind `{self.tokens[-1].text[:20]}`")
+        self.report(last, f"{what} is missing after `{self.tokens[-1].text[:20]}`")
         return ErrorExpr(Span(last.end, last.end))
 
     def deeper(self) -> None:
@@ -491,7 +493,7 @@ class _Parser:
             raise _TooDeepError
 
     def since(self, first: int) -> Span:
-        """The span from token `first` to the last one read, or to where something is missing behind it."""
+        """The span from token `first` to the last one read, or to the position after it where something is missing."""
         return self.source.span(self.tokens[first].start, max(self.tokens[self.at - 1].end, self.gap))
 
     def span(self, token: ExpressionToken) -> Span:
@@ -504,13 +506,13 @@ class _Parser:
 
 
 def _in_xml(symbol: str) -> str:
-    """`symbol` as it is written in XML, where expressions stand."""
+    """`symbol` as it is written in XML."""
     return symbol.replace("&", "&amp;").replace("<", "&lt;")
 
 
 def _number_value(text: str) -> int | float | None:
     """The value of a number, an int if it is whole and written without a point
-    (docs/spec/expressions.md#number-literals); None if too large."""
+    (docs/spec/expressions.md#number-literals); `None` if it is too large."""
     if text[:2] in ("0x", "0X"):
         value = int(text, 16)
     elif len(text) > 1 and text[0] == "0" and text.isdigit() and not set(text) & {"8", "9"}:
@@ -524,7 +526,7 @@ def _number_value(text: str) -> int | float | None:
 
 
 def _string_value(text: str) -> str:
-    """The text that a string literal without its quotes stands for."""
+    """The value of a string literal, given without its quotes."""
     value = _ESCAPE.sub(_resolve_escape, text)
     if _SURROGATE.search(value):
         return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace")

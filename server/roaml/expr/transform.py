@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changing expression trees."""
+"""Transform expression trees."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from roaml.expr.tree import (
 
 
 def map_children(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """`expr` with each of its direct subexpressions changed, left to right."""
+    """`expr` with a function applied to each of its direct subexpressions, left to right."""
     match expr:
         case Member():
             return Member(expr.span, change(expr.object), expr.name, expr.name_span)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The syntax tree of an expression.
 
-- Every node has a `span` in the source file, escapes of the surrounding XML already accounted for.
-- Where something is missing or not understood there is an `ErrorExpr`, so the rest of the tree stays usable.
+- Every node has a `span` in the source file, with escapes of the surrounding XML resolved.
+- A missing or invalid part is an `ErrorExpr`, so the rest of the tree stays usable.
 - No tree is deeper than `roaml.expr.parse.MAX_DEPTH`: functions over trees may recurse.
 """
 
@@ -117,7 +117,8 @@ class ObjectLiteral:
 
 @dataclass(frozen=True, slots=True)
 class ErrorExpr:
-    """Nothing of the language stands here; a finding says why. `parts` are the expressions that could be read in it."""
+    """A part that is not valid; a finding contains the reason. `parts` are the expressions in it that could be
+    parsed."""
 
     span: Span
     parts: tuple[Expr, ...] = ()
@@ -169,9 +170,9 @@ def children(expr: Expr) -> tuple[Expr, ...]:
 
 
 def walk(expr: Expr) -> list[Expr]:
-    """`expr` and everything in it, outer before inner, left to right."""
+    """`expr` and all its subexpressions, outer before inner, left to right."""
     if isinstance(expr, _LEAVES):
-        return [expr]  # as most are
+        return [expr]  # the common case
     nodes: list[Expr] = []
     stack: list[Expr] = [expr]
     while stack:
@@ -183,7 +184,7 @@ def walk(expr: Expr) -> list[Expr]:
 
 
 def placed(expr: Expr, source: Decoded) -> Expr:
-    """`expr`, whose spans are places in the text of `source`, with spans in the file."""
+    """`expr`, whose spans are positions in the text of `source`, with spans in the file."""
     span = source.span(*expr.span)
     match expr:
         case Name():
@@ -233,7 +234,7 @@ def is_draw(expr: Expr) -> bool:
 
 
 def access_path(expr: Expr) -> tuple[str, ...] | None:
-    """`a.b[0].c` as ("a", "b", "c"); None if `expr` is no chain of members and indexes that begins with a name."""
+    """`a.b[0].c` as ("a", "b", "c"); `None` if `expr` is not a chain of members and indices that begins with a name."""
     names: list[str] = []
     while True:
         match expr:

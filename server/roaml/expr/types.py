@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of HL-SCXML values (docs/spec/types.md) and the questions one asks of them.
+"""The types of HL-SCXML values (docs/spec/types.md) and functions on them.
 
-Types are values: equal types compare equal, whichever file they were read from. A struct holds its members' types, so
-nothing has to be looked up again; ROS messages and event data are structs too.
+Types are values: equal types compare equal, whichever file they were read from. A struct contains its members' types,
+so no lookup is needed; ROS messages and event data are structs as well.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A base type. `kind` is bool, int, real or string; `name` is its spelling, "" for a literal's type."""
+    """A base type. `kind` is bool, int, real or string; `name` is its spelling, "" for the type of a literal."""
 
     kind: str
     name: str = ""
@@ -27,7 +27,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array of at most `bound` elements; without bound, `max_array_size` of the system is meant."""
+    """An array of at most `bound` elements; without a bound, the bound is `max_array_size` of the system."""
 
     element: Type
     bound: int | None = None
@@ -77,7 +77,7 @@ class Struct:
 
 @dataclass(frozen=True, slots=True)
 class EmptyArray:
-    """The type of `[]`: fits every array."""
+    """The type of `[]`, which fits every array."""
 
     def __str__(self) -> str:
         return "[]"
@@ -85,7 +85,7 @@ class EmptyArray:
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """The type of something already reported: fits everything, so that one mistake is told once."""
+    """The type of something that is already reported. It fits everything, so that an error is reported once."""
 
     def __str__(self) -> str:
         return "unknown"
@@ -103,7 +103,7 @@ EMPTY_ARRAY = EmptyArray()
 INTEGER_RANGES = {f"int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)} | {
     f"uint{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)
 }
-"""Least and greatest value of each integer type."""
+"""The smallest and greatest value of each integer type."""
 
 BASE_TYPES: dict[str, Scalar] = {
     "bool": BOOL,
@@ -125,7 +125,7 @@ class TypeName:
 
 
 def parse_type(text: str) -> TypeName | None:
-    """`int32[3][]` -> TypeName("int32", (3, None)); None if `text` has not the form of a type
+    """`int32[3][]` -> TypeName("int32", (3, None)); `None` if `text` does not have the form of a type
     (docs/spec/types.md#type-names)."""
     match = _TYPE.match(text)
     if match is None:
@@ -135,7 +135,7 @@ def parse_type(text: str) -> TypeName | None:
 
 
 def resolve_type(name: TypeName, struct: Callable[[str], Type | None]) -> Type | None:
-    """The type that `name` stands for, or None if its base is neither a base type nor known to `struct`."""
+    """The type with the name `name`; `None` if its base is neither a base type nor known to `struct`."""
     type_: Type | None = BASE_TYPES.get(name.base) or struct(name.base)
     if type_ is None:
         return None
@@ -143,7 +143,7 @@ def resolve_type(name: TypeName, struct: Callable[[str], Type | None]) -> Type |
 
 
 def wrap(type_: Type, dimensions: tuple[int | None, ...]) -> Type:
-    """`type_` in arrays of the given bounds, outermost first."""
+    """`type_` in arrays with the given bounds, outermost first."""
     for bound in reversed(dimensions):
         type_ = Array(type_, bound)
     return type_
@@ -159,7 +159,7 @@ def unwrap(type_: Type) -> tuple[Type, tuple[int | None, ...]]:
 
 
 def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Type]]:
-    """The leaf members of a type in declaration order, depth first, with the member names on the way
+    """The leaf members of a type in declaration order, depth first, with the names of the members that lead to them
     (docs/spec/types.md#leaves).
 
     Brackets of enclosing levels come first: a `Vec[4]` member `x: float64[]` gives `float64[4][]`.
@@ -185,7 +185,7 @@ def fits(value: Type, target: Type) -> bool:
     """Whether a value of type `value` may be stored where `target` is declared.
 
     An int fits a real; widths and bounds are not compared (docs/spec/types.md#conversion: integers are mathematical);
-    structs fit by name. What is unknown fits everything.
+    structs fit by name. An unknown type fits everything.
     """
     match value, target:
         case (Unknown(), _) | (_, Unknown()):
@@ -203,7 +203,7 @@ def fits(value: Type, target: Type) -> bool:
 
 
 def join(left: Type, right: Type) -> Type | None:
-    """The type of a value that may be either, or None if there is none. Of two arrays it has the greater bound."""
+    """The type of a value that has one of two types; `None` if there is none. For arrays it has the greater bound."""
     if isinstance(left, Array) and isinstance(right, Array):
         element = join(left.element, right.element)
         bounded = left.bound is not None and right.bound is not None

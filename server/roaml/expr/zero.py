@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The neutral value of each type: what a variable holds if nothing is said, what a fix or a completion writes."""
+"""The neutral value of each type: the initial value of a variable without one, and the value that fixes and completions
+write."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ _NOWHERE = Span(0, 0)
 
 
 def zero(type_: Type) -> Expr:
-    """0, 0.0, false, '', [], or a struct of those; 0 if the type is not known. Its places mean nothing."""
+    """0, 0.0, false, '', [], or a struct of those; 0 if the type is unknown. Its positions have no meaning."""
     if isinstance(type_, Struct):
         members = (ObjectMember(name, _NOWHERE, zero(member)) for name, member in type_.members)
         return ObjectLiteral(_NOWHERE, tuple(members))
@@ -26,5 +27,5 @@ def zero(type_: Type) -> Expr:
 
 
 def zero_text(type_: Type) -> str:
-    """The same as it is written."""
+    """The neutral value as text."""
     return format_expr(zero(type_))

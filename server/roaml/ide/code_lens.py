@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is written above a declaration: how often, and by how many, it is used.
+"""Code lenses above declarations: the number of their uses.
 
-Where the lenses stand is told at once, what they say only when they come into sight (`counted`).
+The positions of the lenses are computed at once, their text only when they become visible (`counted`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from roaml.text import Location, Span
 
 @dataclass(frozen=True, slots=True)
 class Lens:
-    """`span` is the line's reason; `symbol` what is counted."""
+    """`span` is the declaration; `symbol` is what is counted."""
 
     span: Span
     symbol: Symbol
@@ -34,14 +34,14 @@ class Lens:
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """What a lens says, and the places that it speaks of."""
+    """The text of a lens, and the places that it counts."""
 
     title: str
     places: tuple[Location, ...]
 
 
 def lenses(analysis: Analysis, path: str) -> tuple[Lens, ...]:
-    """Where lenses stand in a file, in the order of the text."""
+    """The lenses of a file, in the order of the text."""
     kind, machine = analysis.kind(path), analysis.machine(path)
     found: Iterable[Lens] = ()
     if kind is FileKind.MACHINE and machine is not None:
@@ -92,8 +92,8 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 
 
 def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
-    """How much a symbol of a file is used, and where. Systems that share the file are counted one by one, and named
-    where they differ."""
+    """The number of uses of a symbol of a file, and their places. Systems that share the file are counted separately,
+    and named where they differ."""
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
     said = grouped({system: found.title for system, found in by_system.items()})
@@ -103,7 +103,7 @@ def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
 
 
 def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
-    """The same in one system, or in the file alone."""
+    """The uses in one system, or in the file alone."""
     if symbol.kind in HANDLES:
         return _handle(analysis, symbol, system)
     found = _within(analysis, thing(analysis, (symbol,)).uses, system)
@@ -124,7 +124,7 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
 
 
 def _within(analysis: Analysis, found: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
-    """The uses in the files of a system; all if there is none."""
+    """The uses in the files of a system; all if there is no system."""
     files = frozenset(analysis.files_of(system)) if system else None
     return [use for use in found if files is None or use.path in files]
 
@@ -144,7 +144,7 @@ _SIDES = {
 
 
 def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
-    """Both sides of a topic, service or action; of a timer its callbacks."""
+    """Both sides of a topic, service or action; the callbacks of a timer."""
     own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
     linked = analysis.system(system) if system else None
     interfaces = tuple(dict.fromkeys(each for each in interfaces_of(analysis, symbol) if each.path == system))

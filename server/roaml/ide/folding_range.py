@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be folded: elements, attributes on several lines, comments, CDATA sections; objects and lists in JSON."""
+"""Folding ranges: elements, attributes on several lines, comments, CDATA sections; objects and lists in JSON."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class FoldKind(enum.Enum):
 
 
 class Fold(NamedTuple):
-    """The lines `first` to `last`, counted from 0, become the line `first`."""
+    """The lines `first` to `last`, counted from 0, are folded to the line `first`."""
 
     first: int
     last: int
@@ -29,7 +29,7 @@ class Fold(NamedTuple):
 
 
 def folds(analysis: Analysis, path: str) -> tuple[Fold, ...]:
-    """What can be folded in a file, in the order of the text; of what begins on one line only the longest."""
+    """The folds of a file, in the order of the text; of those that begin on one line only the longest."""
     source = analysis.source(path)
     if source is None:
         return ()
@@ -61,14 +61,15 @@ def _xml(source: SourceFile, document: Document) -> Iterator[Fold]:
 
 
 def _lines(source: SourceFile, span: Span, kind: FoldKind = FoldKind.BLOCK) -> Iterator[Fold]:
-    """All lines of a span, if they are several."""
+    """All lines of a span, if there are several."""
     first, last = (source.lines.position(offset).line for offset in (span.start, span.end - 1))
     if last > first:
         yield Fold(first, last, kind)
 
 
 def _block(source: SourceFile, start: int, end: int) -> Iterator[Fold]:
-    """The lines from that of `start` to the one before that of `end`, where what closes the block stays visible."""
+    """The lines from that of `start` to the one before that of `end`, so that the closing bracket or tag stays
+    visible."""
     first, last = source.lines.position(start).line, source.lines.position(end)
     before = source.text[source.lines.line_start(last.line) : end]
     shown = last.line if before.strip(" \t]}") else last.line - 1

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the editor writes between the characters: types, topics, parameters of events, numbers of tree nodes.
+"""Inlay hints: types, topics, parameters of events, numbers of tree nodes.
 
-Each is found in the models as they are; what it costs to explain a hint is paid only when somebody looks at it
-(`explain`).
+Each is computed from the existing models; the explanation of a hint is computed only on request (`explain`).
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ _MAX_NAMES = 3
 
 
 class HintKind(enum.Enum):
-    """What can be shown or left out. The values are the names of the settings."""
+    """The kinds of hints that can be shown or hidden. The values are the names of the settings."""
 
     TYPES = "types"
     PORTS = "ports"
@@ -69,7 +68,7 @@ class InlayHintLabelPart:
 
 @dataclass(frozen=True, slots=True)
 class InlayHint:
-    """`offset` is where it stands; it tells a type or something else."""
+    """`offset` is its position; it is a type hint or another one."""
 
     offset: int
     kind: HintKind
@@ -82,7 +81,7 @@ class InlayHint:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What a part of a hint is about: Markdown, and where it is defined."""
+    """The subject of a part of a hint: Markdown, and the place of its definition."""
 
     text: str
     location: Location | None
@@ -102,7 +101,7 @@ def inlay_hints(
 
 
 def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> Iterable[InlayHint]:
-    """The hints in a file, seen as a part of one system or alone."""
+    """The hints in a file, as a part of one system or alone."""
     kind, machine = analysis.kind(path), analysis.machine(path)
     if kind is FileKind.MACHINE and machine is not None:
         return _Machine(analysis, path, machine, within, system).all()
@@ -115,7 +114,8 @@ def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> I
 
 
 def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
-    """What systems that share a file say alike is said once; where they differ, they are named."""
+    """Hints that are equal in all systems that share a file are shown once; where they differ, the systems are
+    named."""
     at: dict[tuple[int, HintKind], dict[str, InlayHint]] = {}
     for system, found in by_system.items():
         for hint in found:
@@ -123,7 +123,7 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
     merged: set[InlayHint] = set()
     for (offset, kind), said in at.items():
         parts: list[InlayHintLabelPart] = []
-        # A system that says nothing there differs, too.
+        # A system without a hint there differs as well.
         groups = grouped({system: said[system].text if system in said else "" for system in by_system})
         shown = [(text, names) for text, names in groups if text]
         for text, names in shown[:_MAX_NAMES]:
@@ -141,11 +141,11 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
 
 
 _LEADS = ("", "→", "=", ":")
-"""What hints begin with; it is not repeated."""
+"""The beginnings of hints, which are not repeated."""
 
 
 def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
-    """What a hint says about `symbol`, for those who ask."""
+    """The explanation of `symbol` in a hint."""
     if symbol.kind is not SymbolKind.TREE_INSTANCE:
         return Explanation(describe(analysis, symbol), definition_of(analysis, symbol))
     system = analysis.system(symbol.path)
@@ -164,7 +164,7 @@ def _touches(within: Span, element: Element) -> bool:
 
 
 def _behind(name: Name) -> int:
-    """Behind the quote at the end of an attribute's value."""
+    """The offset after the quote at the end of an attribute's value."""
     return name.span.end + 1
 
 
@@ -213,7 +213,7 @@ class _Machine:
             yield from self.names(port.key, self.interfaces.get((declaration.kind, handle), {}), " = ")
 
     def names(self, at: Name, found: dict[Symbol, str], lead: str) -> Iterator[InlayHint]:
-        """The topics, services or actions that something means."""
+        """The topics, services or actions of a use."""
         if not found:
             return
         parts: list[InlayHintLabelPart] = []
@@ -290,7 +290,7 @@ class _Machine:
             yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, InlayHintLabelPart(")")))
 
     def handle(self, user: Handler | RosSend) -> Iterator[InlayHint]:
-        """What a handle stands for, unless it says so itself."""
+        """The interface of a handle, unless the handle is its name."""
         declaration = find_handle(self.machine, user)
         if user.handle is None or declaration is None or is_implicit(declaration):
             return
@@ -362,7 +362,7 @@ def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[Sy
 
 
 def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
-    """Who the nodes are that events of the tree are numbered by."""
+    """The nodes whose numbers occur in events of the tree."""
     for each in analysis.properties(path)[0]:
         for identifier, span in identifiers(each.expression):
             if span.start > within.end or span.end < within.start:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A JANI model for people: laid out, with an outline. The file itself, written by a translator, stays compact."""
+"""A readable view of a JANI model: indented, with an outline. The file itself, written by a translator, stays
+compact."""
 
 from __future__ import annotations
 
@@ -17,17 +18,17 @@ _LAYOUT = FileLayout(width=2)
 
 @dataclass(frozen=True, slots=True)
 class JaniView:
-    """A text, and its outline with places in it."""
+    """A text, and its outline with positions in it."""
 
     text: str
     symbols: tuple[DocumentSymbol, ...]
 
 
 def jani_view(text: str) -> JaniView:
-    """Lay out the text of a JANI file: one member or item a line, and on one line what fits on one line.
+    """Format the text of a JANI file: one member or item per line; what fits on one line is on one line.
 
     Args:
-        text: of the file; what is not sound JSON stays as it is.
+        text: the text of the file; text with syntax errors is not changed.
     """
     value, findings = parse(text)
     if any(finding.code == "json-syntax" for finding in findings):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ways through a JSON tree, however deep."""
+"""Iteration over a JSON tree of any depth."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def values(value: JsonValue) -> Iterator[JsonValue]:
 
 
 def members(value: JsonValue) -> dict[str, JsonValue]:
-    """The members of an object by their keys, those without a value left out; none of other values."""
+    """The members of an object by their keys, without those that have no value; empty for other values."""
     found = value.members if isinstance(value, JsonObject) else ()
     return {member.key: member.value for member in found if member.value is not None}
 

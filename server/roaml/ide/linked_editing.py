@@ -8,11 +8,11 @@ from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 NAME_PATTERN = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
-"""What a name may be while it is typed."""
+"""The pattern of a name while it is typed."""
 
 
 def linked_names(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
-    """The names in the start tag and in the end tag, if the offset is in one of them and they are the same."""
+    """The names in the start tag and in the end tag, if the offset is in one of them and they are equal."""
     file = xml_file(analysis, path)
     for element in file.document.path_at(offset)[-1:] if file else ():
         first, second = element.name_span, element.close_name_span

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is written by itself when a tag is typed: `</state>` behind `<state>`, `state>` behind `</`, `>` behind `<a /`.
+"""Automatic insertions while a tag is typed: `</state>` after `<state>`, `state>` after `</`, `>` after `<a /`.
 
-An insertion is made only if there are fewer mistakes of form with it than without, so what is balanced stays so.
+An insertion is made only if the text has fewer syntax errors with it, so balanced text is not changed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _CLOSERS = {Comment: "-->", CData: "]]>", Instruction: "?>"}
 
 
 def close_tag(analysis: Analysis, path: str, offset: int) -> TextEdit | None:
-    """What to insert when the character before `offset` has been typed."""
+    """The text to insert after the character before `offset` has been typed."""
     file = xml_file(analysis, path)
     if file is None:
         return None
@@ -45,13 +45,13 @@ def _end_tag(document: Document, offset: int) -> str:
 
 
 def _rest_of_end_tag(text: str, offset: int) -> str:
-    """What follows `</` before the offset: the name of the element that is open there."""
+    """The text after `</` before the offset: the name of the element that is open there."""
     name = open_element(text, offset - 2)
     return name if not name or text[offset : offset + 1] == ">" else f"{name}>"
 
 
 def open_element(text: str, offset: int) -> str:
-    """The name of the innermost element that is still open at an offset, "" if none is or no tag can stand there."""
+    """The name of the innermost open element at an offset; "" if there is none, or no tag is allowed there."""
     before = parse(text[:offset])
     name, nodes = "", list(before.nodes)
     while nodes:
@@ -59,7 +59,7 @@ def open_element(text: str, offset: int) -> str:
         if not isinstance(last, Element):
             closer = _CLOSERS.get(type(last))
             if closer and not before.text.endswith(closer) and last.span.end == len(before.text):
-                return ""  # in a comment, say
+                return ""  # for example in a comment
             elements = [node for node in nodes if isinstance(node, Element)]
             if not elements:
                 break
@@ -73,7 +73,7 @@ def open_element(text: str, offset: int) -> str:
 
 
 def _end_of_start_tag(document: Document, offset: int) -> str:
-    """What follows the `/` before the offset, if it ends a start tag: nothing else stands on the line."""
+    """The text after the `/` before the offset, if it ends a start tag and is at the end of its line."""
     line = document.text[offset : _line_end(document.text, offset)]
     if line.strip() and not line.lstrip().startswith("<"):
         return ""

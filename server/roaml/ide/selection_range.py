@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a growing selection takes in, step by step: expression, value, attribute, tag, content, element, parents."""
+"""Selection ranges, step by step: expression, value, attribute, tag, content, element, parents."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Tex
 
 
 def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
-    """The spans around an offset, the innermost first, each part of the next; the last one is the whole text."""
+    """The spans around an offset, the innermost first, each contained in the next; the last one is the whole text."""
     source = analysis.source(path)
     if source is None:
         return ()
@@ -32,7 +32,7 @@ def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
 
 
 def _nested(spans: list[Span], offset: int) -> list[Span]:
-    """The spans around the offset, innermost first; each is within the one behind it."""
+    """The spans around the offset, innermost first; each is contained in the next."""
     result: list[Span] = []
     for span in sorted(set(spans), key=lambda span: (span.start - span.end, span)):
         if (
@@ -45,7 +45,7 @@ def _nested(spans: list[Span], offset: int) -> list[Span]:
 
 
 def _in_element(document: Document, each: Typed, offset: int) -> Iterator[Span]:
-    """What is around an offset in the tags and the expressions of an element."""
+    """The spans around an offset in the tags and the expressions of an element."""
     element = each.element
     yield element.open_span
     yield element.name_span
@@ -68,7 +68,7 @@ def _in_element(document: Document, each: Typed, offset: int) -> Iterator[Span]:
 def _in_expression(expression: Expression, offset: int) -> Iterator[Span]:
     level: tuple[Expr, ...] = (expression.tree,)
     while inside := [node for node in level if node.span.contains(offset)]:
-        # Between two, as in `a|+b`, a caret belongs to what begins there.
+        # Between two, as in `a|+b`, the one that begins at the caret is used.
         yield inside[-1].span
         level = children(inside[-1])
 

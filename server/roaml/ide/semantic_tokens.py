@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the words of a file are, for coloring: tags by their role, attribute names, names in values, and expressions.
+"""Semantic tokens for coloring: tags by their role, attribute names, names in values, and expressions.
 
-- Tokens do not overlap, and none goes over the end of a line.
-- Known by syntax and grammar alone: what a name in an expression refers to is not looked up.
+- Tokens do not overlap, and none extends over the end of a line.
+- Determined by syntax and grammar only: names in expressions are not resolved.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def _on_lines(text: str, tokens: Iterable[SemanticToken]) -> Iterator[SemanticTo
         start, end = token.span
         if start >= done:
             if (line := _LINE.match(text, start, end)) and line.end() == end:
-                yield token  # as nearly all are
+                yield token  # the common case
             else:
                 for part in _LINE.finditer(text, start, end):
                     yield token._replace(span=Span(*part.span()))
@@ -125,7 +125,7 @@ def _xml(file: XmlFile) -> Iterator[SemanticToken]:
 
 
 def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:
-    """What a tag is; None for what nobody knows. In trees a tag that nobody knows names a plugin."""
+    """The token type of a tag; `None` for unknown tags. In trees an unknown tag names a plugin."""
     element, type_ = each
     if file.grammar is BEHAVIOR_TREE:
         return _NODES.get(type_.node, TokenKind.STRUCTURE_TAG) if type_ else TokenKind.LEAF_TAG
@@ -174,7 +174,7 @@ _VALUES = {
 
 
 def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> Iterator[SemanticToken]:
-    """The token that the value of an attribute is as a whole; expressions are none."""
+    """The token for the whole value of an attribute; none for expressions."""
     name = name_of(attribute)
     if name is None:
         return
@@ -197,14 +197,14 @@ def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozen
 
 
 def expression_tokens(source: Decoded) -> Iterator[SemanticToken]:
-    """The tokens of an expression; brackets, points and commas are none."""
+    """The tokens of an expression, without brackets, dots and commas."""
     for start, end, kind in _words(source.text):
         yield SemanticToken(source.span(start, end), kind)
 
 
-@lru_cache(maxsize=5000)  # a file says the same again and again, and most of it once more after the next key
+@lru_cache(maxsize=5000)  # files repeat the same expressions, and most are unchanged after the next keystroke
 def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
-    """Where the tokens of an expression begin and end in its text, and their kinds."""
+    """The beginnings and ends of the tokens of an expression in its text, and their kinds."""
     found: list[tuple[int, int, TokenKind]] = []
     tokens = expr.tokens(text)
     for i, token in enumerate(tokens):
@@ -251,7 +251,7 @@ _PLAIN_KEYS = ("name", "comment")
 
 
 def _json(value: object) -> Iterator[SemanticToken]:
-    """The tokens of one value, those inside of it left out; what a string is, its key tells."""
+    """The tokens of one value, without those inside of it; the key determines the type of a string."""
     if isinstance(value, JsonObject):
         for member in value.members:
             yield SemanticToken(member.key_span, TokenKind.ATTRIBUTE)
@@ -264,7 +264,7 @@ def _json(value: object) -> Iterator[SemanticToken]:
 
 
 def _string(member: Member, value: JsonString) -> SemanticToken:
-    """In a property a string is a variable, but for those that are operators or meant for people."""
+    """In a property a string is a variable, except for operators and comments."""
     if member.key in _OPERATOR_KEYS:
         return SemanticToken(value.span, TokenKind.OPERATOR)
     return SemanticToken(value.span, TokenKind.STRING if member.key in _PLAIN_KEYS else TokenKind.VARIABLE)

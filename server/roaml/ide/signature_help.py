@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The function whose arguments are being typed.
+"""Signature help for the function whose arguments are being typed.
 
-Works on the characters before the caret: an expression that is not finished has no syntax tree to speak of.
+Works on the characters before the caret: an incomplete expression has no useful syntax tree.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class SignatureHelp:
     """A function of `Math`.
 
     Attributes:
-        label: as it is called.
-        parameters: where they stand in `label`.
-        active: the one that is being typed; None if there are none, or no more.
+        label: the call.
+        parameters: their spans in `label`.
+        active: the one that is being typed; `None` if there are none, or no more.
         documentation: Markdown.
     """
 
@@ -39,11 +39,11 @@ class SignatureHelp:
 
 
 def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp | None:
-    """What is called at a caret; None outside of all calls of known functions."""
+    """The call at a caret; `None` outside of all calls of known functions."""
     file = xml_file(analysis, path)
     if file is None:
         return None
-    # Blanks at the end of a value without closing quote are no part of it.
+    # Blanks at the end of a value without a closing quote are not part of it.
     typed = len(file.document.text[:offset].rstrip())
     expression = expression_at(file, offset) or expression_at(file, typed)
     if expression is None:
@@ -65,7 +65,8 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp 
 
 
 def _innermost_call(text: str) -> tuple[str, int]:
-    """The function of `Math` whose parentheses are open at the end of `text`, and the commas in them; "" if none is."""
+    """The function of `Math` whose parentheses are open at the end of `text`, and the number of commas in them; "" if
+    there is none."""
     opened: list[tuple[str, str, int]] = []
     for token in _TOKEN.finditer(text):
         match token[0]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file as XML with its grammar, and where expressions stand in it."""
+"""A file as XML with its grammar, and the expressions in it."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class XmlFile(NamedTuple):
 
 
 class Typed(NamedTuple):
-    """An element with what the grammar says of it; None if it knows nothing of such an element."""
+    """An element with its type in the grammar; `None` for unknown elements."""
 
     element: Element
     type: ElementType | None
 
 
 def xml_file(analysis: Analysis, path: str) -> XmlFile | None:
-    """A file in one of our XML languages; None if it is none."""
+    """A file in one of the supported XML languages; `None` for other files."""
     grammar = GRAMMARS.get(analysis.kind(path))
     document = analysis.document(path) if grammar else None
     return None if grammar is None or document is None else XmlFile(document, grammar)
@@ -53,7 +53,7 @@ def path_at(file: XmlFile, offset: int) -> list[Typed]:
 
 
 def expression_sources(document: Document, each: Typed) -> Iterator[Decoded]:
-    """What expressions stand in the attributes and in the text of an element, in the order of the text."""
+    """The expressions in the attributes and in the text of an element, in the order of the text."""
     element, type_ = each
     if type_ is None:
         return
@@ -88,6 +88,6 @@ def _roots(document: Document) -> list[Element]:
 
 
 def _typed(grammar: Grammar, parent: ElementType | None, element: Element) -> Typed:
-    """What is known of an element in its parent, or at least of elements with its name."""
+    """The type of an element in its parent, or that of elements with its name."""
     known = grammar.child(parent, element.name) if parent else None
     return Typed(element, known or grammar.find(element.name))

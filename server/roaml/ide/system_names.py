@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How systems are told apart where something is said about several of them."""
+"""Short names that distinguish systems where several of them are listed."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 MAX_NAMES = 3
-"""More systems than this are not listed."""
+"""The maximum number of systems in a list."""
 
 T = TypeVar("T")
 
 
 def system_names(paths: Iterable[str]) -> dict[str, str]:
-    """A short name for each system file: as many of its last folders as it takes to tell it from the others."""
+    """A short name for each system file: as many of its last folders as are needed to make it unique."""
     parts = {path: path.replace("\\", "/").split("/") for path in dict.fromkeys(paths)}
 
     def name(path: str) -> str:
@@ -28,13 +28,13 @@ def system_names(paths: Iterable[str]) -> dict[str, str]:
 
 
 def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
-    """What is said of each system, each once, with the names of the systems that it is said of.
+    """The texts about each system, without duplicates, with the names of their systems.
 
     Args:
         said: by the path of the system; hashable.
 
     Returns:
-        In the order of the systems. The names are "" if the same is said of all.
+        In the order of the systems. The names are "" if the text is the same for all.
     """
     names = system_names(said)
     groups: dict[T, list[str]] = {}

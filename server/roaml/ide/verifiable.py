@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be verified: the properties of a system, and the texts on which the answers depend."""
+"""The properties of a system that can be verified, and the texts on which the answers depend."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
-"""Files with the digests of what they hold."""
+"""Files with the digests of their content."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Verifiable:
 
 
 def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
-    """The properties of the system file at `system`, in their order; those with mistakes in them are left out."""
+    """The properties of the system file at `system`, in their order, without those that contain errors."""
     files = (each.path for each in analysis.listed(system) if each.wanted is FileKind.PROPERTIES and each.usable)
     return tuple(each for path in dict.fromkeys(files) for each in _in_file(analysis, path))
 
@@ -42,6 +42,6 @@ def _in_file(analysis: Analysis, path: str) -> Iterator[Verifiable]:
 
 
 def fingerprint(analysis: Analysis, system: str) -> Texts:
-    """The content of the files of a system: as long as it is the same, so are the answers."""
+    """The content of the files of a system: as long as it is equal, so are the answers."""
     sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
     return tuple((path, source.digest) for path, source in sources if source is not None)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS 2 interface definitions, `.msg`, `.srv` and `.action`, read from their files without any ROS installation.
 
-Nothing of a workspace is imported or executed. The standard packages of ROS 2 come along as definition files in
-`standard/`: the types that Jazzy has, in the form that they have there; comments say what Humble lacks and what later
-distributions changed. Their comments are our own.
+Nothing of a workspace is imported or executed. The standard packages of ROS 2 are included as definition files in
+`standard/`: the types of Jazzy, in the form that they have there; comments state what Humble lacks and what later
+distributions changed. The comments are written for this project.
 """
 
 from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, PACKAGE_NAME, TYPE_NAME

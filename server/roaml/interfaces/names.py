@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of ROS 2 interfaces: what is legal, and what a wrong one was probably meant to be.
+"""The names of ROS 2 interfaces: which names are valid, and the valid name nearest to an invalid one.
 
 The rules are those of `rosidl`: a package or field is lower_snake_case, a constant UPPER_SNAKE_CASE, a type CamelCase;
-no name has two underscores in a row or one at its end.
+no name has two consecutive underscores or one at its end.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ def keyword_of(name: str) -> str | None:
 
 
 def lower_snake(name: str) -> str:
-    """The legal field name nearest to `name`; empty if there is none."""
+    """The valid field name nearest to `name`; empty if there is none."""
     humps = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name)
     words = re.sub(r"[^A-Za-z0-9]+", "_", humps).strip("_").lower()
     return words.lstrip("0123456789_")
 
 
 def upper_snake(name: str) -> str:
-    """The legal constant name nearest to `name`; empty if there is none."""
+    """The valid constant name nearest to `name`; empty if there is none."""
     return lower_snake(name).upper()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of a `.msg`, `.srv` or `.action` file -> definition.
 
-- Never fails and takes time linear in the text: every mistake becomes a finding with its span, and reading goes on.
-- What can be told is kept: a field with a bad name or type is still a field, so its users see no further mistakes.
+- Never fails and takes time linear in the text: every error becomes a finding with its span, and parsing continues.
+- Readable parts are kept: a field with an invalid name or type is still a field, so its users get no further errors.
   Only the second of two equal names is left out.
-- Comments belong to what they explain, as in `rosidl`: the block that opens a section to the section; lines directly
-  above an element, behind it, and indented below it to that element. An empty line ends a comment.
+- Comments are attached to elements as in `rosidl`: the block that opens a section to the section; lines directly above
+  an element, after it, and indented below it to that element. An empty line ends a comment.
 
 Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `rosidl_adapter`.
 """
@@ -25,7 +25,7 @@ from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, valu
 from roaml.text import Span
 
 MAX_LENGTH = 1_000_000
-"""Of a text with more characters only the lines up to here are read; real definitions have a hundredth of it."""
+"""The maximum number of characters that are read, at the end of a line; real definitions have a hundredth of it."""
 
 _LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
 _NAME = re.compile(r"[^ \t#=]+")
@@ -35,7 +35,7 @@ _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
 def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, tuple[Finding, ...]]:
-    """The definition `package/name` that `text` gives, and all that is wrong with the text.
+    """The definition `package/name` in `text`, and the errors in the text.
 
     The definition always has all sections of its kind; those missing in the text are empty.
     """
@@ -45,7 +45,8 @@ def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, t
 
 
 class _Head(NamedTuple):
-    """What fields and constants begin with. The type of a known name is primitive or a message that may exist."""
+    """The part before the value of a field or constant. The type of a known name is primitive or a message that may
+    exist."""
 
     type: FieldType
     type_span: Span
@@ -100,7 +101,7 @@ class _Parser:
                 break
         else:
             if length < len(text):
-                message = f"this is too long for an interface definition; only {MAX_LENGTH:,} characters are read"
+                message = f"too long for an interface definition; only the first {MAX_LENGTH:,} characters are read"
                 self.report.add(Span(length, len(text)), message)
             elif missing := names[len(self.sections) :]:
                 self.report_missing(missing)
@@ -138,11 +139,13 @@ class _Parser:
             if self.kind == "msg":
                 message = "a message has no `---`; only services (.srv) and actions (.action) have sections"
             else:
-                message = f"{_a(self.kind)} has {len(names)} sections, {_and(names)}; this `---` begins one more"
+                message = (
+                    f"{_a(self.kind)} has {len(names)} sections, {_and(names)}; this `---` begins an additional one"
+                )
             self.report.add(span, message)
         elif self.text[span.start : span.end] != "---":
             instead = "---" if dashes_end == span.end else None
-            self.report.add(span, "the line between two sections is `---` and nothing else", instead=instead)
+            self.report.add(span, "the line between two sections must be exactly `---`", instead=instead)
         self.sections.append(_OpenSection())
         self.opening, self.last = True, None
         self.above.clear()
@@ -152,7 +155,7 @@ class _Parser:
         new_line = "" if self.text.endswith(("\n", "\r")) or not self.text else "\n"
         self.report.add(
             Span(end, end),
-            f"{_a(self.kind)} has the sections {_and(SECTION_NAMES[self.kind])}, divided by lines `---`; "
+            f"{_a(self.kind)} has the sections {_and(SECTION_NAMES[self.kind])}, separated by lines `---`; "
             f"missing here: {_and(names)}",
             instead=new_line + "---\n" * len(names),
         )
@@ -165,7 +168,7 @@ class _Parser:
         comment, self.above, self.last = self.above, [], None
         type_span = find_type(text, start, end)
         if "=" in text[type_span.start : type_span.end].replace("<=", ""):
-            self.report.add(type_span, "a constant is written `type NAME=value`; the type is missing here")
+            self.report.add(type_span, "the type of the constant is missing; write `type NAME=value`")
             return
         head = self.head(type_span, end)
         after = skip_blanks(text, head.name_span.end, end)
@@ -209,14 +212,14 @@ class _Parser:
         self.check_constant_name(head)
         value = None
         if head.type.is_array:
-            self.report.add(head.type_span, "a constant is a single value; ROS 2 has no constants of array type")
+            self.report.add(head.type_span, "a constant must be a single value; ROS 2 does not support array constants")
         elif head.type.is_primitive:
             if head.type.string_bound is not None:
-                message = f"the string of a constant has no bound; write `{head.type.name}`"
+                message = f"the string of a constant cannot have a bound; write `{head.type.name}`"
                 self.report.add(head.type_span, message, instead=head.type.name)
             value = parse_scalar(self.text, value_span, head.type, self.report)
         elif head.type_is_known:
-            message = f"a constant has a primitive type; `{shorten(head.type.name)}` is a message type"
+            message = f"a constant must have a primitive type; `{shorten(head.type.name)}` is a message type"
             self.report.add(head.type_span, message)
         written = self.text[value_span.start : value_span.end]
         return Constant(head.name, head.type, value, written, "", head.name_span, head.type_span, value_span)
@@ -225,34 +228,36 @@ class _Parser:
         self.last = _Element(item, comment)
         first = self.sections[-1].elements.setdefault(item.name, self.last)
         if first is not self.last:
-            related = Related(first.item.name_span, "it is defined here first")
-            self.report.add(item.name_span, f"there is already a `{shorten(item.name)}` here", related=(related,))
+            related = Related(first.item.name_span, "it is first defined here")
+            self.report.add(
+                item.name_span, f"`{shorten(item.name)}` is defined twice; rename one of them", related=(related,)
+            )
 
     # ----------------------------------------------------------------- names
 
     def report_no_name(self, head: _Head, is_constant: bool) -> None:
         if is_constant:
-            self.report.add(head.name_span, "a name is missing here; a constant is written `type NAME=value`")
+            self.report.add(head.name_span, "a name is missing; a constant is written `type NAME=value`")
         elif head.type_is_known:
             written = self.text[head.type_span.start : head.type_span.end]
             self.report.add(head.type_span, f"`{shorten(written)}` has no name; a field is written `type name`")
 
     def check_field_name(self, head: _Head) -> str:
-        """Report what is wrong with the name of a field; returns the name that the field shall have."""
+        """Report errors in the name of a field; return the name to use for the field."""
         name, span = head.name, head.name_span
         if FIELD_NAME.fullmatch(name):
             if language := keyword_of(name):
-                message = f"`{name}` is a keyword of {language}; the code that ROS generates from it will not compile"
+                message = f"`{name}` is a keyword of {language}; the code that ROS 2 generates will not compile"
                 self.report.add(span, message, severity=Severity.WARNING)
             elif name == _PLACEHOLDER:
-                self.report.add(span, "this name is kept for the member that ROS gives to an empty message")
+                self.report.add(span, "this name is reserved for the member that ROS 2 adds to an empty message")
             return name
         if sized := _NAME_AND_SIZE.fullmatch(name):
             right = f"{self.text[head.type_span.start : head.type_span.end]}{sized[2]} {sized[1]}"
-            message = f"the size of an array belongs to its type; write `{shorten(right)}`"
+            message = f"the size of an array is part of its type; write `{shorten(right)}`"
             self.report.add(head.type_span.cover(span), message, instead=right)
             return sized[1]
-        message = f"`{shorten(name)}` is no field name; field names are lower_snake_case"
+        message = f"`{shorten(name)}` is not a valid field name; field names are lower_snake_case"
         if CONSTANT_NAME.fullmatch(name):
             message += ", and a constant is written `NAME=value`"
         self.report.add(span, message, instead=lower_snake(name) or None)
@@ -262,14 +267,14 @@ class _Parser:
         name, span = head.name, head.name_span
         if CONSTANT_NAME.fullmatch(name):
             return
-        message = f"`{shorten(name)}` is no constant name; constants are UPPER_SNAKE_CASE"
+        message = f"`{shorten(name)}` is not a valid constant name; constants are UPPER_SNAKE_CASE"
         if FIELD_NAME.fullmatch(name):
             message += f", and a default is written without `=`: `{head.type} {shorten(name)} value`"
         self.report.add(span, message, instead=upper_snake(name) or None)
 
 
 def _comment(written: str) -> str:
-    """The words of a comment that is written from its `#` on; deeper indentation is kept."""
+    """The text of a comment that begins with `#`; additional indentation is kept."""
     return written.lstrip("#").removeprefix(" ").rstrip()
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of messages, services and actions -> their definitions.
 
-- Never fails: what is not found is a `NotFound` that says why and what was probably meant.
-- Files are read through the caller, so an open editor's text goes before the disk's; a definition is parsed again only
-  when its file's digest changed.
+- Never fails: a type that is not found is a `NotFound` with the reason and similar names.
+- Files are read through the caller, so an open editor's text takes precedence over the disk; a definition is parsed
+  again only when the digest of its file has changed.
 """
 
 from __future__ import annotations
@@ -33,16 +33,17 @@ class Reason(enum.Enum):
     UNKNOWN_PACKAGE = "unknown package"
     UNKNOWN_TYPE = "the package has no such type"
     UNREADABLE = "the file cannot be read"
-    TOO_LARGE = "it holds too many fields"
+    TOO_LARGE = "it has too many fields"
 
 
 @dataclass(frozen=True, slots=True)
 class NotFound:
-    """A type that was asked for and not found.
+    """A requested type that was not found.
 
-    `wanted` is the name as asked for. `close` are names of the same kind, `package/Name`, the nearest first.
-    `other_kind` is set if the type exists but is, say, a service and not a message. `looked_in` are the places in
-    words. `path` is the file that could not be read. `size` tells in words how large a type is that is too large.
+    `wanted` is the requested name. `close` are similar names of the same kind, `package/Name`, the nearest first.
+    `other_kind` is set if the type exists but is of another kind, such as a service instead of a message. `looked_in`
+    are phrases for the places that were searched. `path` is the file that could not be read. `size` is a phrase for the
+    size of a type that is too large.
     """
 
     reason: Reason
@@ -56,7 +57,7 @@ class NotFound:
 
     @property
     def message(self) -> str:
-        """What is wrong and what to write instead, in a sentence."""
+        """The error and the correction, as a sentence."""
         kind = KIND_NAMES[self.kind]
         hint = did_you_mean(self.close, _MAX_CLOSE)
         package, _, name = self.wanted.partition("/")
@@ -64,7 +65,7 @@ class NotFound:
             case Reason.MALFORMED_NAME:
                 return f"`{self.wanted}` is not the name of a {kind} type, `package/Name`{hint}"
             case Reason.UNKNOWN_PACKAGE:
-                return f"there is no package `{package}`{hint or '; looked in ' + ', '.join(self.looked_in)}"
+                return f"there is no package `{package}`{hint or '; searched ' + ', '.join(self.looked_in)}"
             case Reason.UNKNOWN_TYPE if self.other_kind:
                 return f"`{self.wanted}` is {_a(self.other_kind)}, not {_a(self.kind)}{hint}"
             case Reason.UNKNOWN_TYPE:
@@ -72,12 +73,12 @@ class NotFound:
             case Reason.UNREADABLE:
                 return f"the definition of `{self.wanted}` cannot be read: {self.path}"
             case Reason.TOO_LARGE:
-                return f"`{self.wanted}` is too large: with all messages in it, it has {self.size}"
+                return f"`{self.wanted}` is too large: with all nested messages, it has {self.size}"
 
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """A definition and the mistakes in its file."""
+    """A definition and the errors in its file."""
 
     definition: Definition
     findings: tuple[Finding, ...]
@@ -86,7 +87,7 @@ class Parsed:
 class Registry:
     """All interface definitions that can be found.
 
-    `read` gives the current text of the file at a path, None if there is none.
+    `read` returns the current text of the file at a path, or `None`.
     """
 
     def __init__(self, search_path: SearchPath, read: Callable[[str], SourceFile | None]) -> None:
@@ -95,7 +96,7 @@ class Registry:
         self._parsed: dict[str, tuple[tuple[Kind, str, str, bytes], Parsed]] = {}
 
     def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
-        """The same registry with another view of the files; what was parsed before is kept for both."""
+        """The same registry with another view of the files; both share the parsed definitions."""
         other = Registry(self.search_path, read)
         other._parsed = self._parsed
         return other
@@ -110,7 +111,7 @@ class Registry:
         return self.find("action", package, name)
 
     def resolve(self, kind: Kind, type_name: str) -> Definition | NotFound:
-        """The definition that `type_name`, written as `split_type_name` reads it, stands for."""
+        """The definition of `type_name`, a name that `split_type_name` can read."""
         names = split_type_name(type_name, kind)
         if names is None:
             return self._malformed(kind, type_name)
@@ -121,7 +122,7 @@ class Registry:
         return parsed.definition if isinstance(parsed, Parsed) else parsed
 
     def other_definition(self, kind: Kind, package: str, name: str) -> Definition | None:
-        """A definition of the same type that says something else and does not count, because another is found first."""
+        """Another, different definition of the same type, which is not used because this one is found first."""
         first = self.find(kind, package, name)
         if isinstance(first, NotFound) or not _is_type_name(package, name):
             return None
@@ -132,7 +133,7 @@ class Registry:
         return None
 
     def parsed(self, kind: Kind, package: str, name: str) -> Parsed | NotFound:
-        """Like `find`, with the mistakes in the definition's file."""
+        """Like `find`, with the errors in the definition's file."""
         if not _is_type_name(package, name):
             return self._malformed(kind, f"{package}/{name}")
         path = self.search_path.locate(package, kind, name)
@@ -143,7 +144,7 @@ class Registry:
         )
 
     def _parse(self, path: str, kind: Kind, package: str, name: str) -> Parsed | None:
-        """What a file defines; None if it cannot be read."""
+        """The definition in a file; `None` if it cannot be read."""
         source = self._read(path)
         if source is None:
             return None
@@ -171,7 +172,8 @@ class Registry:
         return NotFound(Reason.UNKNOWN_TYPE, kind, wanted, close, other_kind, looked_in)
 
     def _malformed(self, kind: Kind, wanted: str) -> NotFound:
-        """What was meant can often be told, as from `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare `Int32`."""
+        """The intended type of a malformed name such as `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare
+        `Int32`."""
         words = [word for word in _WORD_BREAKS.split(wanted[:_MAX_NAME_LENGTH]) if word and word not in KINDS]
         close: tuple[str, ...] = ()
         if words:
@@ -183,12 +185,12 @@ class Registry:
         return NotFound(Reason.MALFORMED_NAME, kind, wanted, close, None, self.search_path.looked_in())
 
     def _named(self, kind: Kind, name: str) -> Iterator[str]:
-        """All types of that very name, whatever their package."""
+        """All types with this name, in any package."""
         return (f"{p}/{name}" for p, kinds in self.search_path.packages().items() if name in kinds[kind])
 
 
 def split_type_name(text: str, kind: Kind) -> tuple[str, str] | None:
-    """Package and name in `package/Name` or, with the kind in between, `package/msg/Name`; None if it is neither."""
+    """Package and name in `package/Name` or, with the kind in between, `package/msg/Name`; `None` for other texts."""
     package, _, name = text.partition("/")
     name = name.removeprefix(f"{kind}/")
     return (package, name) if _is_type_name(package, name) else None
@@ -199,7 +201,7 @@ def _is_type_name(package: str, name: str) -> bool:
 
 
 def _first(*groups: Iterable[str]) -> tuple[str, ...]:
-    """The first few names of the groups together, each once."""
+    """The first few names of the groups together, without duplicates."""
     return tuple(dict.fromkeys(name for group in groups for name in group))[:_MAX_CLOSE]
 
 

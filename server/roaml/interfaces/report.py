@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the readers of definition files put what they find."""
+"""Collects the findings of the readers of definition files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ CODE = "interface-syntax"
 """The code of every finding in a definition file."""
 
 MAX_FINDINGS = 100
-"""A file with more mistakes than this is hardly an interface definition; it is not read further."""
+"""The maximum number of errors in a file; a file with more is unlikely to be an interface definition and not read
+further."""
 
 
 class FileFindings:
@@ -35,7 +36,7 @@ class FileFindings:
         severity: Severity | None = None,
         related: tuple[Related, ...] = (),
     ) -> None:
-        """Say `message` about `span`; `instead` is the text that would be right in its place."""
+        """Add a finding with `message` at `span`; `instead` is the correct text in its place."""
         fixes: tuple[Fix, ...] = ()
         if instead is not None:
             fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)
@@ -47,5 +48,5 @@ class FileFindings:
 
 
 def shorten(written: str) -> str:
-    """Text from a file in the form that messages show: its beginning if it is long."""
+    """Text of a file as messages show it, shortened if it is long."""
     return written if len(written) <= 40 else f"{written[:40]}…"

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where definition files are found.
 
-- Places are asked in this order: workspace folders, `--ros-path` folders, the prefixes of `AMENT_PREFIX_PATH`, and the
-  standard packages shipped with this tool. The first file wins, type by type: a folder that holds part of a package
+- Places are searched in this order: workspace folders, `--ros-path` folders, the prefixes of `AMENT_PREFIX_PATH`, and
+  the standard packages of this tool. The first file is used, type by type: a folder that contains a part of a package
   hides no other type of it.
 - A package is a folder with a definition file in its `msg/`, `srv/` or `action/`. Its name is that in its `package.xml`
-  if there is one, else the folder's.
-- Nothing is read but folder listings and the head of `package.xml`, and that once: a place is listed when it is first
-  asked and again only after `refresh`. What cannot be read is not there.
-- Names are compared as written, also on file systems that ignore case.
+  if there is one, otherwise that of the folder.
+- Only folder listings and the head of `package.xml` are read, once: a place is listed at the first request and again
+  only after `refresh`. Unreadable files and folders are treated as missing.
+- Names are compared exactly, also on file systems that ignore case.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
 
 MAX_DEPTH = 6
-"""How deep below a workspace or `--ros-path` folder packages are looked for."""
+"""The maximum depth of packages below a workspace or `--ros-path` folder."""
 
 MAX_FOLDERS = 20_000
-"""How many folders of one such place are looked into, the nearest first: the workspace may be someone's home."""
+"""The maximum number of folders that are searched in one place, the nearest first: the workspace may be a home
+directory."""
 
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
 """Folders that are not entered, like all whose name begins with a dot."""
@@ -41,7 +42,7 @@ _XML_NAME = re.compile(r"<name>\s*([^<>\s]+)\s*</name>")
 
 
 class SearchPath:
-    """The places where definition files are looked for, in the order in which they are asked.
+    """The places of definition files, in the order in which they are searched.
 
     `workspace` are the folders open in the editor or given on the command line. Each of `ros_paths` may be a package, a
     folder of packages at any depth up to `MAX_DEPTH`, or an ament prefix. `ament_prefixes` are the entries of
@@ -58,17 +59,17 @@ class SearchPath:
         self._packages: Mapping[str, Mapping[Kind, tuple[str, ...]]] | None = None
 
     def locate(self, package: str, kind: Kind, name: str) -> str | None:
-        """The absolute path of the file that defines `package/name`, or None."""
+        """The absolute path of the file that defines `package/name`, or `None`."""
         for place in self._places():
             if path := place.files(package)[kind].get(name):
                 return path
         return None
 
     def repetitions(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
-        """All files that define `package/name`, the one that counts first.
+        """All files that define `package/name`; the first one is used.
 
-        Those of the standard packages are not among them: they are there for those who have no others. Of the ament
-        prefixes only the first that has the type counts, because one is laid over another on purpose.
+        The standard packages are left out: they are for users without their own. Of the ament prefixes only the first
+        that has the type is included, because prefixes overlay each other on purpose.
         """
         folders: list[str] = []
         in_prefix = False
@@ -96,7 +97,7 @@ class SearchPath:
         return self._packages
 
     def looked_in(self) -> tuple[str, ...]:
-        """The places in words, for a message that something was found in none of them."""
+        """Phrases for the places, for the message that something was found in none of them."""
         places = (
             *(f"the workspace {_described(path)}" for path in self._workspace),
             *(f"{_described(path)} from --ros-path" for path in self._ros_paths),
@@ -105,7 +106,7 @@ class SearchPath:
         return (*places, "the standard packages that come with this tool")
 
     def refresh(self) -> None:
-        """Forget all listings: files or folders came or went."""
+        """Discard all listings: files or folders were created or deleted."""
         self._asked = None
         self._packages = None
 
@@ -125,13 +126,13 @@ class _Place(Protocol):
         """The definition files of a package here: kind -> name -> path; every kind is there."""
 
     def all_files(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
-        """All files here that define a type, the one that counts first."""
+        """All files here that define a type; the first one is used."""
 
     def packages(self) -> Iterable[str]: ...
 
 
 class _Share:
-    """A folder whose subfolders are packages named like them; only the packages asked for are listed."""
+    """A folder whose subfolders are packages with the same name; only requested packages are listed."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -151,14 +152,14 @@ class _Share:
         return [name for name in _subfolders(self._folder) if any(self.files(name).values())]
 
     def _list(self, package: str) -> _Files:
-        if not PACKAGE_NAME.fullmatch(package):  # a name from a model must not lead elsewhere
+        if not PACKAGE_NAME.fullmatch(package):  # a name from a model must not lead to another folder
             return _NO_FILES
         folder = os.path.join(self._folder, package)
         return _definitions(folder, _subfolders(folder))
 
 
 class _Tree:
-    """A folder that is, or has somewhere below it, packages; all of it is listed when first asked."""
+    """A folder that is a package or contains packages at any depth; all of it is listed at the first request."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -182,14 +183,14 @@ class _Tree:
 
 
 class _Listing(NamedTuple):
-    """The packages of a place, and the files that others hide."""
+    """The packages of a place, and the files that are hidden by others."""
 
     files: Mapping[str, _Files]
     hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]
 
 
 def _scan(root: str) -> _Listing:
-    """The packages in and below `root`, level by level, so that of two equal types the nearer one wins."""
+    """The packages in and below `root`, level by level, so that of two equal types the nearer one is used."""
     packages: dict[str, dict[Kind, dict[str, str]]] = {}
     hidden: dict[tuple[str, Kind, str], tuple[str, ...]] = {}
     entered: set[tuple[int, int]] = set()
@@ -235,7 +236,7 @@ def _named_files(folder: str, kind: Kind) -> Mapping[str, str]:
 
 
 def _package_name(folder: str) -> str:
-    """The name in the folder's `package.xml`, else the folder's own."""
+    """The name in the folder's `package.xml`, otherwise that of the folder."""
     content = read(os.path.join(folder, "package.xml"), head=_PACKAGE_XML_HEAD)
     head = content.decode("utf-8", "replace") if isinstance(content, bytes) else ""
     name = _XML_NAME.search(_XML_COMMENT.sub("", head))
@@ -256,7 +257,7 @@ def _entries(folder: str, *, folders: bool) -> list[str]:
 
 
 def _identity(folder: str) -> tuple[int, int] | None:
-    """What tells two folders apart however they were reached; None if there is no such folder."""
+    """An identity that is equal for two paths to the same folder; `None` if the folder does not exist."""
     try:
         status = os.stat(folder)
     except OSError:
@@ -280,7 +281,7 @@ def _standard() -> str:
 
 
 def _absolute(paths: Iterable[str]) -> tuple[str, ...]:
-    """Absolute, without empty entries (`AMENT_PREFIX_PATH` may have some) and repetitions."""
+    """Absolute paths, without empty entries (`AMENT_PREFIX_PATH` may have some) and duplicates."""
     return tuple(dict.fromkeys(os.path.abspath(path) for path in paths if path))
 
 

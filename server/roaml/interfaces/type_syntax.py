@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a field's type is spelled: `int32`, `string<=10[<=5]`, `geometry_msgs/Pose[3]`.
+"""The syntax of field types: `int32`, `string<=10[<=5]`, `geometry_msgs/Pose[3]`.
 
-Any text gives a type: what is wrong with it is reported, and the rest is kept.
+Any text gives a type: errors are reported, and the readable part is kept.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _HEADER = "std_msgs/Header"
 
 
 def find_type(text: str, start: int, end: int) -> Span:
-    """The span of the type that begins at `start` and ends before a name; `<= 5` and `[ 5 ]` count to it."""
+    """The span of the type that begins at `start` and ends before a name; it includes `<= 5` and `[ 5 ]`."""
     token = _TOKEN.match(text, start, end)
     return Span(start, token.end() if token else start)
 
@@ -35,7 +35,7 @@ def parse_type(text: str, span: Span, package: str, report: FileFindings) -> Fie
     written = text[span.start : span.end]
     compact = written.replace(" ", "").replace("\t", "")
     if compact != written:
-        report.add(span, f"no spaces inside a type; write `{shorten(compact)}`", instead=compact)
+        report.add(span, f"a type cannot contain spaces; write `{shorten(compact)}`", instead=compact)
     element, bracket, tail = compact.partition("[")
     size_written, closing, rest = tail.partition("]")
     base, less, limit = element.partition("<")
@@ -44,19 +44,21 @@ def parse_type(text: str, span: Span, package: str, report: FileFindings) -> Fie
     if less and name in STRINGS:
         string_bound = _limit(less + limit, span, f"the bound of a string is written `{base}<=N`", report)
     elif less:
-        report.add(span, "only strings have a bound `<=N`; an array of at most N elements is written `T[<=N]`")
+        report.add(span, "only strings can have a bound `<=N`; an array of at most N elements is written `T[<=N]`")
     if not bracket:
         return FieldType(name, string_bound)
     if not closing:
         right = f"{compact}]"
         report.add(span, f"the array has no closing `]`; write `{shorten(right)}`", instead=right)
     elif rest:
-        report.add(span, "an array has one dimension; for more, make a message of the inner array and an array of that")
+        report.add(
+            span, "an array has only one dimension; for more, use an array of messages that contain the inner array"
+        )
     return FieldType(name, string_bound, *_array(size_written, span, report))
 
 
 def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int | None]:
-    """What is written between the brackets."""
+    """The text between the brackets."""
     if not size:
         return ArrayKind.UNBOUNDED, None
     is_bounded = size.startswith("<")
@@ -67,7 +69,7 @@ def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int 
 
 
 def _limit(written: str, span: Span, forms: str, report: FileFindings) -> int | None:
-    """The N of `<=N`, or None with a finding that explains the `forms` there are."""
+    """The N of `<=N`; `None` with a finding that explains the valid `forms`."""
     number = written.removeprefix("<=")
     if number != written and _LIMIT.fullmatch(number) and 1 <= int(number) <= _GREATEST_LIMIT:
         return int(number)
@@ -82,7 +84,7 @@ def _type_name(written: str, span: Span, package: str, report: FileFindings) -> 
         report.add(span, f"`{written}` is a type of ROS 1; in ROS 2 write `{right}`", instead=right)
         return right
     if written == "Header" and package != "std_msgs":
-        message = f"a bare `Header` is taken as `{_HEADER}`, as in ROS 1; ROS 2 wants the package with it"
+        message = f"a bare `Header` is read as `{_HEADER}`, as in ROS 1; in ROS 2, write the package as well"
         report.add(span, message, instead=_HEADER, severity=Severity.WARNING)
         return _HEADER
     if "/" in written:
@@ -97,20 +99,21 @@ def _name_with_package(written: str, span: Span, report: FileFindings) -> str:
     package, *middle, name = written.split("/")
     if middle in (["srv"], ["action"]):
         report.add(
-            span, f"a field holds messages; `{shorten(written)}` is {'a service' if middle == ['srv'] else 'an action'}"
+            span,
+            f"a field contains messages; `{shorten(written)}` is {'a service' if middle == ['srv'] else 'an action'}",
         )
     elif middle not in ([], ["msg"]):
         report.add(span, "a message type is written `package/Name`")
     elif not PACKAGE_NAME.fullmatch(package):
-        report.add(span, f"`{shorten(package)}` is no package name; package names are lower_snake_case")
+        report.add(span, f"`{shorten(package)}` is not a valid package name; package names are lower_snake_case")
     elif not TYPE_NAME.fullmatch(name):
-        report.add(span, f"`{shorten(name)}` is no message name; message names are CamelCase, `package/Name`")
+        report.add(span, f"`{shorten(name)}` is not a valid message name; message names are CamelCase, `package/Name`")
     return f"{package}/{name}"
 
 
 def _unknown(written: str, span: Span, report: FileFindings) -> None:
     if not written:
-        report.add(span, "a type is missing here; a field is written `type name`")
+        report.add(span, "a type is missing; a field is written `type name`")
         return
     foreign = _FOREIGN_TYPES.get(written.lower())
     close = (foreign,) if foreign else close_names(written, sorted(PRIMITIVES), 1)

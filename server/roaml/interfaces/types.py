@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS 2 interface definitions as data.
 
-- Everything is frozen and hashable: definitions go into memo keys.
-- Spans, comments and the spelling of values do not count for equality: a definition stays equal to itself when
-  comments or white space of its file move. The path counts.
+- Everything is frozen and hashable: definitions are part of memo keys.
+- Equality ignores spans, comments and the spelling of values: a definition stays equal to itself when comments or white
+  space of its file change. It compares the path.
 - A nested type is known by name only (`package/Name`); `roaml.interfaces.registry` resolves it.
 """
 
@@ -17,7 +17,7 @@ from typing import Literal, TypeAlias
 from roaml.text import Span
 
 Kind: TypeAlias = Literal["msg", "srv", "action"]
-"""What is defined: also the folder and the file extension of the definition."""
+"""The kinds of definitions, which are also the folder and the file extension of a definition."""
 
 KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 
@@ -28,7 +28,7 @@ SECTION_NAMES: Mapping[Kind, tuple[str, ...]] = {
     "srv": ("request", "response"),
     "action": ("goal", "result", "feedback"),
 }
-"""The sections of a definition in their order in the file, divided by `---`."""
+"""The sections of a definition in their order in the file, separated by `---`."""
 
 INTEGER_RANGES: Mapping[str, tuple[int, int]] = {
     "byte": (0, 255),
@@ -36,7 +36,7 @@ INTEGER_RANGES: Mapping[str, tuple[int, int]] = {
     **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
     **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
 }
-"""The least and the greatest value of each integer type. In ROS 2 `byte` and `char` are unsigned."""
+"""The smallest and the greatest value of each integer type. In ROS 2, `byte` and `char` are unsigned."""
 
 FLOATS = frozenset({"float32", "float64"})
 STRINGS = frozenset({"string", "wstring"})
@@ -54,7 +54,7 @@ Value: TypeAlias = Scalar | tuple[Scalar, ...]
 
 
 class ArrayKind(enum.Enum):
-    """How many elements a field has."""
+    """The kind of an array, by its number of elements."""
 
     NONE = "none"
     """No array: `T`."""
@@ -70,9 +70,9 @@ class ArrayKind(enum.Enum):
 class FieldType:
     """The type of a field or constant.
 
-    `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; where the file has a mistake it may
-    be neither, and resolving it then fails like that of any unknown type. `string_bound` is the greatest number of
-    characters of a `string<=N`. `size` is set for the array kinds FIXED and BOUNDED.
+    `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; in a file with errors it may be
+    neither, and resolving it fails like that of any unknown type. `string_bound` is the maximum number of characters of
+    a `string<=N`. `size` is set for the array kinds FIXED and BOUNDED.
     """
 
     name: str
@@ -82,7 +82,7 @@ class FieldType:
 
     @property
     def is_primitive(self) -> bool:
-        """Whether a value, or each element, is no nested message."""
+        """Whether a value, or each element, is not a nested message."""
         return self.name in PRIMITIVES
 
     @property
@@ -91,7 +91,7 @@ class FieldType:
 
     @property
     def element(self) -> FieldType:
-        """The type of one element; of a type that is no array, the type itself."""
+        """The type of one element; the type itself if it is not an array."""
         return FieldType(self.name, self.string_bound)
 
     def __str__(self) -> str:
@@ -111,9 +111,10 @@ class FieldType:
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A member of a message. Without `default` it starts as 0, false or empty.
+    """A member of a message. Without `default`, its initial value is 0, false or empty.
 
-    `default_text` is the default as written. `comment` holds the lines above, beside and below the field, without `#`.
+    `default_text` is the default as written. `comment` contains the lines above, beside and below the field, without
+    `#`.
     """
 
     name: str
@@ -128,7 +129,8 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A named value of a definition; no field, nothing is sent. `value` is None where the file has a mistake."""
+    """A named value of a definition. It is not a field and not sent. `value` is `None` if the file has an error
+    there."""
 
     name: str
     type: FieldType
@@ -142,7 +144,7 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A message, or one part of a service or action. `comment` is the block of comment lines that it opens with."""
+    """A message, or one part of a service or action. `comment` is the block of comment lines at its beginning."""
 
     fields: tuple[Field, ...] = ()
     constants: tuple[Constant, ...] = ()
@@ -154,9 +156,9 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """A message, service or action type. It has the sections of `SECTION_NAMES[kind]`, all of them, in that order.
+    """A message, service or action type. It has all the sections of `SECTION_NAMES[kind]`, in that order.
 
-    `path` is the file that it was read from, empty if none.
+    `path` is the file from which it was read; it may be empty.
     """
 
     package: str
@@ -172,11 +174,11 @@ class Definition:
 
     @property
     def comment(self) -> str:
-        """What the file says about the type as a whole."""
+        """The comment in the file about the type as a whole."""
         return self.sections[0].comment
 
     def section(self, name: str) -> Section:
-        """The section of that name in `SECTION_NAMES[kind]`. KeyError if this kind has none such."""
+        """The section of that name in `SECTION_NAMES[kind]`. Raises `KeyError` for other names."""
         try:
             return self.sections[SECTION_NAMES[self.kind].index(name)]
         except ValueError:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The values of constants and defaults: text -> Python value of the field's type.
 
-- Never fails; a value with a mistake is None and reported with the span of the mistake.
-- Strings may be quoted, `"..."` or `'...'`, or stand alone up to the comment. Escapes are resolved in quotes only.
-- Numbers are checked against the range of their type; floats are finite.
+- Never fails; an invalid value is `None` and reported with its span.
+- Strings may be quoted, `"..."` or `'...'`, or unquoted up to the comment. Escapes are resolved only in quotes.
+- Numbers are checked against the range of their type; floats must be finite.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ _MAX_DIGITS = 1000
 
 
 def skip_blanks(text: str, start: int, end: int) -> int:
-    """The first place from `start` on where no blank or tab stands, `end` if there is none."""
+    """The first offset from `start` on without a blank or tab; `end` if there is none."""
     while start < end and text[start] in " \t":
         start += 1
     return start
 
 
 def value_end(text: str, start: int, line_end: int) -> int:
-    """Where the value that begins at `start` ends: before the comment, if any, and the white space before that.
+    """The end of the value that begins at `start`: before the comment, if any, and the white space before it.
 
-    A `#` inside quotes begins no comment.
+    A `#` inside quotes does not begin a comment.
     """
     comment_from = start
     if opening := _STRING.match(text, start, line_end) or _LIST.match(text, start, line_end):
@@ -48,9 +48,9 @@ def value_end(text: str, start: int, line_end: int) -> int:
 
 
 def parse_value(text: str, span: Span, type_: FieldType, report: FileFindings) -> Value | None:
-    """The value in `text[span]`, or None with a finding. An array gives a tuple.
+    """The value in `text[span]`, or `None` with a finding. The value of an array is a tuple.
 
-    Of a nested message nothing can be written down, so its values are mistakes too.
+    Nested messages have no literals, so any value of one is an error.
     """
     if not type_.is_primitive:
         report.add(
@@ -60,18 +60,20 @@ def parse_value(text: str, span: Span, type_: FieldType, report: FileFindings) -
     if type_.is_array:
         return _array(text, span, type_, report)
     if text.startswith("[", span.start) and type_.name not in STRINGS:
-        report.add(span, f"`{type_}` is no array, so its value is no list; write the array `{type_}[]` or `{type_}[N]`")
+        report.add(
+            span, f"`{type_}` is not an array, so its value cannot be a list; use the type `{type_}[]` or `{type_}[N]`"
+        )
         return None
     return parse_scalar(text, span, type_, report)
 
 
 def parse_scalar(text: str, span: Span, type_: FieldType, report: FileFindings) -> Scalar | None:
-    """The single value in `text[span]`, of a primitive type that is no array, or None with a finding."""
+    """The single value in `text[span]`, of a primitive type that is not an array, or `None` with a finding."""
     written = text[span.start : span.end]
     if type_.name in STRINGS:
         return _string(written, span, type_, report)
     if not written:
-        report.add(span, f"a value of type `{type_}` is missing here")
+        report.add(span, f"a value of type `{type_}` is missing")
         return None
     if type_.name in INTEGER_RANGES:
         return _integer(written, span, type_.name, report)
@@ -79,27 +81,29 @@ def parse_scalar(text: str, span: Span, type_: FieldType, report: FileFindings) 
         return _float(written, span, type_.name, report)
     value = _BOOLS.get(written.lower())
     if value is None:
-        report.add(span, f"`{shorten(written)}` is no bool; write `true` or `false`")
+        report.add(span, f"`{shorten(written)}` is not a bool; write `true` or `false`")
     return value
 
 
 def _array(text: str, span: Span, type_: FieldType, report: FileFindings) -> tuple[Scalar, ...] | None:
     opening = _LIST.match(text, span.start, span.end)
     if not opening:
-        report.add(span, f"the default of an array is a list in brackets: `[{shorten(text[span.start : span.end])}]`")
+        report.add(
+            span, f"the default of an array must be a list in brackets: `[{shorten(text[span.start : span.end])}]`"
+        )
         return None
     if not opening[0].endswith("]"):
         report.add(span, "the list has no closing `]`")
         return None
     if opening.end() < span.end:
-        report.add(Span(opening.end(), span.end), "unexpected text behind the list; only a comment may follow")
+        report.add(Span(opening.end(), span.end), "unexpected text after the list; only a comment may follow")
         return None
     spans = list(_element_spans(text, span.start + 1, opening.end() - 1))
     if type_.array is ArrayKind.FIXED and len(spans) != type_.size:
-        report.add(span, f"`{type_}` has exactly {type_.size} elements, this list has {len(spans)}")
+        report.add(span, f"`{type_}` must have exactly {type_.size} elements, not {len(spans)}")
         return None
     if type_.array is ArrayKind.BOUNDED and len(spans) > (type_.size or 0):
-        report.add(span, f"`{type_}` has at most {type_.size} elements, this list has {len(spans)}")
+        report.add(span, f"`{type_}` must have at most {type_.size} elements, not {len(spans)}")
         return None
     values: list[Scalar] = []
     for element in spans:
@@ -112,7 +116,7 @@ def _array(text: str, span: Span, type_: FieldType, report: FileFindings) -> tup
 
 
 def _element_spans(text: str, start: int, end: int) -> Iterator[Span]:
-    """The elements between the brackets of a list; a comma inside quotes divides nothing."""
+    """The elements between the brackets of a list; a comma inside quotes is not a separator."""
     at = skip_blanks(text, start, end)
     if at == end:
         return
@@ -130,24 +134,24 @@ def _integer(written: str, span: Span, type_name: str, report: FileFindings) -> 
     low, high = INTEGER_RANGES[type_name]
     if type_name == "char" and len(written) == 3 and written[0] == written[2] == "'" and ord(written[1]) <= high:
         code = str(ord(written[1]))
-        report.add(span, f"in ROS 2 a `char` is a number from {low} to {high}; write `{code}`", instead=code)
+        report.add(span, f"in ROS 2, a `char` is a number from {low} to {high}; write `{code}`", instead=code)
         return None
     if not _INTEGER.fullmatch(written):
-        report.add(span, f"`{shorten(written)}` is no integer; a `{type_name}` is one from {low} to {high}")
+        report.add(span, f"`{shorten(written)}` is not an integer; a `{type_name}` is an integer from {low} to {high}")
         return None
-    # Base 0 knows the prefixes but rejects the leading zeros that ROS allows.
+    # Base 0 accepts the prefixes but rejects the leading zeros that ROS allows.
     digits = written.lstrip("+-")
     base = 10 if digits.isdecimal() else 0
     value = int(written, base) if len(written) <= _MAX_DIGITS else None
     if value is None or not low <= value <= high:
-        report.add(span, f"{shorten(written)} does not fit into `{type_name}`, which goes from {low} to {high}")
+        report.add(span, f"{shorten(written)} does not fit into `{type_name}`, whose range is {low} to {high}")
         return None
     return value
 
 
 def _float(written: str, span: Span, type_name: str, report: FileFindings) -> float | None:
     if not _FLOAT.fullmatch(written):
-        report.add(span, f"`{shorten(written)}` is no number; write for example `1.5`, `-2` or `1e-3`")
+        report.add(span, f"`{shorten(written)}` is not a number; write for example `1.5`, `-2` or `1e-3`")
         return None
     value = float(written)
     if abs(value) > _GREATEST_FLOAT[type_name]:
@@ -165,11 +169,11 @@ def _string(written: str, span: Span, type_: FieldType, report: FileFindings) ->
             return None
         if quoted.end() < len(written):
             rest = Span(span.start + quoted.end(), span.end)
-            report.add(rest, f"the string ends before this; inside a string write \\{written[0]} for {written[0]}")
+            report.add(rest, f"the string ends before this; inside a string, write \\{written[0]} for {written[0]}")
             return None
         value = _ESCAPE.sub(_unescape, written[1:-1])
     if type_.string_bound is not None and len(value) > type_.string_bound:
-        report.add(span, f"the string has {len(value)} characters; `{type_}` has at most {type_.string_bound}")
+        report.add(span, f"the string has {len(value)} characters, but `{type_}` allows at most {type_.string_bound}")
         return None
     return value
 

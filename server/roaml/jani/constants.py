@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values for the constants of a model that has none for them: whoever analyses the model chooses these."""
+"""Values for the constants of a model that have none: the user of the model chooses them."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
         texts: of the form `NAME=VALUE`.
 
     Raises:
-        ValueError: a text is not of this form; there is no constant of that name, or it has a value; or the value is
-            not one of its type. The message says which.
+        ValueError: a text is not of this form; there is no constant with this name, or it has a value; or the value is
+            not of its type. The message contains the reason.
     """
     given: dict[str, str] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not name or not equals or not value:
-            raise ValueError(f"a constant is given like N=20, not '{text}'")
+            raise ValueError(f"a constant must have the form N=20, not '{text}'")
         if name in given:
             raise ValueError(f"the constant {name} is given twice")
         given[name] = value
@@ -46,7 +46,7 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
             hint = f"did you mean {close}?" if close else f"the model has: {', '.join(known) or 'none'}"
             raise ValueError(f"there is no constant {name}; {hint}")
         if known[name].value is not None:
-            raise ValueError(f"the constant {name} has a value in the model, which --constant does not change")
+            raise ValueError(f"the constant {name} has a value in the model, which --constant cannot change")
     values: dict[str, Value] = {}
     constants = []
     for constant in model.constants:
@@ -57,7 +57,8 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
             try:
                 values[constant.name] = evaluate(constant.value, values, {})
             except EvaluationError:
-                continue  # it depends on one without a value, or calls a function; bounds that need it are not checked
+                # It depends on a constant without a value, or calls a function; bounds that need it are not checked.
+                continue
     return replace(model, constants=tuple(constants))
 
 
@@ -73,13 +74,15 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
         value = Real(float(text))
     if value is None:
         wanted = _WANTED.get(base) if isinstance(base, BasicType) else None
-        raise ValueError(f"the constant {constant.name} is {wanted or 'of a type that cannot be given'}, not '{text}'")
+        raise ValueError(
+            f"the constant {constant.name} must be {wanted or 'of a type that cannot be given'}, not '{text}'"
+        )
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):
             bound = None if end is None else _number(end, known)
             if bound is not None and (value.value < bound if is_lower else value.value > bound):
                 side = "at least" if is_lower else "at most"
-                raise ValueError(f"the constant {constant.name} is {side} {bound:g}, not {text}")
+                raise ValueError(f"the constant {constant.name} must be {side} {bound:g}, not {text}")
     return value
 
 

@@ -20,7 +20,7 @@ from typing import Any, TypeAlias, TypeVar
 T = TypeVar("T")
 
 Steps: TypeAlias = Generator[Any, Any, T]
-"""A computation of a `T` in steps; each step is another such computation, whose result it needs."""
+"""A computation of a `T` in steps; each step is another computation whose result it needs."""
 
 
 def run(steps: Steps[T]) -> T:
@@ -42,4 +42,4 @@ def run(steps: Steps[T]) -> T:
 def done(result: T) -> Steps[T]:
     """A computation without any step."""
     return result
-    yield  # never reached: its presence makes this a generator
+    yield  # never reached: makes this a generator

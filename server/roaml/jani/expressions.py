@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions: what has a value in one state of a model.
+"""Expressions, which have a value in each state of a model.
 
-- Frozen; equal if they say the same, wherever they stand.
-- They may nest as deep as memory allows: walk them with `walk` or `roaml.jani.deep`, never by plain recursion.
+- Frozen; equal if they have the same content, wherever they are.
+- They may nest as deeply as memory allows: walk them with `walk` or `roaml.jani.deep`, never by plain recursion.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Binary(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Conditional(CommentedNode):
-    """`ite`: `then` if `test` holds, else `otherwise`."""
+    """`ite`: `then` if `test` holds, otherwise `otherwise`."""
 
     test: Expression
     then: Expression
@@ -110,21 +110,21 @@ class DatatypeValue(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class OptionAccess(CommentedNode):
-    """`oa`: what is in an option that is not empty."""
+    """`oa`: the content of an option that is not empty."""
 
     option: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class OptionValue(CommentedNode):
-    """`ov`: an option with a value in it."""
+    """`ov`: an option with a value."""
 
     content: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class EmptyOption(CommentedNode):
-    """`empty`: an option with nothing in it."""
+    """`empty`: an option without a value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +158,7 @@ class Derivative(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Missing(Node):
-    """Nothing readable stands here; a finding of the reader says why. A model with findings is not written."""
+    """A part that cannot be read; a finding of the reader contains the reason. A model with findings is not written."""
 
 
 Expression: TypeAlias = (
@@ -186,7 +186,7 @@ Expression: TypeAlias = (
 )
 
 LValue: TypeAlias = Name | ArrayAccess | DatatypeAccess | OptionAccess | Missing
-"""What can be assigned to: a variable or a part of one."""
+"""The targets of assignments: a variable or a part of one."""
 
 
 def children(expression: Expression) -> tuple[Expression, ...]:
@@ -223,7 +223,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
 
 
 def walk(expression: Expression) -> Iterator[Expression]:
-    """`expression` and all that is in it, outer before inner, left before right."""
+    """`expression` and all its subexpressions, outer before inner, left before right."""
     stack = [expression]
     while stack:
         node = stack.pop()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The extensions of JANI that a file announces in its `features`."""
+"""The extensions of JANI that a file declares in its `features`."""
 
 from __future__ import annotations
 
@@ -29,4 +29,4 @@ SUPPORTED = frozenset(Feature) - {
     Feature.NAMED_EXPRESSIONS,
     Feature.TRADEOFF_PROPERTIES,
 }
-"""The extensions whose syntax `roaml.jani` can read and write; the others may be announced, but not used."""
+"""The extensions whose syntax `roaml.jani` can read and write; the others may be declared, but not used."""

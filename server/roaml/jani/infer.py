@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of expressions and formulas, and the names in them that nobody declares.
+"""The types of expressions and formulas, and the undeclared names in them.
 
-- Codes of findings: `jani-name` and `jani-type`; their places are the origins of the nodes.
+- Codes of findings: `jani-name` and `jani-type`; their positions are the origins of the nodes.
 - A part that was reported has type `UNKNOWN` and causes no further findings.
-- An int is a real, nothing else converts (`types.fits`). Array equality and nested path formulas are let through; most
-  tools know neither.
+- An int can be used as a real; there is no other conversion (`types.fits`). Array equality and nested path formulas are
+  accepted, although most tools support neither.
 """
 
 from __future__ import annotations
@@ -82,7 +82,8 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class TypeScope:
-    """What names mean somewhere. `variables` has constants and parameters, too; `constants` cannot be assigned to."""
+    """The names that are declared somewhere. `variables` also contains constants and parameters; `constants` cannot be
+    assigned to."""
 
     variables: Mapping[str, Type]
     functions: Mapping[str, Function] = field(default_factory=dict)
@@ -91,7 +92,7 @@ class TypeScope:
 
 
 class PathKind(enum.Enum):
-    """In place of a type: something that holds or does not hold on a path."""
+    """Instead of a type: a formula that holds or does not hold on a path."""
 
     PATH = "path"
 
@@ -100,23 +101,23 @@ PATH = PathKind.PATH
 
 Kind: TypeAlias = Type | PathKind
 Bound: TypeAlias = Mapping[str, Type]
-"""The names that an expression binds itself."""
+"""The names that an expression itself declares."""
 
 
 class Inference:
-    """Finds types where `scope` holds, and notes what is wrong."""
+    """Infers types in `scope`, and collects the errors."""
 
     def __init__(self, scope: TypeScope) -> None:
         self.scope = scope
         self.notes = Notes()
 
     def expect(self, node: Formula, found: Kind, target: Type, what: str) -> None:
-        """`node`, of type `found`, stands where a `target` is needed."""
+        """Report `node`, of type `found`, if a `target` is required."""
         if isinstance(found, PathKind):
-            self.notes.type(span_of(node), f"{what} cannot be a formula about paths; put it into `Pmin` or `Pmax`")
+            self.notes.type(span_of(node), f"{what} cannot be a formula about paths; use it in `Pmin` or `Pmax`")
         elif not fits(found, target):
             needed = "true or false" if target is BOOL else "a number" if target is REAL else describe(target)
-            self.notes.type(span_of(node), f"{what} must be {needed}, but this is {describe(found)}")
+            self.notes.type(span_of(node), f"{what} must be {needed}, not {describe(found)}")
 
     # ---------------------------------------------------------------- expressions
 
@@ -150,7 +151,7 @@ class Inference:
                 if isinstance(option_type, OptionType):
                     return option_type.content
                 if not isinstance(option_type, UnknownType):
-                    self.notes.type(span_of(option), f"this must be an option, but it is {describe(option_type)}")
+                    self.notes.type(span_of(option), f"this must be an option, not {describe(option_type)}")
                 return UNKNOWN
             case OptionValue(content):
                 return OptionType((yield self.type(content, bound)))
@@ -212,10 +213,10 @@ class Inference:
                 return never(signature)
 
     def joined(self, node: Node, left: Type, right: Type) -> Type:
-        """The type that both values have, or a finding that there is none."""
+        """The common type of both values, or a finding that there is none."""
         result = join(left, right)
         if result is None:
-            message = f"the two values must be of one type, but they are {describe(left)} and {describe(right)}"
+            message = f"the two values must have one type, but they are {describe(left)} and {describe(right)}"
             self.notes.type(span_of(node), message)
             return UNKNOWN
         return result
@@ -228,7 +229,7 @@ class Inference:
                 if isinstance(array_type, ArrayType):
                     return array_type.element
                 if not isinstance(array_type, UnknownType):
-                    self.notes.type(span_of(array), f"only an array has elements, but this is {describe(array_type)}")
+                    self.notes.type(span_of(array), f"only an array has elements, not {describe(array_type)}")
                 return UNKNOWN
             case ArrayValue(elements):
                 common: Type | None = None
@@ -249,7 +250,7 @@ class Inference:
                 if isinstance(type_, DatatypeType):
                     return self.member(node, type_.name, member)
                 if not isinstance(type_, UnknownType):
-                    self.notes.type(span_of(record), f"only a datatype has members, but this is {describe(type_)}")
+                    self.notes.type(span_of(record), f"only a datatype has members, not {describe(type_)}")
                 return UNKNOWN
             case DatatypeValue(datatype, members):
                 declared = self.scope.datatypes.get(datatype)
@@ -351,7 +352,7 @@ class Inference:
             self.expect(node, kind, BOOL, f"an operand of `{operator}`")
 
     def combine(self, node: Node, operator: Operator, operands: list[tuple[Formula, Kind]]) -> Kind:
-        """The result of an operator on formulas; a logical one may combine statements about a path."""
+        """The result of an operator on formulas; a logical one may combine formulas about a path."""
         states = [(operand, kind) for operand, kind in operands if not isinstance(kind, PathKind)]
         if len(states) == len(operands):
             return self.apply(node, operator, states)
@@ -362,20 +363,20 @@ class Inference:
 
     def filtered(self, function: FilterFunction, values: Formula, kind: Kind) -> Type:
         if isinstance(kind, PathKind):
-            self.expect(values, kind, BOOL, "what a filter looks at")
+            self.expect(values, kind, BOOL, "the argument of a filter")
             return UNKNOWN
         match function:
             case FilterFunction.FORALL | FilterFunction.EXISTS:
-                self.expect(values, kind, BOOL, f"what `{function.value}` looks at")
+                self.expect(values, kind, BOOL, f"the argument of `{function.value}`")
                 return BOOL
             case FilterFunction.COUNT:
-                self.expect(values, kind, BOOL, "what `count` counts")
+                self.expect(values, kind, BOOL, "the argument of `count`")
                 return INT
             case FilterFunction.MIN | FilterFunction.MAX | FilterFunction.SUM | FilterFunction.AVG:
-                self.expect(values, kind, REAL, f"what `{function.value}` looks at")
+                self.expect(values, kind, REAL, f"the argument of `{function.value}`")
                 return REAL
             case FilterFunction.ARGMIN | FilterFunction.ARGMAX:
-                self.expect(values, kind, REAL, f"what `{function.value}` looks at")
+                self.expect(values, kind, REAL, f"the argument of `{function.value}`")
                 return UNKNOWN
             case FilterFunction.VALUES:
                 return kind
@@ -405,7 +406,7 @@ class Inference:
 
 
 def _is_natural(exponent: Formula) -> bool:
-    """Whether an int to the power of `exponent` is certainly an int."""
+    """Whether an int to the power of `exponent` is known to be an int."""
     return isinstance(exponent, Integer) and exponent.value >= 0
 
 

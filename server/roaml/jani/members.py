@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON objects that should have a known shape: what they have, with everything else reported.
+"""JSON objects of a known shape: their members; everything else is reported.
 
-- A member is reported once: if it is there, but not readable as JSON or of the wrong kind, it counts as absent.
-- An unknown member is an error: it may say something without which the model means something else. Only what is known
-  to be for people (`HARMLESS`) is passed over where JANI does not provide for it.
+- A member is reported once: if it cannot be read as JSON or is of the wrong kind, it is treated as missing.
+- An unknown member is an error, because it may change the meaning of the model. Only members that are known to be
+  comments (`HARMLESS`) are skipped where JANI does not define them.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from roaml.json_syntax import JsonArray, JsonBool, JsonError, JsonNumber, JsonOb
 from roaml.text import Span
 
 HARMLESS = frozenset(("comment", "metadata"))
-"""Members that never carry meaning, wherever they stand."""
+"""Members that never have a meaning, wherever they are."""
 
 
 class ObjectShape(NamedTuple):
-    """What an object is, with its article, and the members that it must and may have. `is_open`: whatever else it has
-    is for people, too."""
+    """The kind of an object, with its article, and its required and optional members. `is_open` means that other
+    members are comments."""
 
     what: str
     required: frozenset[str]
@@ -37,7 +37,7 @@ def shape(what: str, required: str, optional: str = "", is_open: bool = False) -
 
 
 class ValueSource:
-    """Where values are read from: the path of the file and the notes on it."""
+    """The source of values: the path of the file and the notes on it."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         self.path = path
@@ -47,10 +47,10 @@ class ValueSource:
         return Origin(self.path, span)
 
     def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
-        """The members of `value`; None (and a finding) if it is no object."""
+        """The members of `value`; `None` (and a finding) if it is not an object."""
         if isinstance(value, JsonObject):
             return Members(value, form, self)
-        self.wrong_kind(value, form.what + " is written as an object `{ }`")
+        self.wrong_kind(value, form.what + " must be an object `{ }`")
         return None
 
     def wrong_kind(self, value: JsonValue | None, expected: str) -> None:
@@ -59,7 +59,7 @@ class ValueSource:
 
 
 class Members:
-    """The members of one object; of two with one name, the last."""
+    """The members of one object; if two have the same name, the last one."""
 
     def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.object = value
@@ -73,7 +73,7 @@ class Members:
             missing.discard(key)
             if key not in form.allowed:
                 if not key and member.start == member.key_end:
-                    continue  # the parser has reported that there is no name
+                    continue  # the parser has reported the missing name
                 if key in HARMLESS:
                     continue
                 place, known = member.key_content_span, sorted(form.allowed)
@@ -97,7 +97,7 @@ class Members:
                 return value
             self.notes.syntax(value.span, f"`{key}` must not be empty")
         else:
-            self.source.wrong_kind(value, f"`{key}` is written as a string")
+            self.source.wrong_kind(value, f"`{key}` must be a string")
         return None
 
     def text(self, key: str) -> str | None:
@@ -105,18 +105,18 @@ class Members:
         return None if value is None else value.value
 
     def comment(self, key: str = "comment") -> str | None:
-        """The member `key`, a string for people, that may be empty."""
+        """The member `key`, a comment string, which may be empty."""
         value = self.values.get(key)
         if isinstance(value, JsonString):
             return value.value
-        self.source.wrong_kind(value, f"`{key}` is written as a string")
+        self.source.wrong_kind(value, f"`{key}` must be a string")
         return None
 
     def flag(self, key: str) -> bool | None:
         value = self.values.get(key)
         if isinstance(value, JsonBool):
             return value.value
-        self.source.wrong_kind(value, f"`{key}` is written as true or false")
+        self.source.wrong_kind(value, f"`{key}` must be true or false")
         return None
 
     def integer(self, key: str) -> int | None:
@@ -124,15 +124,15 @@ class Members:
         if isinstance(value, JsonNumber) and isinstance(value.value, int):
             return value.value
         if isinstance(value, JsonNumber):
-            self.notes.syntax(value.span, f"`{key}` is a whole number")
+            self.notes.syntax(value.span, f"`{key}` must be a whole number")
         else:
-            self.source.wrong_kind(value, f"`{key}` is written as a whole number")
+            self.source.wrong_kind(value, f"`{key}` must be a whole number")
         return None
 
     def items(self, key: str) -> tuple[JsonValue, ...]:
-        """The items of the list `key`; none if there is no such list."""
+        """The items of the list `key`; empty if there is no such list."""
         value = self.values.get(key)
         if isinstance(value, JsonArray):
             return value.items
-        self.source.wrong_kind(value, f"`{key}` is written as a list `[ ]`")
+        self.source.wrong_kind(value, f"`{key}` must be a list `[ ]`")
         return ()

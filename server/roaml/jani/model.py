@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A JANI model: automata that share variables and synchronise on actions.
 
-- Frozen; every part keeps its `origin`, which equality does not look at.
-- A synchronisation names only the automata that take part: the table of automata x vectors, which the JSON form has,
-  is never built.
+- Frozen; every part has an `origin`, which equality ignores.
+- A synchronisation lists only the automata that take part: the table of automata x vectors of the JSON form is never
+  built.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from roaml.jani.types import Type
 
 
 class ModelType(enum.Enum):
-    """What kind of transition system the model describes."""
+    """The kind of transition system that the model describes."""
 
     LTS = "lts"
     DTMC = "dtmc"
@@ -36,7 +36,7 @@ class ModelType(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Metadata(Node):
-    """Who wrote the model, and what for."""
+    """The authors and the purpose of the model."""
 
     version: str | None = None
     author: str | None = None
@@ -47,14 +47,14 @@ class Metadata(Node):
 
 @dataclass(frozen=True, slots=True)
 class Clause(CommentedNode):
-    """An expression where JANI leaves room for a comment: a guard, rate, probability, time progress, restriction."""
+    """An expression for which JANI allows a comment: a guard, rate, probability, time progress, restriction."""
 
     exp: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Constant(CommentedNode):
-    """Without `value`, whoever analyses the model chooses one."""
+    """Without `value`, the user of the model chooses the value."""
 
     name: str
     type: Type
@@ -63,7 +63,8 @@ class Constant(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Variable(CommentedNode):
-    """Without `initial_value`, any value is possible at first. A transient variable falls back to it in each state."""
+    """Without `initial_value`, the variable may initially have any value. A transient variable is reset in each
+    state."""
 
     name: str
     type: Type
@@ -119,7 +120,8 @@ class Location(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Assignment(CommentedNode):
-    """`target := value`. Assignments of one `index` are simultaneous, those of a smaller one come before."""
+    """`target := value`. Assignments with equal `index` are simultaneous, those with a smaller one are executed
+    before."""
 
     target: LValue
     value: Expression
@@ -128,7 +130,7 @@ class Assignment(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Destination(CommentedNode):
-    """Where an edge leads, with which probability (without one: 1), and what it assigns."""
+    """The target of an edge, its probability (the default is 1), and its assignments."""
 
     location: str
     probability: Clause | None = None
@@ -137,7 +139,8 @@ class Destination(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Edge(CommentedNode):
-    """From the location `source` to one of `destinations`. Without `action` it is silent, without `guard` enabled."""
+    """From the location `source` to one of `destinations`. Without `action` it is silent, without `guard` it is
+    enabled."""
 
     source: str
     destinations: tuple[Destination, ...]
@@ -170,9 +173,9 @@ class Sync(CommentedNode):
     """Edges that are taken together.
 
     Attributes:
-        participants: index of a system element, and the action of its edge, in the order of the elements. All
-            other elements stay where they are.
-        result: the action of the whole; None if it is silent.
+        participants: index of a system element, and the action of its edge, in the order of the elements. All other
+            elements keep their locations.
+        result: the action of the whole; `None` if it is silent.
     """
 
     participants: tuple[tuple[int, str], ...]
@@ -181,7 +184,7 @@ class Sync(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class System(CommentedNode):
-    """The parallel composition of `elements`, and all ways in which their actions synchronise."""
+    """The parallel composition of `elements`, with all synchronisations of their actions."""
 
     elements: tuple[Element, ...]
     syncs: tuple[Sync, ...] = ()
@@ -189,7 +192,7 @@ class System(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Model(Node):
-    """A whole model. `features` need not name what its parts require; the writer adds that."""
+    """A whole model. `features` may omit those that its parts require; the writer adds them."""
 
     type: ModelType
     automata: tuple[Automaton, ...]

@@ -13,7 +13,7 @@ from roaml.text import Span, TextEdit
 
 
 class DeclaredNames:
-    """Names of one kind; names declared twice and names that do not exist are reported."""
+    """Names of one kind; reports names that are declared twice or do not exist."""
 
     def __init__(self, what: str, notes: Notes, outer: DeclaredNames | None = None) -> None:
         self.what = what

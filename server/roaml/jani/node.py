@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all parts of a JANI model have in common."""
+"""The base classes of all parts of a JANI model."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import NoReturn, TypeAlias
 from roaml.text import Location
 
 Origin: TypeAlias = Location
-"""A place in the JANI file (filled in by the reader) or in the robot model (by the translator)."""
+"""A position in the JANI file (set by the reader) or in the robot model (set by the translator)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Node:
-    """`origin` is the place that the node exists for; nodes that differ in nothing else are equal."""
+    """`origin` is the place from which the node comes; equality ignores it."""
 
     origin: Origin | None = field(default=None, compare=False, repr=False)
 
@@ -27,5 +27,5 @@ class CommentedNode(Node):
 
 
 def never(value: NoReturn) -> NoReturn:
-    """The last case of a `match` over a closed world; mypy proves that it is not reached."""
+    """The last case of an exhaustive `match`; mypy proves that it is not reached."""
     raise AssertionError(f"unknown kind of node: {value!r}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with a JANI file, collected while it is read."""
+"""The errors in a JANI file, collected while it is read."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NAME = "jani-name"
 TYPE = "jani-type"
 
 _MAX_GUESSES = 20
-"""A file with more unknown names than this gets no suggestions for the rest; each costs a look at all known names."""
+"""The maximum number of suggestions in one file; each requires a comparison with all known names."""
 
 _LONGEST_GUESSED = 200
 
 
 class Notes:
-    """A growing list of findings."""
+    """A list of findings that is filled while the file is read."""
 
     def __init__(self) -> None:
         self._findings: list[Finding] = []
@@ -53,9 +53,9 @@ class Notes:
         fix: bool = True,
         owner: str = "",
     ) -> None:
-        """`name` is none of the `known` ones; the nearest of them is suggested.
+        """Report that `name` is not in `known`, and suggest the nearest of them.
 
-        With `fix`, `span` is the text of the name and nothing else. `owner` is what has no such thing, in words.
+        With `fix`, `span` is exactly the text of the name. `owner` is a phrase for what lacks the name.
         """
         message = f"{owner} has no {what} `{name[:80]}`" if owner else f"there is no {what} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The operators of JANI expressions: an operator *is* its symbol and its function.
 
-This is the only list of them: reader, writer, types, values and the tests read it. The functions take and give Python
+This is the only list of them: reader, writer, types, values and the tests read it. The functions take and return Python
 values (bool, int, float) and raise what Python raises: ZeroDivisionError, OverflowError, ValueError (outside the
-domain); `roaml.jani.semantics` turns that into errors with a place.
+domain); `roaml.jani.semantics` converts these to errors with a position.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ _MAX_BITS = 1 << 16
 
 
 class Signature(enum.Enum):
-    """What an operator takes and gives."""
+    """The types of the operands and the result of an operator."""
 
     LOGICAL = "bool -> bool"
     EQUALITY = "two values of one type -> bool"
     ORDER = "numbers -> bool"
-    ARITHMETIC = "numbers -> int if all are int, else real"
+    ARITHMETIC = "numbers -> int if all are int, otherwise real"
     REAL = "numbers -> real"
     ROUNDING = "number -> int"
 
 
 def remainder(left: float, right: float) -> float:
-    """The Euclidean remainder of `left / right`: 0 <= result < |right|, whatever the signs.
+    """The Euclidean remainder of `left / right`: 0 <= result < |right|, for all signs.
 
-    JANI leaves the sign open; this is what Storm and PRISM compute for positive divisors. (ECMAScript, C and IEEE give
-    the result the sign of `left`.)
+    JANI does not define the sign; Storm and PRISM compute this for positive divisors. (In ECMAScript, C and IEEE, the
+    result has the sign of `left`.)
     """
     return left % abs(right)
 
@@ -57,14 +57,14 @@ def sign(value: float) -> int:
 
 
 class Operator(enum.Enum):
-    """What all operators have.
+    """The base of all operators.
 
     Attributes:
-        symbol: how JANI writes it.
-        function: what it computes.
-        signature: what it takes and gives.
-        feature: the extension of JANI that a file using it must announce.
-        spellings: accepted on reading, never written.
+        symbol: its symbol in JANI.
+        function: computes the result.
+        signature: the types of operands and result.
+        feature: the extension of JANI that a file using it must declare.
+        spellings: other names that are accepted on reading and never written.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class Operator(enum.Enum):
         self.spellings = spellings
 
     def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
-        """Pickled by name: functions without a name cannot be."""
+        """Pickle by name: functions without a name cannot be pickled."""
         return getattr, (type(self), self.name)
 
 
@@ -145,7 +145,7 @@ class BinaryOperator(Operator):
 
 
 class NumberConstant(enum.Enum):
-    """A real number that has a name: `{"constant": "π"}`."""
+    """A named real number: `{"constant": "π"}`."""
 
     E = "e", math.e
     PI = "π", math.pi
@@ -188,7 +188,7 @@ class Distribution(enum.Enum):
     TRIANGULAR = "Triangular", 3
 
     def __init__(self, symbol: str, arity: int, is_discrete: bool = False) -> None:
-        """`arity` is the number of its arguments; a discrete distribution gives an int, another one a real."""
+        """`arity` is the number of arguments; a discrete distribution has int values, others real values."""
         self.symbol = symbol
         self.arity = arity
         self.is_discrete = is_discrete

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Properties: formulas about the states, paths and probabilities of a model.
 
-A `Formula` is an expression or has something in it that no single state can tell: a path, a probability, a reward, a
+A `Formula` is an expression or contains a part that a single state cannot determine: a path, a probability, a reward, a
 set of states. Operators above such a part are `UnaryFormula`, `BinaryFormula` and `ConditionalFormula`, so an
 `Expression` never contains one.
 """
@@ -21,7 +21,7 @@ from roaml.text import Span
 
 
 class FilterFunction(enum.Enum):
-    """What a filter does with the values in its states."""
+    """How a filter combines the values in its states."""
 
     MIN = "min"
     MAX = "max"
@@ -36,7 +36,7 @@ class FilterFunction(enum.Enum):
 
 
 class ProbabilityOperator(enum.Enum):
-    """The least or greatest probability over all resolutions of nondeterminism."""
+    """The minimum or maximum probability over all schedulers."""
 
     PMIN = "Pmin"
     PMAX = "Pmax"
@@ -77,7 +77,7 @@ class BinaryPathOperator(enum.Enum):
 
 
 class StatePredicate(enum.Enum):
-    """States that no expression can describe."""
+    """Predicates on states that no expression can describe."""
 
     INITIAL = "initial"
     DEADLOCK = "deadlock"
@@ -94,7 +94,7 @@ class Accumulation(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Interval(CommentedNode):
-    """Bounds of a number; a missing one is no bound, `None` for `…_exclusive` means false."""
+    """Bounds of a number; `None` is no bound, and `None` for `…_exclusive` is false."""
 
     lower: Expression | None = None
     upper: Expression | None = None
@@ -104,7 +104,7 @@ class Interval(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class RewardBound(CommentedNode):
-    """The accumulated value of `reward` stays in `bounds`."""
+    """The accumulated value of `reward` is within `bounds`."""
 
     reward: Expression
     accumulate: tuple[Accumulation, ...]
@@ -169,7 +169,7 @@ class Quantified(CommentedNode):
 class Expectation(CommentedNode):
     """The expected value of `reward`: accumulated if `accumulate` is given, until `reach` holds or at an instant.
 
-    What is None does not stand in the file.
+    Attributes that are `None` are not in the file.
     """
 
     operator: ExpectationOperator
@@ -183,7 +183,7 @@ class Expectation(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class SteadyState(CommentedNode):
-    """The long-run probability of `value`, if it is a state formula, or else the long-run average reward."""
+    """The long-run probability of `value` if it is a state formula, otherwise the long-run average reward."""
 
     operator: SteadyStateOperator
     value: Formula
@@ -242,7 +242,7 @@ class Property(CommentedNode):
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:
-    """The direct subformulas and subexpressions, those in bounds included."""
+    """The direct subformulas and subexpressions, including those in bounds."""
     match formula:
         case UnaryFormula():
             return (formula.operand,)
@@ -275,7 +275,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def walk(formula: Formula) -> Iterator[Formula]:
-    """`formula` and all that is in it, outer before inner."""
+    """`formula` and all its parts, outer before inner."""
     stack = [formula]
     while stack:
         node = stack.pop()
@@ -284,10 +284,11 @@ def walk(formula: Formula) -> Iterator[Formula]:
 
 
 def identifiers(formula: Formula) -> Iterator[tuple[str, Span]]:
-    """The variables and constants of the model that `formula` uses, with the place of each use, in the order written.
+    """The variables and constants of the model that `formula` uses, with the position of each use, in the order
+    written.
 
-    Names that the formula itself binds (in array constructors and selections) are left out. The place of a name that
-    was not read from a file is empty.
+    Names that the formula itself declares (in array constructors and selections) are left out. The position of a name
+    that was not read from a file is empty.
     """
     stack: list[tuple[Formula, frozenset[str]]] = [(formula, frozenset())]
     while stack:

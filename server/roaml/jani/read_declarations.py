@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> what a model or an automaton declares: actions, constants, variables, datatypes, functions."""
+"""JSON -> the declarations of a model or an automaton: actions, constants, variables, datatypes, functions."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _CLAUSE = shape("an expression with a comment", "exp", "comment")
 
 
 class DeclarationReader(FormulaReader):
-    """Reads the declarations of one file and knows the names in it."""
+    """Reads the declarations of one file and collects their names."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)
@@ -116,7 +116,7 @@ class DeclarationReader(FormulaReader):
         return tuple(functions)
 
     def type(self, members: Members, key: str) -> Type:
-        """The type at `key`; types can be nested as deep as expressions."""
+        """The type at `key`; types can be nested as deeply as expressions."""
         value = members.values.get(key)
         wrappers: list[type[ArrayType | OptionType]] = []
         while isinstance(value, JsonObject) and (kind := value.get("kind")) and isinstance(kind, JsonString):
@@ -182,7 +182,7 @@ class DeclarationReader(FormulaReader):
                 names.use(item)
                 used.append(item.value)
             else:
-                self.wrong_kind(item, f"an entry of `{key}` is written as a string")
+                self.wrong_kind(item, f"an entry of `{key}` must be a string")
         return tuple(used)
 
     def required(self, members: Members, key: str) -> Expression:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """JSON -> expressions and property formulas.
 
-- Where an operand is missing or unreadable there is a `Missing`, and a finding; the rest is read all the same.
-- Names are not looked up and types not checked here, see `roaml.jani.typecheck`.
+- A missing or unreadable operand is a `Missing`, with a finding; the rest is read.
+- Names are not resolved and types not checked here, see `roaml.jani.typecheck`.
 - The origin of a name (and of the derivative of one) is the text of the name, without quotes; that of everything else
   is the whole JSON value.
 """
@@ -89,7 +89,7 @@ class FormulaReader(ValueSource):
         return run(self._formula(value))
 
     def lvalue(self, value: JsonValue) -> LValue:
-        """`value` as something that can be assigned to."""
+        """`value` as the target of an assignment."""
         target = self.expression(value)
         if isinstance(target, LValue) and isinstance(_root(target), (Name, Missing)):
             return target
@@ -102,7 +102,7 @@ class FormulaReader(ValueSource):
         formula: Formula = yield self._formula(value)
         if not isinstance(formula, ProperFormula):
             return formula
-        self.notes.syntax(value.span, "this can only stand in a property, not in an expression")
+        self.notes.syntax(value.span, "this is only allowed in a property, not in an expression")
         return Missing(origin=formula.origin)
 
     def _formula(self, value: JsonValue) -> Steps[Formula]:
@@ -119,7 +119,7 @@ class FormulaReader(ValueSource):
                 formula: Formula = yield self._object(value)
                 return formula
             case _:
-                self.wrong_kind(value, "an expression is written as a number, true, false, a name or an object `{ }`")
+                self.wrong_kind(value, "an expression must be a number, true, false, a name or an object `{ }`")
                 return Missing(origin=self.origin(value.span))
 
     def _number(self, value: JsonNumber) -> Integer | Real | Missing:
@@ -144,7 +144,7 @@ class FormulaReader(ValueSource):
         if isinstance(op, JsonString):
             self._unknown_operator(op)
         elif op is not None:
-            self.wrong_kind(op, "`op` is written as a string")
+            self.wrong_kind(op, "`op` must be a string")
         elif not any(member.key == "op" for member in value.members):
             self.notes.syntax(Span(value.start, value.start + 1), "an expression needs `op`")
         return Missing(origin=self.origin(value.span))
@@ -189,7 +189,7 @@ class FormulaReader(ValueSource):
     def choice(self, value: JsonValue | None, what: str, choices: type[E]) -> E | None:
         """The member of `choices` that `value` names."""
         if not isinstance(value, JsonString):
-            self.wrong_kind(value, f"a {what} is written as a string")
+            self.wrong_kind(value, f"a {what} must be a string")
             return None
         try:
             return choices(value.value)
@@ -218,7 +218,7 @@ class FormulaReader(ValueSource):
             return Missing(origin=members.origin)
         distribution = DISTRIBUTIONS[name.value]
         if "args" in members.values and len(arguments) != distribution.arity:
-            message = f"`{name.value}` has {distribution.arity} arguments, not {len(arguments)}"
+            message = f"`{name.value}` needs {distribution.arity} arguments, not {len(arguments)}"
             self.notes.syntax(members.values["args"].span, message)
         return Sample(distribution, arguments, comment=members.comment(), origin=members.origin)
 
@@ -438,7 +438,7 @@ def _root(target: LValue) -> Expression:
 
 
 class _Form(NamedTuple):
-    """How the objects with a certain `op` look, and what is made of them."""
+    """The shape of the objects with a certain `op`, and the node that is made of them."""
 
     shape: ObjectShape
     build: Callable[[FormulaReader, Members, str], Steps[Formula]]
@@ -481,7 +481,7 @@ _SPELLINGS = {
     "gt": ">",
     "mod": "%",
 }
-"""What operators of JANI are called elsewhere, in lower case."""
+"""Names of JANI's operators in other languages, in lower case."""
 
 _FORMS: dict[str, _Form] = {
     **_forms(UNARY_OPERATORS, FormulaReader._unary, "exp"),

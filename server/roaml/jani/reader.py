@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> JANI models and property lists, with everything that is wrong with them.
+"""JSON -> JANI models and property lists, with all errors in them.
 
-- Never fails: what cannot be read is reported and left out, the rest is read all the same. A model that was read
-  without errors can be written, checked and run.
-- Codes of findings: `jani-syntax` (not of the shape that JANI has), `jani-name` (undefined or declared twice),
-  `jani-type`. What JSON itself is wrong about was reported by `roaml.json_syntax.parse` and is not reported again.
-- Every origin is a place in the file.
+- Never fails: parts that cannot be read are reported and left out, the rest is read. A model that was read without
+  errors can be written, checked and run.
+- Codes of findings: `jani-syntax` (not of the shape that JANI defines), `jani-name` (undefined or declared twice),
+  `jani-type`. Errors in the JSON itself were reported by `roaml.json_syntax.parse` and are not reported again.
+- Every origin is a position in the file.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from roaml.json_syntax import JsonNull, JsonObject, JsonString, JsonValue
 
 
 def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Finding, ...]]:
-    """The model in `value`, the JSON of the file `path`; None if it is no object at all."""
+    """The model in `value`, the JSON of the file `path`; `None` if it is not an object."""
     notes = Notes()
     model = _ModelReader(path, notes).model(value)
     if model is None:
@@ -51,13 +51,13 @@ def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Fi
 def read_properties(value: JsonValue, path: str = "") -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
     """The properties in `value`, the JSON of a property file or of a model: an object with a list `properties`.
 
-    Its other members are ignored. Names and types are not checked, since the variables stand elsewhere; that is what
-    `typecheck.check_property` and `properties.identifiers` are for.
+    Its other members are ignored. Names and types are not checked, since the variables are declared elsewhere; use
+    `typecheck.check_property` and `properties.identifiers` for that.
     """
     notes = Notes()
     reader = _ModelReader(path, notes)
     if not isinstance(value, JsonObject):
-        reader.wrong_kind(value, "a property file is written as an object `{ }`")
+        reader.wrong_kind(value, "a property file must be an object `{ }`")
         return (), notes.findings
     wanted = JsonObject(value.start, value.end, tuple(m for m in value.members if m.key == "properties"))
     return reader.properties(Members(wanted, _PROPERTY_FILE, reader)), notes.findings
@@ -85,7 +85,7 @@ _PROPERTY = shape("a property", "name expression", "comment")
 
 
 class _ModelReader(DeclarationReader):
-    """Reads one file. Everything is read after what it can refer to, so names can be looked up at once."""
+    """Reads one file. Declarations are read before the parts that can refer to them, so names are resolved at once."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)
@@ -119,18 +119,20 @@ class _ModelReader(DeclarationReader):
     def version(self, members: Members) -> None:
         version = members.integer("jani-version")
         if version is not None and version != 1:
-            self.notes.syntax(members.values["jani-version"].span, "only version 1 of JANI is known", Severity.WARNING)
+            self.notes.syntax(
+                members.values["jani-version"].span, "only version 1 of JANI is supported", Severity.WARNING
+            )
 
     def features(self, members: Members) -> tuple[str, ...]:
         features: list[str] = []
         known = {feature.value: feature for feature in Feature}
         for item in members.items("features"):
             if not isinstance(item, JsonString):
-                self.wrong_kind(item, "a feature is written as a string")
+                self.wrong_kind(item, "a feature must be a string")
                 continue
             name = item.value
             if name in known and known[name] not in SUPPORTED:
-                self.notes.syntax(item.span, f"what the feature `{name}` adds to JANI is not read", Severity.WARNING)
+                self.notes.syntax(item.span, f"the feature `{name}` of JANI is not supported", Severity.WARNING)
             elif name not in known and not name.startswith("x-"):
                 self.notes.unknown("feature", name, item.content_span, known, code=SYNTAX, severity=Severity.WARNING)
             if name not in features:
@@ -252,7 +254,7 @@ class _ModelReader(DeclarationReader):
                     self.actions.use(item)
                     participants.append((index, item.value))
                 elif not isinstance(item, JsonNull):
-                    self.wrong_kind(item, "an action is written as a string, or null")
+                    self.wrong_kind(item, "an action must be a string or null")
             if "synchronise" in members.values and len(vector) != size:
                 message = f"the vector has {len(vector)} entries, but the system has {size} elements"
                 self.notes.syntax(members.values["synchronise"].span, message)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changing formulas and expressions from the leaves up, however deep they are."""
+"""Transform formulas and expressions from the leaves up, at any depth."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ N = TypeVar("N", bound=Node)
 
 
 def rewrite(node: N, change: Callable[[Node], Node]) -> N:
-    """`node` with `change` applied to everything in it, inner before outer, and to itself.
+    """`node` with `change` applied to all its parts, inner before outer, and to itself.
 
-    `change` must give something of a kind that may stand in the same place. What does not change is shared.
+    `change` must return a node that is allowed in the same place. Unchanged parts are shared.
     """
     result: N = run(_rewritten(node, change))
     return result

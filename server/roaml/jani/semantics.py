@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The value of an expression in a state.
 
-- Defines the meaning; engines that are made for speed are tested against it.
-- `∧`, `∨`, `⇒` and `ite` evaluate only what they need, from left to right, so that `i < n ∧ a[i] = 0` is safe.
+- Defines the meaning; the faster engines are tested against it.
+- `∧`, `∨`, `⇒` and `ite` evaluate only the operands that they need, from left to right, so that `i < n ∧ a[i] = 0` is
+  safe.
 - Ints are exact, reals are IEEE doubles. `/` divides reals, `%` is the Euclidean remainder, `log` takes the base on its
-  right, `floor` and `ceil` give ints (`roaml.jani.operators`).
-- What has no value is an `EvaluationError` with its place: division by zero, an index outside of its array, an
-  undefined variable, a value of the wrong type, a random or nondeterministic choice.
+  right, `floor` and `ceil` return ints (`roaml.jani.operators`).
+- An expression without a value is an `EvaluationError` with its position: division by zero, an index outside of its
+  array, an undefined variable, a value of the wrong type, a random or nondeterministic choice.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ from roaml.jani.operators import BinaryOperator, Operator, Signature
 
 MAX_ARRAY_LENGTH = 1_000_000
 MAX_CALLS = 10_000
-"""Function calls may be nested this deep; more is taken for a recursion without end."""
+"""The maximum depth of function calls; a deeper recursion is treated as endless."""
 
 _LARGE = 1e21
 
@@ -61,7 +62,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Some:
-    """An option that is not empty; the empty one is None."""
+    """An option with a value; the empty option is `None`."""
 
     content: Value
 
@@ -70,7 +71,7 @@ Value: TypeAlias = "bool | int | float | tuple[Value, ...] | Record | Some | Non
 
 
 class EvaluationError(Exception):
-    """An expression has no value. `origin` is the place of the part that has none, as far as it is known."""
+    """An expression has no value. `origin` is the position of the part that has none, if known."""
 
     def __init__(self, message: str, origin: Origin | None) -> None:
         super().__init__(message)
@@ -88,7 +89,7 @@ def evaluate(
     """The value of `expression` where variables and constants have the given values.
 
     Raises:
-        EvaluationError: it has none.
+        EvaluationError: the expression has no value.
     """
     return run(_Evaluation(variables, functions or {}).value(expression, {}))
 
@@ -98,7 +99,7 @@ _DECIDED_BY_LEFT = {
     BinaryOperator.OR: (True, True),
     BinaryOperator.IMPLIES: (False, True),
 }
-"""For each logical operator: the left value that makes the right one irrelevant, and the result then."""
+"""For each logical operator: the left value that decides the result, and the result."""
 
 
 class _Evaluation:
@@ -131,13 +132,13 @@ class _Evaluation:
                 chosen: Value = yield self.value(then if holds else otherwise, bound)
                 return chosen
             case Sample():
-                raise EvaluationError("a random value is not known beforehand", node.origin)
+                raise EvaluationError("a random value is not known in advance", node.origin)
             case Selection():
-                raise EvaluationError("a nondeterministic choice has no value of its own", node.origin)
+                raise EvaluationError("a nondeterministic choice has no single value", node.origin)
             case Derivative(variable):
                 raise EvaluationError(f"the derivative of `{variable}` is not known in a state", node.origin)
             case Missing():
-                raise EvaluationError("there is no expression here", node.origin)
+                raise EvaluationError("the expression is missing", node.origin)
             case Call():
                 returned: Value = yield self.call(node, bound)
                 return returned
@@ -157,7 +158,7 @@ class _Evaluation:
         | EmptyOption,
         bound: Mapping[str, Value],
     ) -> Steps[Value]:
-        """Arrays, datatypes and options."""
+        """The value of an operation on arrays, datatypes and options."""
         match node:
             case ArrayAccess(array, index):
                 elements: Value = yield self.value(array, bound)
@@ -220,7 +221,7 @@ class _Evaluation:
             raise EvaluationError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
         self.calls += 1
         if self.calls > MAX_CALLS:
-            raise EvaluationError(f"the calls of `{node.function}` do not end", node.origin)
+            raise EvaluationError(f"the calls of `{node.function}` do not terminate", node.origin)
         arguments: dict[str, Value] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):
             arguments[parameter.name] = yield self.value(argument, bound)
@@ -264,7 +265,7 @@ def _integer(value: Value, node: Expression) -> int:
 
 
 def _kind(value: Value) -> str:
-    """Values of different kinds are not compared."""
+    """The kind of a value; values of different kinds are not comparable."""
     match value:
         case bool():
             return "bool"
@@ -279,7 +280,7 @@ def _kind(value: Value) -> str:
 
 
 def _shown(value: Value) -> str:
-    """`value` in a message."""
+    """`value` as text for a message."""
     match value:
         case bool():
             return "true" if value else "false"

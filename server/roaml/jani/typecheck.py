@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names and types in all expressions of a model, a property or a single expression.
 
-- Codes of findings: `jani-name` and `jani-type`; their places are the origins of the parts of the model.
-- Needs nothing but the model, so what the translator makes can be checked like what the reader reads.
+- Codes of findings: `jani-name` and `jani-type`; their positions are the origins of the parts of the model.
+- Requires only the model, so the output of the translator is checked like that of the reader.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from roaml.jani.types import (
 
 
 def model_scope(model: Model) -> TypeScope:
-    """What is known everywhere in `model`, its properties included."""
+    """The names that are declared everywhere in `model`, including its properties."""
     constants = {constant.name: constant.type for constant in model.constants}
     return TypeScope(
         {**constants, **{variable.name: variable.type for variable in model.variables}},
@@ -45,7 +45,7 @@ def model_scope(model: Model) -> TypeScope:
 
 
 def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
-    """What is known in `automaton` of a model with `scope`."""
+    """The names that are declared in `automaton` of a model with `scope`."""
     local = {variable.name: variable.type for variable in automaton.variables}
     functions = {function.name: function for function in automaton.functions}
     return replace(
@@ -57,21 +57,21 @@ def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
 
 
 def expression_type(expression: Expression, scope: TypeScope) -> tuple[Type, tuple[Finding, ...]]:
-    """The type of `expression`, and all that is wrong in it."""
+    """The type of `expression`, and the errors in it."""
     checker = _Checker(scope)
     type_ = run(checker.type(expression, {}))
     return type_, checker.notes.findings
 
 
 def check_property(property_: Property, scope: TypeScope) -> tuple[Finding, ...]:
-    """All names and types in `property_` that are wrong where `scope` holds."""
+    """The errors in names and types of `property_` in `scope`."""
     checker = _Checker(scope)
     checker.property(property_)
     return checker.notes.findings
 
 
 def check_model(model: Model) -> tuple[Finding, ...]:
-    """All names and types in the expressions of `model` that are wrong."""
+    """The errors in names and types of the expressions of `model`."""
     scope = model_scope(model)
     checker = _Checker(scope)
     for constant in model.constants:
@@ -91,7 +91,7 @@ def check_model(model: Model) -> tuple[Finding, ...]:
 
 
 class _Checker(Inference):
-    """Goes through a model."""
+    """Checks a model."""
 
     def automaton(self, automaton: Automaton, scope: TypeScope) -> None:
         self.scope = automaton_scope(scope, automaton)
@@ -136,11 +136,11 @@ class _Checker(Inference):
             parameters = {parameter.name: parameter.type for parameter in function.parameters}
             found = run(self.type(function.body, parameters))
             if not fits(found, function.type):
-                message = f"`{function.name}` gives {describe(function.type)}, but this is {describe(found)}"
+                message = f"`{function.name}` must return {describe(function.type)}, not {describe(found)}"
                 self.notes.type(span_of(function.body), message)
 
     def declared(self, type_: Type, declaration: Node) -> None:
-        """The type of a declaration: its datatypes exist, its bounds are numbers."""
+        """Check the type of a declaration: its datatypes exist, its bounds are numbers."""
         while isinstance(type_, (ArrayType, OptionType)):
             type_ = type_.element if isinstance(type_, ArrayType) else type_.content
         if isinstance(type_, DatatypeType) and type_.name and type_.name not in self.scope.datatypes:
@@ -150,14 +150,14 @@ class _Checker(Inference):
                 self.store(bound, type_.base, "a bound of this type")
 
     def store(self, value: Expression | None, target: Type, what: str) -> None:
-        """`value` becomes the value of something that has type `target`."""
+        """Check that `value` can be stored in something of type `target`."""
         if value is None:
             return
         found = run(self.type(value, {}))
         if not fits(found, target):
             is_rounding = (value_type(target), value_type(found)) == (INT, REAL)
-            advice = "; `floor` or `ceil` make it an int" if is_rounding else ""
-            self.notes.type(span_of(value), f"{what} is {describe(target)}, but this is {describe(found)}{advice}")
+            advice = "; use `floor` or `ceil` for an int" if is_rounding else ""
+            self.notes.type(span_of(value), f"{what} must be {describe(target)}, not {describe(found)}{advice}")
 
     def clause(self, clause: Clause | None, target: Type, what: str) -> None:
         if clause is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of JANI and what fits where."""
+"""The types of JANI and their compatibility."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class BasicType(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class BoundedType:
-    """`base` is int or real; a missing bound is no bound."""
+    """`base` is int or real; `None` is no bound."""
 
     base: BasicType
     lower: Expression | None = None
@@ -42,14 +42,14 @@ class DatatypeType:
 
 @dataclass(frozen=True, slots=True)
 class OptionType:
-    """A value of `content`, or nothing."""
+    """A value of type `content`, or no value."""
 
     content: Type
 
 
 @dataclass(frozen=True, slots=True)
 class UnknownType:
-    """The type of something already reported, or that has several: fits everywhere."""
+    """The type of something that is already reported, or that has several types: fits everywhere."""
 
 
 Type: TypeAlias = BasicType | BoundedType | ArrayType | DatatypeType | OptionType | UnknownType
@@ -61,14 +61,15 @@ UNKNOWN = UnknownType()
 
 
 def value_type(type_: Type) -> Type:
-    """The type of the values that a variable of `type_` has: without bounds; those of clocks are reals."""
+    """The type of the values of a variable of `type_`: without bounds; those of clocks are reals."""
     if isinstance(type_, BoundedType):
         return type_.base
     return REAL if type_ in (BasicType.CLOCK, BasicType.CONTINUOUS) else type_
 
 
 def fits(type_: Type, target: Type) -> bool:
-    """Whether a value of `type_` may be stored where `target` is declared. An int is a real, nothing else converts."""
+    """Whether a value of `type_` may be stored where `target` is declared. An int fits a real; nothing else
+    converts."""
     while True:
         type_, target = value_type(type_), value_type(target)
         match type_, target:
@@ -85,9 +86,9 @@ def fits(type_: Type, target: Type) -> bool:
 
 
 def join(left: Type, right: Type) -> Type | None:
-    """The least type that values of both have; None if there is none."""
+    """The smallest type that contains the values of both; `None` if there is none."""
     if left is right:
-        return value_type(left)  # as the elements of long arrays have
+        return value_type(left)  # the case of elements of long arrays
     left, right = value_type(left), value_type(right)
     if isinstance(left, UnknownType) or isinstance(right, UnknownType):
         return UNKNOWN
@@ -101,7 +102,7 @@ def is_number(type_: Type) -> bool:
 
 
 def describe(type_: Type) -> str:
-    """The type in words, with its article: `an int`, `an array of real`."""
+    """A phrase for the type, with its article: `an int`, `an array of real`."""
     prefix = ""
     while True:
         match type_:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions and property formulas -> compact JSON.
 
-- Collects the features that a file with them must announce.
+- Collects the features that a file with them must declare.
 - A formula read from a file is written as the same JSON value, except that operators have their JANI spelling.
 """
 
@@ -61,13 +61,13 @@ from roaml.jani.properties import (
 from roaml.json_syntax import quote
 
 Part: TypeAlias = "str | Formula"
-"""A piece of JSON: text, or a formula that is still to be written."""
+"""A piece of JSON: text, or a formula that is not written yet."""
 
 _DERIVED_PATHS = {UnaryPathOperator.FINALLY, UnaryPathOperator.GLOBALLY, BinaryPathOperator.RELEASE}
 
 
 class FormulaWriter:
-    """Writes formulas; `features` are those that what was written so far needs."""
+    """Writes formulas; `features` are those required by the formulas written so far."""
 
     def __init__(self) -> None:
         self.features: set[Feature] = set()
@@ -76,7 +76,7 @@ class FormulaWriter:
         """`formula` as JSON.
 
         Raises:
-            ValueError: something in it is missing or not finite, so that JSON cannot say it.
+            ValueError: a part is missing or not finite, so that JSON cannot express it.
         """
         done: list[str] = []
         stack: list[Part] = [formula]
@@ -89,7 +89,7 @@ class FormulaWriter:
         return "".join(done)
 
     def parts(self, node: Formula) -> list[Part]:
-        """`node` as JSON in which its operands are still to be written."""
+        """`node` as JSON in which its operands are not written yet."""
         match node:
             case Name(identifier):
                 return [quote(identifier)]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A JANI model -> JSON text.
 
-- The same model gives the same bytes, always.
-- What is written is read back as an equal model: numbers keep their value and their being int or real.
-- Features are announced as the parts of the model need them, beside those that the model names itself.
-- The synchronisation table, automata x vectors in JSON, is streamed: one line of it is in memory at a time.
+- The same model always gives the same bytes.
+- The output is read back as an equal model: numbers keep their value and their type (int or real).
+- Features are declared as the parts of the model require them, in addition to those that the model itself declares.
+- The synchronisation table, automata x vectors in JSON, is streamed: only one line of it is in memory at a time.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from roaml.json_syntax import indented, quote
 
 
 def write(model: Model, indent: int | None = None) -> Iterator[str]:
-    """The JSON text of `model` in pieces: compact, or with `indent` spaces a level for people.
+    """The JSON text of `model` in pieces: compact, or with `indent` spaces per level.
 
     Raises:
         ValueError: the model has parts that a reader could not read, see `FormulaWriter.text`.
@@ -62,7 +62,7 @@ class _Writer:
     def model(self, model: Model) -> Iterator[str]:
         """The chunks; none begins or ends inside a token or between the brackets of an empty list."""
         declarations = self.declarations(model)
-        # Written first, because the features that they need stand before them.
+        # Written first, because the features that they require precede them in the file.
         automata = [self.automaton(automaton) for automaton in model.automata]
         properties = _list(map(self.property, model.properties))
         yield f'{{"jani-version":1,"name":{quote(model.name)},"type":"{model.type.value}",'
@@ -80,7 +80,7 @@ class _Writer:
         yield f',"properties":{properties}}}'
 
     def declarations(self, model: Model) -> str:
-        """All that stands before the automata."""
+        """The part before the automata."""
         members = _object(
             datatypes=_unless_empty(map(self.datatype, model.datatypes)),
             variables=_list(map(self.variable, model.variables)),
@@ -92,7 +92,7 @@ class _Writer:
         return members[1:-1]
 
     def features(self, model: Model) -> list[str]:
-        """Those that the model names, then those that the parts written so far need besides."""
+        """The features that the model declares, then those that the parts written so far require."""
         if model.functions or any(automaton.functions for automaton in model.automata):
             self.formulas.features.add(Feature.FUNCTIONS)
         if model.datatypes:
@@ -158,7 +158,7 @@ class _Writer:
                 return never(type_)
 
     def nested(self, type_: ArrayType | OptionType) -> str:
-        """Types can be nested as deep as expressions."""
+        """The text of a type; types can be nested as deeply as expressions."""
         inner: Type = type_
         depth = 0
         text = ""
@@ -265,7 +265,7 @@ def _element(element: Element) -> str:
 
 
 def _sync(sync: Sync, size: int) -> str:
-    """A line of the table: `null` for every element that takes no part."""
+    """A line of the table: `null` for every element that does not take part."""
     parts: list[str] = []
     done = 0
     for index, action in sorted(sync.participants):
@@ -284,7 +284,7 @@ def _text(text: str | None) -> str | None:
 
 
 def _object(**members: str | None) -> str:
-    """A JSON object; `a_b` becomes the key `a-b`, members that are None are left out."""
+    """A JSON object; `a_b` becomes the key `a-b`, members that are `None` are left out."""
     return (
         "{" + ",".join(f'"{key.replace("_", "-")}":{text}' for key, text in members.items() if text is not None) + "}"
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerant JSON: any text gives a tree in which every value and every name knows its place.
+"""Tolerant JSON: any text gives a tree in which every value and every name has a position.
 
-Knows RFC 8259 only; what the members mean is stated by the packages above.
+Implements RFC 8259 only; the packages above define the meaning of the members.
 """
 
 from roaml.json_syntax.layout import indented

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compact JSON -> JSON for people, as a stream: nothing but the current nesting depth is kept in memory."""
+"""Compact JSON -> indented JSON, as a stream: only the current nesting depth is kept in memory."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[^\[\]{},:"]+|[\[{][\]}]?|[\]},:]')
 
 
 def indented(chunks: Iterable[str], indent: int) -> Iterator[str]:
-    """The same JSON with one member or item a line, `indent` spaces a level, laid out as `json.dumps(indent=...)` does.
+    """The same JSON with one member or item per line and `indent` spaces per level, laid out as
+    `json.dumps(indent=...)` does.
 
-    `chunks` are compact JSON without white space between the tokens, split between tokens and not between two brackets
-    that hold nothing.
+    `chunks` are compact JSON without white space between the tokens, split between tokens and not inside empty
+    brackets.
     """
     depth = 0
     for chunk in chunks:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text -> JSON tree, whatever the text.
+"""Text -> JSON tree, for any text.
 
-- Never fails and takes time linear in the text: every mistake becomes a finding (`json-syntax`, or
-  `duplicate-json-key`), the tree goes on behind it. A text without `json-syntax` findings is JSON as RFC 8259 has it.
-- Recovers the way people type: a string whose quote is still open ends with its line; a name without value stays a
-  member without value; what other notations allow (comments, single quotes, bare words) is understood and reported.
+- Never fails and takes time linear in the text: every error becomes a finding (`json-syntax`, or `duplicate-json-key`),
+  and parsing continues after it. A text without `json-syntax` findings is valid JSON (RFC 8259).
+- Recovers for texts that are being typed: a string with an open quote ends with its line; a name without a value is a
+  member without a value; the syntax of other notations (comments, single quotes, bare words) is read and reported.
 - Does not recurse.
 """
 
@@ -30,14 +30,14 @@ from roaml.json_syntax.values import (
 from roaml.text import Span, TextEdit
 
 MAX_DEPTH = 1000
-"""A text with deeper nested brackets is not read beyond them."""
+"""The maximum depth of nested brackets; deeper text is not read."""
 
 MAX_FINDINGS = 100
-"""A text with more mistakes than this is hardly JSON; it is not read further."""
+"""The maximum number of errors; a text with more is unlikely to be JSON and not read further."""
 
 
 def parse(text: str) -> tuple[JsonValue, tuple[Finding, ...]]:
-    """The value in `text`, and all that is wrong with its form, in the order of the text."""
+    """The value in `text`, and its syntax errors, in the order of the text."""
     parser = _Parser(text)
     value = parser.run()
     return value, tuple(sorted(parser.findings, key=lambda finding: finding.span))
@@ -54,13 +54,13 @@ _TOKEN = re.compile(
     r"|([\]}])"
     r")?"
 )
-"""An ordinary token with the comma before it. Matches everywhere; `lastindex` tells what was found."""
+"""An ordinary token with the comma before it. Always matches; `lastindex` identifies the token."""
 _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7, 8, 9
 
 _COLON = re.compile(rf"{_SPACE}:")
 _ASSIGNMENT = re.compile(r"=>?")
 _NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
-"""What a key that is never closed goes on with."""
+"""The text after a key that is never closed."""
 _STRING_BODY = {
     '"': re.compile(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
     "'": re.compile(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
@@ -68,19 +68,19 @@ _STRING_BODY = {
 _DELIMITERS = " \t,]}\\"
 _WORD = re.compile(r"""(?:(?!//|/\*)[^,:;\[\]{}"\n\r])+""")
 _INTERLUDES = (
-    (re.compile(rf",(?:{_SPACE},)*"), "one comma is enough", ""),
-    (re.compile(r"//[^\n\r]*|/\*(?:[^*]|\*(?!/))*(?:\*/)?|#[^\n\r]*"), "JSON has no comments", ""),
-    (re.compile(r"[^\S \t\n\r]+|\ufeff+"), "this is no white space in JSON", " "),
-    (re.compile(";"), "values are separated by commas", ","),
+    (re.compile(rf",(?:{_SPACE},)*"), "surplus comma; remove it", ""),
+    (re.compile(r"//[^\n\r]*|/\*(?:[^*]|\*(?!/))*(?:\*/)?|#[^\n\r]*"), "JSON does not support comments", ""),
+    (re.compile(r"[^\S \t\n\r]+|\ufeff+"), "this character is not white space in JSON", " "),
+    (re.compile(";"), "values must be separated by commas", ","),
 )
-"""What may be stepped over: pattern, message, what to write instead."""
+"""Text that is skipped: pattern, message, replacement."""
 _SLOPPY_NUMBER = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
 _FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "None": "null", "NULL": "null"}
 _NO_NUMBERS = {"nan", "infinity", "inf"}
 
 
 class _Key(NamedTuple):
-    """A name that waits for its value. `colon` is false until its colon has been seen."""
+    """A name that waits for its value. `colon` is false until its colon has been read."""
 
     text: str
     start: int
@@ -102,7 +102,7 @@ class _Bracket(NamedTuple):
 
 
 class _HopelessError(Exception):
-    """Unwinds when there is no point in reading on; never leaves this module."""
+    """Ends the parsing of a hopeless text; never leaves this module."""
 
 
 class _Parser:
@@ -112,10 +112,10 @@ class _Parser:
         root: the value of the whole text, once it is complete.
         start, is_object, parts: the innermost open bracket and the values or members in it (without one: the text).
         key: the name whose value comes next.
-        wants_comma: whether something complete stands before, so that a comma must separate what follows.
+        wants_comma: whether a complete value precedes, so that a comma must separate what follows.
         stack: the brackets around the innermost one.
-        comma: offset of a comma that stood before something unusual, or -1.
-        hopeless: whether reading has stopped; what was open is then closed without further findings.
+        comma: offset of a comma before something unusual, or -1.
+        hopeless: whether parsing has stopped; open brackets are then closed without further findings.
     """
 
     def __init__(self, text: str) -> None:
@@ -137,13 +137,13 @@ class _Parser:
             if rest := self.text[end:].strip(" \t\n\r"):
                 start = self.text.index(rest, end)
                 span = Span(start, start + len(rest))
-                self.report(span, "nothing may follow the value", _removal(span))
+                self.report(span, "unexpected text after the value", _removal(span))
         except _HopelessError:
             self.close_all()
         return self.root or JsonError(0, len(self.text))
 
     def read(self) -> int:
-        """Read until there is a value; the offset behind it."""
+        """Read up to the end of one value; return the offset after it."""
         text, match = self.text, _TOKEN.match
         at = 0
         while self.root is None and (token := match(text, at)):
@@ -174,13 +174,13 @@ class _Parser:
     # ---------------------------------------------------------------- structure
 
     def value(self, value: JsonValue, comma: int) -> None:
-        """`value` stands here, behind a comma or not (`comma` < 0)."""
+        """Read `value`, after a comma or not (`comma` < 0)."""
         if (comma >= 0) is not self.wants_comma:
             self.odd_comma(value.start, comma)
         key = self.key
         if key is not None:
             if not key.colon:
-                # Of a key that is never closed, the colon is in it.
+                # The colon after a key that is never closed is part of the key.
                 closed = self.text[key.end - 1] == self.text[key.start]
                 fix = _insertion(key.end, ":") if closed else None
                 self.report(Span(key.start, key.end), f"`:` must follow `{key.text[:40]}`", fix)
@@ -204,9 +204,9 @@ class _Parser:
         return end
 
     def name(self, text: str, start: int, end: int, comma: int, quotes: tuple[int, int] = (1, 1)) -> None:
-        """A string, or what was meant as one, stands before a colon."""
+        """Read a string, or what was meant as one, before a colon."""
         if not self.is_object:
-            self.report(Span(start, end), "a name with a value stands in `{ }`, not here")
+            self.report(Span(start, end), "a name with a value is only allowed in `{ }`")
             self.value(JsonString(start, end, text), comma)
             return
         if self.key is not None:
@@ -223,7 +223,7 @@ class _Parser:
             self.report(Span(at, at + 1), "a name is missing before this bracket")
             self.key = _Key("", at, at, (0, 0))
         if len(self.stack) >= MAX_DEPTH:
-            self.report(Span(at, at + 1), f"nested too deeply: more than {MAX_DEPTH} brackets are open")
+            self.report(Span(at, at + 1), f"nested too deeply: at most {MAX_DEPTH} brackets may be open")
             self.give_up()
         self.stack.append(_Bracket(self.start, self.is_object, self.parts, self.key))
         self.start, self.is_object, self.parts = at, self.text[at] == "{", []
@@ -234,7 +234,9 @@ class _Parser:
         if self.key is not None:
             self.key_without_value()
         elif comma >= 0:
-            self.report(Span(comma, comma + 1), f"no comma before `{bracket}`", _removal(Span(comma, comma + 1)))
+            self.report(
+                Span(comma, comma + 1), f"unexpected comma before `{bracket}`", _removal(Span(comma, comma + 1))
+            )
         is_object = bracket == "}"
         if not self.stack or (is_object is not self.is_object and is_object not in self.outer_kinds()):
             self.report(Span(at, at + 1), f"`{bracket}` closes nothing", _removal(Span(at, at + 1)))
@@ -248,11 +250,11 @@ class _Parser:
         self.leave(at + 1)
 
     def outer_kinds(self) -> Iterator[bool]:
-        """Whether the brackets around the innermost one are objects. The first frame is the text, not a bracket."""
+        """Whether each bracket around the innermost one is an object. The first frame is the text, not a bracket."""
         return (bracket.is_object for bracket in self.stack[1:])
 
     def leave(self, end: int) -> None:
-        """The innermost bracket ends at `end`; it becomes a value of the one around it."""
+        """End the innermost bracket at `end`; it becomes a value of the one around it."""
         value: JsonValue
         if self.is_object:
             value = JsonObject(self.start, end, tuple(self.parts))
@@ -265,7 +267,7 @@ class _Parser:
         self.value(value, -1)
 
     def close_all(self) -> str:
-        """Close what is still open at the end of the text; the brackets that were missing."""
+        """Close what is open at the end of the text; return the missing brackets."""
         missing = ""
         while self.stack:
             if self.key is not None:
@@ -275,7 +277,7 @@ class _Parser:
         return missing
 
     def end_before(self, at: int) -> int:
-        """Where the last thing before `at` ends."""
+        """The end of the last thing before `at`."""
         while at and self.text[at - 1] in " \t\n\r,":
             at -= 1
         return at
@@ -283,14 +285,14 @@ class _Parser:
     # ---------------------------------------------------------------- mistakes of structure
 
     def odd_comma(self, at: int, comma: int) -> None:
-        """Something begins at `at`; a comma before it is missing, or there is one too many."""
+        """Report a missing or surplus comma before `at`."""
         if comma < 0:
             fix = _insertion(self.end_before(at), ",")
             self.report(Span(at, at + 1), "a comma is missing before this", fix)
         elif self.key is not None:
             self.key_without_value()
         else:
-            self.report(Span(comma, comma + 1), "no comma here", _removal(Span(comma, comma + 1)))
+            self.report(Span(comma, comma + 1), "unexpected comma", _removal(Span(comma, comma + 1)))
 
     def key_without_value(self) -> None:
         assert self.key is not None
@@ -300,7 +302,7 @@ class _Parser:
         self.report(Span(start, end), f"{'a value' if colon else '`:` and a value'} must follow `{text[:40]}`")
 
     def value_without_name(self, value: JsonValue) -> None:
-        """In an object, where a name is expected, there is a value; a string is taken for a name without colon."""
+        """In an object, a value is where a name is expected; a string is read as a name without a colon."""
         if isinstance(value, JsonString):
             self.key, self.wants_comma = _Key(value.value, value.start, value.end, value.quotes, False), False
             return
@@ -313,17 +315,17 @@ class _Parser:
         for member in self.parts:
             known = first.setdefault(member.key, member)
             if known is not member and member.key and len(self.findings) < MAX_FINDINGS:
-                message = f"`{member.key[:40]}` stands twice in this object; only the last one counts"
-                related = (Related(known.key_span, "it also stands here"),)
+                message = f"duplicate key `{member.key[:40]}`; only the last value is used"
+                related = (Related(known.key_span, "the other key"),)
                 following = self.parts[self.parts.index(known) + 1]
                 edit = TextEdit(Span(known.start, following.start), "")
-                fix = Fix("Remove the one that does not count", (edit,), safe=True)
+                fix = Fix("Remove the ignored member", (edit,), safe=True)
                 self.findings.append(Finding("duplicate-json-key", member.key_span, message, None, (fix,), related))
 
     # ---------------------------------------------------------------- unusual text
 
     def unusual(self, at: int, comma: int) -> int:
-        """Read what stands at `at` and is no ordinary token; the offset behind it."""
+        """Read what is at `at` and not an ordinary token; return the offset after it."""
         text = self.text
         if at == len(text):
             return self.end(at)
@@ -334,7 +336,7 @@ class _Parser:
             return self.colon(Span(at, at + 1), comma)
         if (assignment := _ASSIGNMENT.match(text, at)) and self.key is not None and not self.key.colon:
             span = Span(*assignment.span())
-            self.report(span, "a name is followed by `:`", _replacement(span, ":"))
+            self.report(span, "a name must be followed by `:`", _replacement(span, ":"))
             return self.colon(span, comma)
         for pattern, message, replacement in _INTERLUDES:
             if match := pattern.match(text, at):
@@ -349,7 +351,7 @@ class _Parser:
         """The text ends without a complete value."""
         if not self.stack:
             self.root = JsonError(0, at)
-            self.report(Span(0, at), "there is no value" if self.text.strip() else "the file is empty")
+            self.report(Span(0, at), "a value is missing" if self.text.strip() else "the file is empty")
             return at
         bracket = Span(self.start, self.start + 1)
         end = self.end_before(at)
@@ -361,16 +363,16 @@ class _Parser:
         return at
 
     def colon(self, span: Span, comma: int) -> int:
-        """A colon that does not stand directly behind its name."""
+        """Read a colon that is not directly after its name."""
         self.comma = comma
         if self.key is not None and not self.key.colon:
             self.key = self.key._replace(colon=True)
         elif self.text[span.start] == ":":
-            self.report(span, "no colon here", _removal(span))
+            self.report(span, "unexpected colon", _removal(span))
         return span.end
 
     def string(self, at: int, comma: int) -> int:
-        """A string with escapes, with single quotes, with something forbidden in it or without its end."""
+        """Read a string with escapes, single quotes or invalid characters, or without an end."""
         mark = self.text[at]
         body = _STRING_BODY[mark].match(self.text, at + 1)
         assert body is not None
@@ -384,7 +386,7 @@ class _Parser:
             close = _insertion(at + 1 + name.end(1), mark) if name else _replacement(span, quote(value))
             self.report(span, "the string is never closed", close)
         elif mark == "'":
-            self.report(span, "strings stand in double quotes", _replacement(span, quote(value)))
+            self.report(span, "a string needs double quotes", _replacement(span, quote(value)))
         else:
             for message, edit in mistakes:
                 self.report(edit.span, message, _replacement(*edit))
@@ -397,7 +399,7 @@ class _Parser:
         text = word[0].rstrip()
         span = Span(at, at + len(text))
         if self.is_object and _COLON.match(self.text, span.end):
-            self.report(span, "names stand in double quotes", _replacement(span, quote(text)))
+            self.report(span, "a name needs double quotes", _replacement(span, quote(text)))
             return self.string_or_name(JsonString(*span, text, (0, 0)), comma)
         self.value(self.bare(text, span), comma)
         return span.end
@@ -410,21 +412,21 @@ class _Parser:
         return string.end
 
     def bare(self, text: str, span: Span) -> JsonValue:
-        """What a word without quotes was meant to be."""
+        """Read a word without quotes as the value that was probably meant."""
         if literal := _FOREIGN_LITERALS.get(text):
             self.report(span, f"JSON writes `{literal}`", _replacement(span, literal))
             return JsonNull(*span) if literal == "null" else JsonBool(*span, literal == "true")
         if text.lstrip("+-").lower() in _NO_NUMBERS:
-            self.report(span, f"JSON has no number `{text[:40]}`")
+            self.report(span, f"JSON does not support the number `{text[:40]}`")
             return JsonError(*span)
         if text[0] not in "+-.0123456789":
-            self.report(span, f"`{text[:40]}` is a string and stands in double quotes", _replacement(span, quote(text)))
+            self.report(span, f"`{text[:40]}` is a string and needs double quotes", _replacement(span, quote(text)))
             return JsonString(*span, text, (0, 0))
         number = _number(text)
         if number is None:
             self.report(span, f"`{text[:40]}` is not a number")
             return JsonError(*span)
-        self.report(span, f"JSON writes this number as `{number[:40]}`", _replacement(span, number))
+        self.report(span, f"this number must be written as `{number[:40]}` in JSON", _replacement(span, number))
         if number.lstrip("-").isdigit():
             return self.integer(number, *span)
         return JsonNumber(*span, float(number), number)
@@ -461,7 +463,7 @@ def _removal(span: Span) -> Fix:
 
 
 def _number(text: str) -> str | None:
-    """The JSON number that `text` probably means: `+1`, `007`, `.5`, `1.`; None if it is none."""
+    """The JSON number that `text` probably means: `+1`, `007`, `.5`, `1.`; `None` if there is none."""
     match = _SLOPPY_NUMBER.match(text)
     if match is None or not (match[2] or match[3]):
         return None

@@ -31,16 +31,16 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class StringMistake(NamedTuple):
-    """Something that may not stand in a string, and what to write instead."""
+    """A character that is not allowed in a string, with its replacement."""
 
     message: str
     edit: TextEdit
 
 
 def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
-    """What `raw`, the text between the quotes, means, and what is wrong in it. `start` is its offset in the source.
+    """The value of `raw`, the text between the quotes, and the errors in it. `start` is its offset in the source.
 
-    A wrong escape keeps the character behind the backslash; a control character stays as it is.
+    For an invalid escape, the character after the backslash is kept; a control character is unchanged.
     """
     mistakes: list[StringMistake] = []
 
@@ -56,11 +56,11 @@ def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
         if control:
             written = quote(control)[1:-1]
             mistakes.append(
-                StringMistake(f"inside a string this character is written `{written}`", TextEdit(span, written))
+                StringMistake(f"inside a string this character must be written `{written}`", TextEdit(span, written))
             )
             return control
         message = (
-            "`\\u` is followed by four hexadecimal digits"
+            "`\\u` must be followed by four hexadecimal digits"
             if wrong == "\\u"
             else f"JSON has no escape `{wrong}`; a backslash itself is written `\\\\`"
         )
@@ -71,7 +71,7 @@ def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
 
 
 def quote(text: str) -> str:
-    """`text` as a JSON string: only what must be escaped is, lone halves of surrogate pairs included."""
+    """`text` as a JSON string: only what must be escaped is escaped, including lone surrogates."""
     quoted: str = encode_basestring(text)
     if text.isascii():
         return quoted

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The JSON tree.
 
-- Frozen; every value has the `span` of its text, brackets and quotes included. (It is kept as two offsets: there are
-  hundreds of thousands of values in one JANI file, and a second object for each would double the time to read them.)
-- Where something is missing or unreadable there is a `JsonError` (or a `Member` without value), so the rest of the tree
-  stays usable; a finding has said why.
+- Frozen; every value has the `span` of its text, including brackets and quotes. (It is stored as two offsets: one JANI
+  file has hundreds of thousands of values, and a second object for each would double the time to read them.)
+- A missing or unreadable value is a `JsonError` (or a `Member` without a value), so the rest of the tree stays usable;
+  a finding contains the reason.
 - Values may nest up to `roaml.json_syntax.parse.MAX_DEPTH`: functions over trees must not recurse.
 """
 
@@ -28,12 +28,12 @@ class _Value:
 
 @dataclass(frozen=True, slots=True)
 class JsonObject(_Value):
-    """`members` are in the order of the text; of two with one key both are kept."""
+    """`members` are in the order of the text; members with equal keys are all kept."""
 
     members: tuple[Member, ...]
 
     def get(self, key: str) -> JsonValue | None:
-        """The value of the last member called `key` (the one that other readers use), if there is any."""
+        """The value of the last member with `key` (the one that other readers use), if there is any."""
         for member in reversed(self.members):
             if member.key == key:
                 return member.value
@@ -78,7 +78,7 @@ class JsonNull(_Value):
 
 @dataclass(frozen=True, slots=True)
 class JsonError(_Value):
-    """A value stands here that cannot be read, or none where one is needed; a finding says why."""
+    """A value that cannot be read or is missing; a finding contains the reason."""
 
 
 JsonValue: TypeAlias = JsonObject | JsonArray | JsonString | JsonNumber | JsonBool | JsonNull | JsonError
@@ -86,9 +86,9 @@ JsonValue: TypeAlias = JsonObject | JsonArray | JsonString | JsonNumber | JsonBo
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One `"key": value`. The key stands from `start` to `key_end`, quotes of the given lengths included.
+    """One `"key": value`. The key extends from `start` to `key_end`, including quotes of the given lengths.
 
-    `value` is None while nothing stands behind the key.
+    `value` is `None` if the value is missing.
     """
 
     key: str
@@ -123,5 +123,5 @@ _KINDS: dict[type, str] = {
 
 
 def kind(value: JsonValue) -> str:
-    """What `value` is, in words for a message."""
+    """The kind of `value`, as a phrase for a message."""
     return _KINDS[type(value)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The grammar of the languages, read from `schemas/`.
 
-The schemas are the one statement of what may be written and what it means; completion, hover, validation, navigation
-and the reference manual read them through this package.
+The schemas define the syntax and the roles of its parts; completion, hover, validation, navigation and the reference
+manual read them through this package.
 """
 
 from roaml.language.grammar import (

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The elements and attributes of a language as tables, read from its XSD.
 
-- Only what the schemas in `schemas/` use of XML Schema is understood; the tests hold the tables against `xmlschema`.
+- Only the part of XML Schema that the schemas in `schemas/` use is supported; the tests compare the tables with
+  `xmlschema`.
 - Documentation is the text of `xs:documentation` (Markdown); roles are those of `xs:appinfo` (urn:roaml:roles).
-- A grammar is read on first use and kept.
+- A grammar is read on first use and cached.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _R = "{urn:roaml:roles}"
 
 @dataclass(frozen=True, slots=True)
 class ValueChoice:
-    """One value of an enumeration. `use` names its successor if it is deprecated."""
+    """One value of an enumeration. `use` is its successor if it is deprecated."""
 
     value: str
     documentation: str
@@ -34,7 +35,7 @@ class ValueChoice:
 
 @dataclass(frozen=True, slots=True)
 class SimpleType:
-    """What text a value may be: a base type of XML Schema (without prefix) narrowed by facets."""
+    """The set of values of an attribute: a base type of XML Schema (without prefix) restricted by facets."""
 
     base: str = "string"
     choices: tuple[ValueChoice, ...] = ()
@@ -53,8 +54,8 @@ class PortType:
         direction: "in" or "out".
         type: a base type or "any".
         required: whether it must be set.
-        default: what it holds if it is not set.
-        constant: whether it must hold a constant.
+        default: its value if it is not set.
+        constant: whether its value must be a constant.
         alias_of: the port of which this is another name, or "".
     """
 
@@ -96,7 +97,7 @@ class AttributeType:
 
 @dataclass(frozen=True, slots=True)
 class Multiplicity:
-    """How often a child may stand in its parent."""
+    """How often a child may occur in its parent."""
 
     least: int
     most: int
@@ -151,11 +152,11 @@ class ElementType:
 
     @property
     def ports(self) -> tuple[AttributeType, ...]:
-        """The ports of a tree node, each by its own name."""
+        """The ports of a tree node, by their primary names."""
         return tuple(a for a in self.attributes.values() if a.port and not a.port.alias_of)
 
     def port_key(self, name: str) -> str:
-        """The name of the port that an attribute sets, which may have other names, too."""
+        """The name of the port that an attribute sets, which may have several names."""
         attribute = self.attributes.get(name)
         return (attribute.port.alias_of if attribute and attribute.port else "") or name
 
@@ -188,7 +189,7 @@ class Grammar:
         return etree.XMLSchema(etree.parse(str(schema_path(self.schema))))
 
     def child(self, parent: ElementType, name: str) -> ElementType | None:
-        """The element that `name` is inside `parent`, or None if it is not allowed there."""
+        """The type of `name` inside `parent`; `None` if it is not allowed there."""
         if name in parent.local:
             return parent.local[name]
         if name in parent.children or (parent.any_child is not None and not parent.any_is_opaque):
@@ -196,7 +197,7 @@ class Grammar:
         return None
 
     def element_at(self, names: list[str]) -> ElementType | None:
-        """The element at the end of a path of names that begins at a root."""
+        """The type of the element at the end of a path of names that begins at a root."""
         if not names or names[0] not in self.roots:
             return None
         element: ElementType | None = self.elements[names[0]]
@@ -207,7 +208,7 @@ class Grammar:
         return element
 
     def find(self, name: str) -> ElementType | None:
-        """The element called `name` wherever it is allowed; global ones first."""
+        """The element with this name, wherever it is allowed; global ones first."""
         return self.elements.get(name) or self._by_name.get(name)
 
     @cached_property
@@ -215,12 +216,12 @@ class Grammar:
         return {element.name: element for element in reversed(tuple(self._everywhere))}
 
     def parents(self, name: str) -> tuple[str, ...]:
-        """The names of the elements in which `name` may stand."""
+        """The names of the elements in which `name` is allowed."""
         return tuple(dict.fromkeys(element.name for element in self._everywhere if name in element.children))
 
     @cached_property
     def _everywhere(self) -> tuple[ElementType, ...]:
-        """All elements, the global ones first, then those that are only known inside others."""
+        """All elements, the global ones first, then those that are only declared inside others."""
         elements = list(self.elements.values())
         for element in elements:
             elements += element.local.values()
@@ -237,7 +238,7 @@ BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
 
 @dataclass
 class _Shape:
-    """What is collected about one complex type."""
+    """The parts of one complex type, while it is read."""
 
     attributes: dict[str, AttributeType] = field(default_factory=dict)
     children: dict[str, Multiplicity] = field(default_factory=dict)
@@ -300,7 +301,7 @@ class _Reader:
         )
 
     def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
-        """Add what `node`, a part of a complex type that may stand `occurs` times, contributes to `shape`."""
+        """Add to `shape` what `node`, a part of a complex type that may occur `occurs` times, contributes."""
         if node.get("mixed") == "true":
             shape.text = True
         for part in node:
@@ -358,7 +359,7 @@ class _Reader:
         )
 
     def simple(self, node: Any) -> SimpleType:
-        """The simple type of an attribute: built in, named, or written inside it."""
+        """The simple type of an attribute: built in, named, or declared inside it."""
         definition = node.find(f"{_XS}simpleType")
         if definition is None:
             name = node.get("type", "xs:string")

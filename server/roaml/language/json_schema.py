@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a JSON Schema of ours says of a place in a JSON document.
+"""What a JSON Schema of `schemas/` declares for a place in a JSON document.
 
-- Understands what the schemas in `schemas/` use: references, `allOf`, `if`/`then`/`else`, `properties`,
-  `additionalProperties`, `items`, `required`, `enum` and `const`.
-- Nothing is validated here: of a half-written document one wants to know what may still be written.
+- Supports what the schemas use: references, `allOf`, `if`/`then`/`else`, `properties`, `additionalProperties`, `items`,
+  `required`, `enum` and `const`.
+- Nothing is validated here: for an incomplete document, the question is what may still be written.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ class JsonGrammar:
         return definition
 
     def applying(self, schema: Schema, value: JsonValue | None) -> Iterator[Schema]:
-        """The parts of a schema that count for a value, the outermost first; None stands for a value to come."""
+        """The parts of a schema that apply to a value, the outermost first; `None` is a value that is not written
+        yet."""
         stack, seen = [schema], 0
         while stack and seen < _MAX_DEPTH:
             seen += 1
@@ -68,13 +69,13 @@ class JsonGrammar:
         required = {name for part in applying for name in part.get("required", ())}
         for part in applying:
             for name, inner in part.get("properties", {}).items():
-                # Of several that speak of one key the first that documents it says most.
+                # If several parts declare one key, the first with documentation is the most specific.
                 if name not in keys or not self.text(keys[name].schema):
                     keys[name] = Key(name, inner, name in required)
         return keys
 
     def member(self, schema: Schema, value: JsonObject, key: str) -> Schema:
-        """What is said of the member `key` of an object."""
+        """The declaration of the member `key` of an object."""
         parts = []
         for part in self.applying(schema, value):
             if key in part.get("properties", {}):
@@ -84,11 +85,11 @@ class JsonGrammar:
         return parts[0] if len(parts) == 1 else {"allOf": parts}
 
     def item(self, schema: Schema, value: JsonArray) -> Schema:
-        """What is said of the items of a list."""
+        """The declaration of the items of a list."""
         return {"allOf": [part["items"] for part in self.applying(schema, value) if "items" in part]}
 
     def choices(self, schema: Schema) -> tuple[str, ...]:
-        """The texts of which the value must be one; () if it may be any."""
+        """The texts that the value may be; () if it may be any."""
         for part in self.applying(schema, None):
             if "enum" in part:
                 return tuple(part["enum"])
@@ -97,7 +98,7 @@ class JsonGrammar:
         return ()
 
     def operators(self, kind: str) -> Iterator[tuple[str, Schema]]:
-        """The operators of formulas or expressions as they are written, with what describes their objects."""
+        """The operators of formulas or expressions as they are written, with the declarations of their objects."""
         for branch in self.definition(kind)["then"]["then"]["allOf"]:
             described = self._resolve(branch["then"]["$ref"])
             for operator in self.choices(branch["if"]["properties"]["op"]):
@@ -111,12 +112,12 @@ class JsonGrammar:
         return self._said(schema, "description")
 
     def is_a(self, schema: Schema, definition: str) -> bool:
-        """Whether a place is said to be what a definition describes."""
+        """Whether a definition describes a place."""
         wanted = self.definition(definition)
         return any(part is wanted for part in self.applying(schema, None))
 
     def matches(self, schema: Schema, value: JsonValue | None) -> bool:
-        """Whether a value meets a condition (of an `if`)."""
+        """Whether a value satisfies a condition (of an `if`)."""
         if "$ref" in schema and not self.matches(self._resolve(schema["$ref"]), value):
             return False
         if "type" in schema and not _has_type(value, schema["type"]):
@@ -134,7 +135,7 @@ class JsonGrammar:
         return True
 
     def _said(self, schema: Schema, word: str) -> str:
-        """What a place says of itself goes before what is said of its kind."""
+        """The declaration of a place takes precedence over that of its kind."""
         return next((str(part[word]) for part in self.applying(schema, None) if word in part), "")
 
     def _resolve(self, reference: str) -> Schema:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the schemas are: in the wheel as `roaml/schemas`, in a checkout as `schemas/` at the top."""
+"""The location of the schemas: `roaml/schemas` in the wheel, `schemas/` at the top of a checkout."""
 
 from __future__ import annotations
 

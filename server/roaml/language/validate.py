@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a document does not follow its grammar.
+"""The places where a document violates its grammar.
 
-- libxml2 decides whether a document is valid; the tables of the grammar say what is wrong, and where, in our words.
-- What libxml2 refuses and the tables do not explain is explained by `xmlschema` (`SchemaViolation`), so that nothing
-  that the schema forbids passes in silence. Only while the XML itself is broken the tables alone are asked.
-- Elements and attributes of foreign namespaces are no business of the grammar.
+- libxml2 decides whether a document is valid; the tables of the grammar provide the error, its position and its
+  message.
+- `xmlschema` explains what libxml2 rejects and the tables do not explain (`SchemaViolation`), so that every violation
+  of the schema is reported. If the XML itself is not well-formed, only the tables are used.
+- Elements and attributes of foreign namespaces are ignored.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from roaml.xml_syntax.escapes import replace_forbidden
 from roaml.xml_syntax.names import SPACE, is_local_name
 
 _UNREAD = ("xml-syntax", "nesting-too-deep")
-"""Findings that say that the tree is not the whole document, or not yet."""
+"""Findings after which the tree may not be the whole document."""
 
 SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
@@ -41,7 +42,7 @@ class UnknownElement:
 
 @dataclass(frozen=True, slots=True)
 class MisplacedElement:
-    """An element of the grammar that may not stand in `parent`."""
+    """An element of the grammar that is not allowed in `parent`."""
 
     element: Element
     type: ElementType
@@ -60,7 +61,7 @@ class TooManyElements:
 
 @dataclass(frozen=True, slots=True)
 class MissingElement:
-    """`element` lacks a child it must have; `names` are those that would do, empty for any."""
+    """`element` lacks a required child; `names` are the possible ones, empty for any."""
 
     element: Element
     type: ElementType
@@ -83,7 +84,8 @@ class MissingAttribute:
 
 @dataclass(frozen=True, slots=True)
 class InvalidValue:
-    """The value of an attribute is not what the grammar allows; `wanted` describes that as a noun phrase."""
+    """The value of an attribute is not one that the grammar allows; `wanted` is a noun phrase for the allowed
+    values."""
 
     element: Element
     attribute: Attribute
@@ -93,7 +95,7 @@ class InvalidValue:
 
 @dataclass(frozen=True, slots=True)
 class StrayText:
-    """Character data where the grammar has none."""
+    """Character data where the grammar does not allow any."""
 
     span: Span
     parent: ElementType
@@ -121,7 +123,7 @@ Violation: TypeAlias = (
 
 
 def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
-    """All places where `document` does not follow `grammar`. A root that is not the grammar's is no business here."""
+    """All places where `document` violates `grammar`. A root of another grammar is not reported here."""
     root = document.root
     if root is None or root.name not in grammar.roots:
         return ()
@@ -135,7 +137,8 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """An element that the grammar does not know, or not where it stands, with its parent and the type of that."""
+    """An element that the grammar does not know or does not allow where it is, with its parent and the type of the
+    parent."""
 
     element: Element
     parent: Element
@@ -143,8 +146,8 @@ class Misfit:
 
 
 def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Grammar) -> Iterator[Misfit]:
-    """The topmost elements below `root` that the grammar does not know, or not where they stand. Much quicker to say
-    than all else that `validate` says."""
+    """The topmost elements below `root` that the grammar does not know or does not allow where they are. Much faster
+    than `validate`."""
     if root is None or root.name not in grammar.roots:
         return
     known = dict(namespaces)
@@ -162,7 +165,7 @@ def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Gramma
 
 
 def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
-    """Whether a prefixed element belongs to another language than SCXML."""
+    """Whether a prefixed element is in another namespace than that of SCXML."""
     return bool(element.prefix) and document_namespaces.get(element.prefix, SCXML_NAMESPACE) != SCXML_NAMESPACE
 
 
@@ -248,7 +251,7 @@ def _counts(element: Element, type_: ElementType, counts: dict[str, list[Element
 
 
 def unmet(simple: SimpleType, value: str) -> str:
-    """What `value` should be but is not, as a noun phrase; "" if it is all right."""
+    """A noun phrase for what `value` should be; "" if it is valid."""
     text = value.strip(SPACE)
     if simple.choices:
         choices = [choice.value for choice in simple.choices if not choice.use]
@@ -279,7 +282,7 @@ def _unmet_number(simple: SimpleType, text: str) -> str:
     if simple.above is not None:
         noun += f" above {simple.above:g}"
     if simple.most is not None:
-        noun += f" and up to {simple.most:g}" if simple.above is not None else f" up to {simple.most:g}"
+        noun += f" and at most {simple.most:g}" if simple.above is not None else f" up to {simple.most:g}"
     if not form.match(text) or len(text) > 300:
         return noun
     value = float(text)
@@ -296,7 +299,7 @@ def _one_of(choices: list[str]) -> str:
 
 
 def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]:
-    """The tree for libxml2, without namespaces, comments and white space; and the way back to our elements."""
+    """The tree for libxml2, without namespaces, comments and white space, and the mapping back to our elements."""
     namespaces = dict(document.namespaces)
     top = _new(None, root)
     back = {top: root}
@@ -320,7 +323,7 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
 
 
 _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
-"""The same few names stand all over a document."""
+"""Caches names: the same few occur all over a document."""
 
 
 def _new(parent: Any, element: Element) -> Any:

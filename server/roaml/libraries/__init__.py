@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of the libraries of behavior trees, as data: BehaviorTree.CPP and Nav2.
+"""The nodes of behavior tree libraries, as data: BehaviorTree.CPP and Nav2.
 
-Kinds, ports, types and defaults of nodes are stated in the XML files of this package only. The node elements of
+Kinds, ports, types and defaults of nodes are defined only in the XML files of this package. The node elements of
 `schemas/behaviortree.xsd` are written from them.
 """
 
@@ -30,15 +30,15 @@ __all__ = [
 ]
 
 BEHAVIORTREE_CPP = "behaviortree_cpp"
-"""The library that all trees have."""
+"""The library that is available in all trees."""
 
 LIBRARIES = ("nav2",)
-"""The further libraries, as settings name them."""
+"""The further libraries, with their names in settings."""
 
 
 @functools.cache
 def library(name: str) -> Library:
-    """The library that is called `name`: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
+    """The library with this name: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
     data = (importlib.resources.files(__name__) / f"{name}.xml").read_bytes()
     return _read(etree.fromstring(data))
 

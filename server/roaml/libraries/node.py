@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known about a node of a behavior tree, wherever it comes from: a library or a `<TreeNodesModel>`."""
+"""The declaration of a node of a behavior tree, from a library or a `<TreeNodesModel>`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class NodeKind(enum.Enum):
 
     @property
     def children(self) -> tuple[int, int]:
-        """How many children a node of this kind has at least and at most."""
+        """The minimum and maximum number of children of a node of this kind."""
         match self:
             case NodeKind.CONTROL:
                 return (1, UNBOUNDED)
@@ -104,7 +104,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Renamed:
-    """A name of version 3 and the one that has taken its place."""
+    """A name of version 3, and the one that replaces it."""
 
     name: str
     now: str
@@ -112,7 +112,7 @@ class Renamed:
 
 @dataclass(frozen=True, slots=True)
 class Absent:
-    """A name that is no node of the XML.
+    """A name that is not a node of the XML format.
 
     Attributes:
         reason: what it is, as the end of a sentence.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """HL-SCXML systems -> plain SCXML (docs/spec/plain-scxml.md).
 
-- Total: a system without errors is lowered; whatever has no plain form, a rule has reported. An assertion that fails
-  here is our mistake, never the user's.
-- Everything that comes out has an origin, the synthesised automata included.
-- Pure, but for the package's own resources: the nodes of BehaviorTree.CPP in `nodes/`.
+- Total: every system without errors is lowered; a rule has reported everything that has no plain form. An assertion
+  that fails here is a bug of the tool, never an error of the user.
+- All output has an origin, including the added automata.
+- Pure, except for the package's own resources: the nodes of BehaviorTree.CPP in `nodes/`.
 """
 
 from roaml.lower.program import TranslatableSystem

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton): one goal
-is decided on at a time.
+"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton), which
+decides on one goal at a time.
 
-A client is known by its goal id, its place among the clients of the action.
+A client is identified by its goal id, its index among the clients of the action.
 """
 
 from __future__ import annotations

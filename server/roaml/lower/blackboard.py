@@ -32,7 +32,7 @@ def blackboard_write(variable: str) -> ScxmlEvent:
 
 
 def blackboard(program: TranslatableSystem) -> Automaton | None:
-    """None if the tree uses no variables."""
+    """The automaton; `None` if the tree uses no variables."""
     system = program.system
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small expressions that lowering makes up."""
+"""Small expressions that the lowering creates."""
 
 from __future__ import annotations
 
@@ -49,5 +49,5 @@ def equal(left: Expr, right: Expr, span: Span = NOWHERE) -> Expr:
 
 
 def both(left: Expr | None, right: Expr, span: Span = NOWHERE) -> Expr:
-    """`left && right`; without left just `right`."""
+    """`left && right`; without left only `right`."""
     return right if left is None else binary(left, Operator.AND, right, span)

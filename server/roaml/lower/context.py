@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One chart being lowered: where it stands in the system, and what its names mean."""
+"""One chart that is being lowered: its place in the system, and the meaning of its names."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ class LoweringContext:
         return self.program.place_of(self.automaton)
 
     def scope(self, handler: Handler | None = None, part: str = "body") -> LoweringScope:
-        """What names mean in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
+        """The meaning of names in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
         if handler is None:
             return LoweringScope(self.variables, {}, {})
         return LoweringScope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
 
     def port(self, read: PortRead) -> PortValue:
-        """What the port holds. A port that is not set has been reported; it counts as empty."""
+        """The value of the port. A port that is not set has been reported; it is treated as empty."""
         key = read.key.value if read.key else ""
         value = self.automaton.port(key)
         return PortConstant(self.ports.get(key, "")) if value is None else value
 
     def constant(self, read: PortRead, value: PortConstant) -> Expr:
-        """The literal that a port with a constant value stands for."""
+        """The literal for a port with a constant value."""
         return literal(value.text, port_type(self.machine, read), read.span)
 
     def is_reference(self, value: object) -> bool:
@@ -86,7 +86,7 @@ class LoweringContext:
 
 
 def variables_of(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
-    """The variables of a chart with their types; of equal ids the first counts."""
+    """The variables of a chart with their types; if ids are equal, the first declaration is used."""
     found: dict[str, Type] = {}
     for data in chart.data:
         if data.id is not None:

@@ -42,7 +42,7 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
 
 
 def as_type(value: Expr, element: Type) -> Expr:
-    """Literals of a real type are reals, also those written without a point
+    """Literals of a real type are reals, including those written without a point
     (docs/spec/plain-scxml.md#initial-reals)."""
     if not is_kind(element, "real"):
         return value

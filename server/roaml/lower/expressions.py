@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions of HL-SCXML -> plain ones (docs/spec/plain-scxml.md#expressions): event variables renamed, structs
-flattened, indexes last.
+flattened, indices last.
 
 - `a[i].b[j].c` -> `a__b__c[i][j]`, `_msg.pose.x` -> `_event.data.ros_fields__pose__x`, `points.length` ->
   `points__x.length`.
-- A value that is a struct becomes one value per leaf member.
-- `2.0` becomes `2`, as in the reference (docs/spec/expressions.md#whole-reals).
+- The value of a struct becomes one value for each leaf member.
+- `2.0` becomes `2`, as in the reference translator (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ Path = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class LoweringScope:
-    """What names mean at one place.
+    """The meaning of names at one place.
 
     Attributes:
         variables: the machine's own, with their types.
         event: the event variables (`_msg`, `_event`, ...) with their types.
-        constants: words that stand for a number (`SUCCESS` in the condition of a child's answer).
+        constants: names of numbers (`SUCCESS` in the condition of a child's status).
     """
 
     variables: Mapping[str, Type]
@@ -56,11 +56,11 @@ class AccessedVariable:
     """A variable or parameter, or a part of one.
 
     Attributes:
-        event: it is data of an event.
+        event: whether it is data of an event.
         names: the variable and the members on the way.
         indexes: all of them, lowered, in order.
-        length: its `.length` is meant.
-        type: of the part, `.length` left aside.
+        length: whether its `.length` is accessed.
+        type: the type of the part, without `.length`.
     """
 
     span: Span
@@ -79,7 +79,7 @@ class AccessedVariable:
 
 
 def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
-    """The plain form of a value that is no struct."""
+    """The plain form of a value that is not a struct."""
     match expr:
         case Number():
             return integer(int(expr.value), expr.span) if expr.is_real and expr.value == int(expr.value) else expr
@@ -107,7 +107,7 @@ def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
 
 
 def _lower_part(expr: Name | Member | Index, scope: LoweringScope) -> Expr:
-    """A part of a value that no name stands for: `'abc'.length`."""
+    """A part of a value that has no name: `'abc'.length`."""
     chosen = _chosen_part(expr)
     if chosen is not None:
         return lower_expr(chosen, scope)
@@ -120,7 +120,7 @@ def _lower_part(expr: Name | Member | Index, scope: LoweringScope) -> Expr:
 
 
 def _chosen_part(expr: Expr) -> Conditional | None:
-    """`(b ? p : q).x` as `b ? p.x : q.x`: only what has a name has parts in the model."""
+    """`(b ? p : q).x` as `b ? p.x : q.x`: in the model, only named values have parts."""
     match expr:
         case Conditional():
             return expr
@@ -131,10 +131,10 @@ def _chosen_part(expr: Expr) -> Conditional | None:
 
 
 def lower_leaves(expr: Expr, scope: LoweringScope, type_: Type) -> list[tuple[Path, Expr]]:
-    """A value as one plain value per leaf member of its type; one with an empty path if it is no struct.
+    """A value as one plain value for each leaf member of its type; one with an empty path if it is not a struct.
 
     Args:
-        type_: what the value is used as.
+        type_: the type as which the value is used.
     """
     chosen = _chosen_part(expr)
     if chosen is not None:
@@ -155,7 +155,8 @@ def first_leaf(type_: Type) -> Path:
 
 
 def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
-    """What `expr` reads or writes, if it is a chain of members and indexes that begins with a name."""
+    """The variable or part that `expr` reads or writes, if it is a chain of members and indices that begins with a
+    name."""
     steps: list[Member | Index] = []
     root = expr
     while isinstance(root, (Member, Index)):
@@ -190,7 +191,7 @@ def _member(type_: Type, member: str) -> Type | None:
 
 
 def _event_parameter(variable: str, names: list[str]) -> Path:
-    """The parameter that an event variable means (docs/spec/machines.md#event-variables)."""
+    """The parameter that an event variable refers to (docs/spec/machines.md#event-variables)."""
     match variable:
         case "_event":
             return tuple(names[1:])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the handlers of services and actions have in common: they pass fields on by way of variables of their own."""
+"""Common parts of the handlers of services and actions: they pass fields on in their own variables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.text import Location
 
 
 def copied(fields: Iterable[str], sent: Set[str], origin: Location) -> Body:
-    """Stores the fields of the event, as far as its sender sends them."""
+    """Stores the fields of the event that its sender sends."""
     return tuple(Assign(name(field), event_data(field), origin) for field in fields if field in sent)
 
 
@@ -46,5 +46,5 @@ def declared_at(endpoint: ChannelEndpoint, program: TranslatableSystem) -> Locat
 
 
 def handler_place(channel: Channel, program: TranslatableSystem) -> Location:
-    """A handler exists for the server; without one (which is reported) for the first client."""
+    """The place of a handler: that of the server; without one (which is reported) that of the first client."""
     return declared_at(channel.endpoints[0], program)

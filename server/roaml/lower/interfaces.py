@@ -109,7 +109,7 @@ class ActionEvents:
 def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> dict[str, Type]:
     """The leaf fields of a part of a service or action as event parameters, in the order of the ROS definition.
 
-    Fields that need not be set (`InterfaceType.optional`) count only if somebody sends them.
+    Fields that need not be set (`InterfaceType.optional`) are included only if an automaton sends them.
     """
     sent = set[str]().union(*(sent_parameters(endpoint, part) for endpoint in channel.endpoints))
     for endpoint in channel.endpoints:

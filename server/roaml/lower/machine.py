@@ -34,7 +34,7 @@ TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 
 
 def copies(automaton: SystemAutomaton, machine: Machine) -> Iterator[tuple[str, Chart, int | None]]:
-    """The plain automata that a machine becomes: their names, their charts and the number of the thread."""
+    """The plain automata of a machine: their names, their charts and the number of the thread."""
     yield automaton.name, machine.chart, None
     for thread in machine.threads:
         server = next(
@@ -103,7 +103,7 @@ class _ChartLowering:
     # ------------------------------------------------------------------ states
 
     def state(self, state: hl.State) -> Iterator[State]:
-        """The state, and a further one after each handler that reads the blackboard."""
+        """The state, and an additional one after each handler that reads the blackboard."""
         assert state.id is not None
         scope = self.context.scope()
         entry = self.statements.body(state.entry.statements, scope) if state.entry else ()
@@ -133,7 +133,7 @@ class _ChartLowering:
         )
 
     def waiting_state(self, state: str, handler: Handler, number: int) -> State:
-        """Where the machine waits for the blackboard's answer, and does then what the handler says
+        """The state in which the machine waits for the blackboard's answer before it executes the handler
         (docs/spec/plain-scxml.md#blackboard-read)."""
         origin = self.context.origin(handler.element.span)
         target = handler.targets[0]
@@ -148,7 +148,8 @@ class _ChartLowering:
         return State(identifier, (), (), (answered,), origin)
 
     def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
-        """The first half of such a handler: its trigger and condition, and the question to the blackboard."""
+        """The first half of a handler that reads the blackboard: its trigger and condition, and the request to the
+        blackboard."""
         origin = self.context.origin(handler.element.span)
         ask = (Send(REQUEST, (), origin),)
         for event, cond in self.triggers(handler):
@@ -182,7 +183,7 @@ class _ChartLowering:
         return tuple(found)
 
     def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
-        """The events that the handler waits for, each with its condition; mostly one."""
+        """The events that the handler waits for, each with its condition; usually one."""
         cond = self.condition(handler)
         match handler.trigger:
             case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
@@ -261,7 +262,7 @@ def values_in(statement: hl.Statement) -> Iterator[Value | None]:
 
 
 def probabilities(handler: Handler) -> list[float]:
-    """The probabilities of the targets, made to add up to 1: the last one may be left out
+    """The probabilities of the targets, which add up to 1: the last one may be omitted
     (docs/spec/machines.md#targets)."""
     given = [_decimal(target.probability.value) if target.probability else None for target in handler.targets]
     rest = 1 - sum((p for p in given if p is not None), Decimal(0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What lowering starts from: a linked system with the machines behind it."""
+"""The input of the lowering: a linked system with its machines."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class TranslatableSystem:
     Attributes:
         machines: by path, those that the system lists.
         environment: structs, ROS types and the data of plain events.
-        place: of the system file's root, for what exists because of the system as a whole.
-        nodes: number of a tree node -> where it stands.
-        parameters: how to translate; they may differ from what the system file says.
+        place: the root of the system file, for what exists because of the system as a whole.
+        nodes: number of a tree node -> its place.
+        parameters: of the translation; they may differ from those in the system file.
     """
 
     system: System
@@ -33,7 +33,7 @@ class TranslatableSystem:
     parameters: Parameters
 
     def place_of(self, automaton: SystemAutomaton) -> Location:
-        """Where an automaton as a whole comes from: its file, or the tree node if that has no file."""
+        """The place of an automaton as a whole: its file, or the tree node if it has no file."""
         machine = self.machines.get(automaton.path)
         if machine is not None:
             return Location(automaton.path, machine.element.name_span)
@@ -44,4 +44,4 @@ class TranslatableSystem:
 
 
 NOWHERE = Span(0, 0)
-"""The span of expressions that are made here; the origin of the statement around them tells the place."""
+"""The span of expressions that the lowering creates; the origin of the statement around them is their place."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How large the translation of a system will be, counted without making it.
+"""The size of the translation of a system, computed without creating it.
 
-- Total on systems with errors, too: what cannot be told counts nothing.
-- Follows `roaml.lower` and `roaml.to_jani` step by step where something is multiplied there: a machine by the nodes of
-  the tree and by its threads, a handler by the children it listens to, an alternative by those before it, an array by
-  its bounds, a random number by its hundred values. Tests hold the count against the translation itself.
+- Total, also on systems with errors: unknown parts have the size 0.
+- Follows `roaml.lower` and `roaml.to_jani` step by step where they multiply something: a machine by the nodes of the
+  tree and by its threads, a handler by the children that it listens to, an alternative by those before it, an array by
+  its bounds, a random number by its values. Tests compare the result with the translation itself.
 """
 
 from __future__ import annotations
@@ -44,26 +44,26 @@ from roaml.model.value_types import bindings
 from roaml.roles import ProtocolPart, SymbolKind
 
 _EDGE = 4
-"""What an edge counts besides its expressions: it has a destination, an action and two locations."""
+"""The size of an edge without its expressions: a destination, an action and two locations."""
 
 _CHILD_CONDITION = 4
-"""`!(child = 3)`: the parts of one earlier alternative in the guard of a child that is known by a variable."""
+"""`!(child = 3)`: the parts of one earlier alternative in the guard of a child with a variable index."""
 
 _PLACES = 20
-"""Places in synchronisations that count as one part: each of them lists all automata, most as `null`."""
+"""The number of entries in synchronisations that are one part: each lists all automata, most as `null`."""
 
 
 def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Size:
     """The size of a system, the largest shares first.
 
     Args:
-        globals_: the global variables that the translation will have.
+        globals_: the global variables of the translation.
     """
     return Size(_sorted(_cells(program, globals_)), _sorted(_parts(program, globals_)))
 
 
 def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
-    """Shares of one thing are added up."""
+    """Shares of one thing are added."""
     counts: dict[tuple[str, str, Symbol | None], int] = {}
     for share in shares:
         key = (share.words, share.path, share.symbol)
@@ -95,7 +95,7 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
         source = variable.source
         words = f"the event parameter `{variable.event}__{variable.parameter}`"
         path = source.path if source else ""
-        yield Share(most ** len(unwrap(variable.type)[1]), words, path, source)  # lengths are variables of their own
+        yield Share(most ** len(unwrap(variable.type)[1]), words, path, source)  # lengths are separate variables
     system = program.system
     for variable_name in system.blackboard:
         type_ = BASE_TYPES[system.variable_type(variable_name)]
@@ -112,7 +112,7 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
         endpoint = channel.endpoints[0]
         held = (type_ for part in parts for type_ in fields(channel, part, program.environment).values())
         count = sum(cells_of(type_, most) for type_ in held)
-        yield Share(count, f"what is passed on for the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
+        yield Share(count, f"the forwarded data of the {kind} `{channel.name}`", endpoint.symbol.path, endpoint.symbol)
 
 
 def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Machine]]:
@@ -123,7 +123,7 @@ def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Mac
 
 
 def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
-    """The charts of a machine and how many copies of each there will be."""
+    """The charts of a machine and the number of copies of each."""
     yield machine.chart, 1
     yield from ((thread.chart, thread.count or 0) for thread in machine.threads)
 
@@ -172,7 +172,7 @@ class _Query(NamedTuple):
 
 
 class _Counted(NamedTuple):
-    """What was counted of a chart, and on what it depends besides the chart: on types that other files declare."""
+    """The counts of a chart, and what they depend on besides the chart: types that other files declare."""
 
     parts: int
     actions: int
@@ -181,7 +181,8 @@ class _Counted(NamedTuple):
 
 
 def _count(machine: Machine, chart: Chart, children: int, program: TranslatableSystem) -> _Counted:
-    """The counts of one copy of a chart. They are kept with the chart: a key changes one machine of a system."""
+    """The counts of one copy of a chart. They are cached with the chart: a keystroke changes one machine of a
+    system."""
     parameters = program.parameters
     known: dict[object, _Counted] = chart.__dict__.setdefault("translation_parts", {})
     key = (children, parameters.max_array_size, parameters.random_values)
@@ -195,7 +196,7 @@ def _count(machine: Machine, chart: Chart, children: int, program: TranslatableS
 
 @dataclass(eq=False)
 class _Counter:
-    """Counts the parts of one copy of a chart, for a node with so many children."""
+    """Counts the parts of one copy of a chart, for a node with a given number of children."""
 
     machine: Machine
     of: Chart
@@ -205,7 +206,7 @@ class _Counter:
     queries: list[_Query] = field(default_factory=list)
 
     def confirms(self, query: _Query) -> bool:
-        """Whether an expression still has the type that it had."""
+        """Whether an expression still has the same type."""
         return self.inferred(query.tree, query.handler, query.part) == query.type
 
     def chart(self) -> int:
@@ -214,8 +215,8 @@ class _Counter:
         return sum(self.state(state, entries, len(events)) for state in self.of.states)
 
     def state(self, state: State, entries: Mapping[str, int], events: int) -> int:
-        """The edges of a state: each transition is guarded against those on the same event before it, and events
-        without one are thrown away."""
+        """The edges of a state: each transition is guarded against the earlier ones with the same event, and events
+        without one are discarded."""
         leaving = self.body(state.exit.statements, None) if state.exit else 0
         count = events * _EDGE
         earlier: dict[object, int] = {}
@@ -237,7 +238,7 @@ class _Counter:
         return count + sum(earlier.values())
 
     def actions(self) -> int:
-        """How many actions the copy does by itself, one for each step on the way from state to state."""
+        """The number of actions of the copy itself, one for each step on the way from state to state."""
         bodies = [b.statements for s in self.of.states for b in (s.entry, s.exit) if b]
         count = sum(map(self.steps, bodies)) + 1
         for state in self.of.states:
@@ -259,7 +260,7 @@ class _Counter:
         return count
 
     def trigger(self, handler: Handler) -> object:
-        """What tells the events of handlers apart."""
+        """The key that distinguishes the events of handlers."""
         name = handler.event or handler.handle or handler.child
         return handler.trigger, name.value if name else ""
 
@@ -267,7 +268,7 @@ class _Counter:
         return handler.child is not None and not handler.child.value.isdigit()
 
     def copies(self, handler: Handler) -> int:
-        """A handler of a child that is known by a variable is one for each child."""
+        """A handler of a child with a variable index becomes one for each child."""
         return self.children if self.by_variable(handler) else 1
 
     def body(self, body: Iterable[Statement], handler: Handler | None) -> int:
@@ -306,7 +307,7 @@ class _Counter:
         return draws * _EDGE * (values + 1) + one + stored
 
     def padding(self, statement: Assign, handler: Handler | None) -> int:
-        """Literals are filled up to the capacity of the array that they are stored in."""
+        """Literals are padded to the capacity of the array in which they are stored."""
         assert isinstance(statement.value, Expression)
         if statement.location is None or not _literals(statement.value.tree):
             return 0
@@ -315,7 +316,7 @@ class _Counter:
         return size * len(_literals(statement.value.tree)) if size > 1 else 0
 
     def param(self, param: Param, handler: Handler | None) -> int:
-        """A literal that is sent is filled up to the greatest size of arrays."""
+        """A literal that is sent is padded to the maximum size of arrays."""
         if not isinstance(param.value, Expression):
             return 3
         literals = _literals(param.value.tree)
@@ -370,5 +371,5 @@ def _is_literal(tree: Expr) -> bool:
 
 
 def _literals(tree: Expr) -> list[Expr]:
-    """The outermost literals that an array is made of."""
+    """The outermost literals of an array expression."""
     return [] if isinstance(tree, Name) else [node for node in walk(tree) if _is_literal(node)][:8]

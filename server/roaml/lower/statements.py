@@ -33,11 +33,12 @@ _NAMED = {"int": BASE_TYPES["int64"], "real": REAL}
 """The type of a variable for a value whose type has no name, by the kind of the value."""
 
 MAX_COMBINATIONS = 10_000
-"""Of random numbers that are drawn at once in one assignment: each combination is a destination in JANI."""
+"""The maximum number of combinations of random numbers that are drawn at once in one assignment: each combination is a
+destination in JANI."""
 
 
 def combinations(value: Expr, random_values: int) -> int | None:
-    """How many values the random numbers of an assignment have together, if they are drawn at once; None if they are
+    """The number of combinations of the random numbers of an assignment, if they are drawn at once; `None` if they are
     drawn one after the other."""
     count: int = random_values ** sum(map(is_draw, walk(value)))
     return count if count <= MAX_COMBINATIONS else None
@@ -48,7 +49,7 @@ TypedParam: TypeAlias = tuple[Param, Type]
 
 @dataclass(eq=False)
 class StatementLowering:
-    """Lowers the bodies of one automaton. `drawn` are variables for what is drawn at random, made on the way."""
+    """Lowers the bodies of one automaton. `drawn` are variables for random numbers, created on the way."""
 
     context: LoweringContext
     drawn: list[Data] = field(default_factory=list)
@@ -101,7 +102,7 @@ class StatementLowering:
             yield from self.store(target.leaf(path), value, origin)
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
-        """An assignment. Many random numbers are drawn one after the other, and forgotten when they are used."""
+        """An assignment. Many random numbers are drawn one after the other, and reset after their use."""
         if combinations(value, self.context.program.parameters.random_values) is not None:
             yield Assign(location, value, origin)
             return
@@ -124,7 +125,7 @@ class StatementLowering:
         return [((), self.value(value, scope))]
 
     def value(self, value: Value | None, scope: LoweringScope) -> Expr:
-        """A value that is no struct. A port that is bound to the blackboard is read from the blackboard's answer."""
+        """A value that is not a struct. A port that is bound to the blackboard is read from the blackboard's answer."""
         match value:
             case Expression():
                 return lower_expr(value.tree, scope)
@@ -166,7 +167,7 @@ class StatementLowering:
         return infer(value.tree, known.get)[0]
 
     def send(self, event: ScxmlEvent, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
-        """What is drawn at random is stored before the event can be received
+        """Random numbers are drawn and stored before the event can be received
         (docs/spec/plain-scxml.md#random-draws)."""
         ready = []
         for param, type_ in params:
@@ -179,7 +180,7 @@ class StatementLowering:
         yield Send(event, tuple(ready), origin)
 
     def fresh(self, type_: Type, origin: Location) -> Data:
-        """A further variable of the automaton, for what is drawn at random."""
+        """A new variable of the automaton, for a random number."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
         while (found := f"random_{count}") in taken:
@@ -196,7 +197,7 @@ class StatementLowering:
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
     def arguments(self, statement: RosSend, scope: LoweringScope, origin: Location) -> Iterator[Param]:
-        """What is sent besides the fields (docs/spec/plain-scxml.md#events)."""
+        """The parameters that are sent in addition to the fields (docs/spec/plain-scxml.md#events)."""
         for argument, value in (("goal_id", statement.goal_id), ("thread_id", statement.thread_id)):
             if value is not None:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
@@ -241,9 +242,9 @@ class StatementLowering:
         return Param("status", value, origin)
 
     def call_child(self, statement: CallChild, origin: Location) -> Iterator[Statement]:
-        """A child known by a variable is found by comparing with every index (docs/spec/plugins.md#children).
+        """A child with a variable index is found by a comparison with every index (docs/spec/plugins.md#children).
 
-        The place of what the child is sent is that of the child in the tree.
+        The origin of what is sent to the child is the child in the tree.
         """
         assert statement.child is not None
         children = self.children

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Timers and the clock that makes them tick (docs/spec/plain-scxml.md#time).
+"""Timers and the clock that makes them fire (docs/spec/plain-scxml.md#time).
 
-- Times are integers throughout: no rounding beyond that of the periods, which is the reference's.
-- Every automaton that uses a timer gets ticks of its own; in the usual case of one user the event has the timer's name.
+- Times are integers throughout: nothing is rounded except the periods, as in the reference translator.
+- Every automaton that uses a timer has its own ticks; in the common case of one user the event has the timer's name.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class Timer:
-    """A timer of one automaton. `event` is None if nothing waits for its ticks.
+    """A timer of one automaton. `event` is `None` if nothing waits for its ticks.
 
     Attributes:
-        user: the plain automaton that it ticks for.
+        user: the plain automaton for which it fires.
         handle: its name there.
     """
 
@@ -100,7 +100,7 @@ def _declared(
 
 
 def _awaited(chart: Chart) -> set[str]:
-    """The timers that a chart has callbacks for."""
+    """The timers for which a chart has callbacks."""
     return {
         handler.handle.value
         for state in chart.states
@@ -124,7 +124,7 @@ STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
 def clock(timers: list[Timer], program: TranslatableSystem) -> PlainAutomaton:
-    """The automaton that counts the time and makes timers tick."""
+    """The automaton that counts the time and makes timers fire."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
     step = math.gcd(*periods)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The root of the behavior tree: ticks the topmost node at the tree's rate (docs/spec/plain-scxml.md#tree-root)."""
+"""The root of the behavior tree, which ticks the topmost node at the tree's rate
+(docs/spec/plain-scxml.md#tree-root)."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ def _stem(program: TranslatableSystem) -> str:
 
 
 def tick_timer(program: TranslatableSystem) -> tuple[str, str]:
-    """The automaton that ticks the tree, and the timer that makes it do so."""
+    """The automaton that ticks the tree, and the timer that triggers it."""
     return f"{TREE_ROOT_PREFIX}{_stem(program)}", f"{_stem(program)}_tick"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""XML tree -> `Machine`. What is unknown or out of place is left out; the grammar rules report it."""
+"""XML tree -> `Machine`. Unknown and misplaced parts are left out; the grammar rules report them."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _TYPE_COMMENT = re.compile(r"TYPE\s+([^\s:]+)\s*:\s*(\S+)")
 
 
 def build_machine(document: Document) -> Machine | None:
-    """The machine in `document`, or None if its root is not one of HL-SCXML."""
+    """The machine in `document`; `None` if its root is not one of HL-SCXML."""
     root = document.root
     if root is None or root.name not in HL_SCXML.roots:
         return None
@@ -70,7 +70,7 @@ class _Builder:
         )
 
     def children(self, element: Element) -> list[Element]:
-        """The child elements that are not of another language."""
+        """The child elements that are not of another namespace."""
         return [child for child in element.elements if not is_foreign(self.namespaces, child)]
 
     def machine(self, root: Element) -> Machine:
@@ -263,7 +263,7 @@ class _Builder:
         for child in self.children(element):
             if child.name in ("elseif", "else"):
                 parts.append((child, []))
-                # Content written inside a marker by mistake still counts as the part's content.
+                # Content inside a marker is an error, but still part of the branch.
                 parts[-1][1].extend(self.body(child))
             elif child.name in self.executables:
                 parts[-1][1].append(self.statement(child))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of the languages that look alike a machine is written in (docs/spec/files.md#dialects)."""
+"""The dialect in which a machine is written (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FOREIGN_ATTRIBUTES = ("targetexpr", "eventexpr")
 
 
 def dialect_of(machine: Machine, document: Document, in_older_system: bool | None) -> Dialect:
-    """For a machine that a system lists the system decides (`in_older_system`); alone, its own root and content do."""
+    """If a system lists the machine, the system decides (`in_older_system`); otherwise its own root and content do."""
     if in_older_system is not None:
         return Dialect.OLDER if in_older_system else Dialect.CURRENT
     if machine.root == "ascxml":

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree with all its instances: subtrees put in place, nodes numbered, ports bound
+"""The executed tree with all its instances: subtrees expanded, nodes numbered, ports bound
 (docs/spec/trees.md#instances, docs/spec/trees.md#subtrees).
 
-- Works on outlines, which hold no places: an instance knows its file, its tree and its position in that tree.
-- What cannot be expanded (an unknown or recursive subtree) is left out; rules on the files themselves report it.
+- Works on outlines, which contain no positions: an instance has its file, its tree and its index in that tree.
+- A subtree that cannot be expanded (because it is unknown or recursive) is left out; rules on the files themselves
+  report it.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ ROOT_NUMBER = 1000
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without places. `position` counts the nodes of its tree in pre-order from 0; `condition` tells that it is
-    written as `<Condition>`."""
+    """A node without positions. `position` counts the nodes of its tree in pre-order from 0; `condition` means that it
+    is written as `<Condition>`."""
 
     position: int
     plugin: str
@@ -43,11 +44,12 @@ class TreeOutline:
 
 @dataclass(frozen=True, slots=True)
 class TreeFileOutline:
-    """A file of trees without places.
+    """A file of trees without positions.
 
     Attributes:
         defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
-        from_project: it is there because a project beside the executed file lists it, so it holds subtrees only.
+        from_project: whether it is included because a project beside the executed file lists it, so that it contributes
+            only subtrees.
         conditions: the plugins that are conditions in `<TreeNodesModel>`.
     """
 
@@ -62,14 +64,14 @@ class TreeFileOutline:
 
 @dataclass(frozen=True, slots=True)
 class PortConstant:
-    """A port holds this text."""
+    """The port holds this text."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A port is bound to the blackboard variable of this full name."""
+    """The port is bound to the blackboard variable with this full name."""
 
     variable: str
 
@@ -79,7 +81,7 @@ PortValue: TypeAlias = PortConstant | Reference
 
 @dataclass(frozen=True, slots=True)
 class NodeSource:
-    """The node of a file that something was made of."""
+    """The node of a file from which something was created."""
 
     path: str
     tree: str
@@ -174,9 +176,9 @@ def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
 
 
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
-    """The tree that is executed, or the names of the candidates if that cannot be told.
+    """The tree that is executed; if it is ambiguous, the names of the candidates.
 
-    The first file decides by `main_tree_to_execute`; without it, it is the only tree that no other refers to.
+    The first file decides by `main_tree_to_execute`; without it, it is the only tree that no other tree uses.
     """
     trees = [tree for file in files for tree in file.trees]
     wanted = files[0].main if files else ""
@@ -184,8 +186,7 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
         for tree in trees:
             if tree.id == wanted:
                 return tree
-        # A file of one tree needs no names: its only tree is meant whatever it is called
-        # (docs/spec/trees.md#main-tree).
+        # A file with one tree needs no names: its tree is executed whatever its name is (docs/spec/trees.md#main-tree).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
     trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:
@@ -203,8 +204,8 @@ def _walk(node: NodeOutline | None) -> Iterator[NodeOutline]:
 
 
 def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
-    """Whether `expand` leaves nothing out: it is clear which tree is executed, what each subtree stands for, and the
-    whole is not too large."""
+    """Whether `expand` leaves nothing out: the executed tree and all subtrees are known, and the tree is not too
+    large."""
     trees = {tree.id: tree for file in files for tree in file.trees}
     main = main_tree(files)
     if isinstance(main, tuple) or len(trees) < sum(len(file.trees) for file in files):
@@ -226,10 +227,10 @@ def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
 
 
 MAX_NODES = 10_000
-"""Nodes of an executed tree; a larger one is not expanded."""
+"""The maximum number of nodes of an executed tree; a larger one is not expanded."""
 
 MAX_SUBTREES = 1_000
-"""Subtrees in each other; names of blackboard variables grow with their number."""
+"""The maximum number of nested subtrees; names of blackboard variables grow with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,7 +254,7 @@ class TreeExtent:
 
 
 def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
-    """The size of the executed tree. Subtrees that are not known or contain themselves count nothing."""
+    """The size of the executed tree. Subtrees that are unknown or contain themselves have the size 0."""
     main = main_tree(files)
     if isinstance(main, tuple) or main.root is None:
         return TreeExtent(0, 0, None)
@@ -268,7 +269,7 @@ def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
 
 
 def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
-    """The names of the trees that `main` consists of, each after those that it uses; of a cycle in any order."""
+    """The names of the trees that `main` consists of, each after those that it uses; those of a cycle in any order."""
     entered, done = {main.id}, set[str]()
     stack = [(main.id, _used(main, trees))]
     while stack:
@@ -307,7 +308,7 @@ def _largest(
 
 
 def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
-    """Of equal names the first counts."""
+    """If names are equal, the first tree is used."""
     return {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
 
 
@@ -338,7 +339,7 @@ class Frame:
     inside: frozenset[str]
 
     def resolve(self, name: str) -> PortValue:
-        """The outermost variable that automatic remapping leads to, as long as somebody there uses the name."""
+        """The outermost variable to which automatic remapping leads, as long as a node there uses the name."""
         if name.startswith("@"):
             return Reference(name[1:])
         frame = known = self
@@ -380,7 +381,7 @@ def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
 
 @dataclass(slots=True)
 class _Placed:
-    """An instance whose children are still being placed."""
+    """An instance whose children are not created yet."""
 
     plugin: str
     name: str
@@ -392,7 +393,7 @@ class _Placed:
 
 
 class _Expander:
-    """Works with a list of what is still to be placed: subtrees may be in each other deeper than Python calls go."""
+    """Works with an explicit stack: subtrees may be nested more deeply than Python's call stack allows."""
 
     def __init__(self, files: tuple[TreeFileOutline, ...]) -> None:
         self.trees = _by_id(files)
@@ -482,7 +483,7 @@ _AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
 
 
 def _names(tree: TreeOutline) -> frozenset[str]:
-    """The variables that the nodes of a tree refer to."""
+    """The variables that the nodes of a tree use."""
     return frozenset(
         variable
         for node in _walk(tree.root)
@@ -496,12 +497,12 @@ def _names(tree: TreeOutline) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class StrayRemap:
-    """An attribute of a `<SubTree>` that names no variable of the subtree.
+    """An attribute of a `<SubTree>` that is not a variable of the subtree.
 
     Attributes:
         source: the node of the `<SubTree>`.
         key: the attribute; `outer` is its value.
-        meant: the variables of the subtree that look like it and are not given, the nearest first.
+        meant: the variables of the subtree with a similar name that are not passed, the nearest first.
         names: the variables of the subtree.
     """
 
@@ -513,7 +514,7 @@ class StrayRemap:
 
 
 def stray_remaps(files: tuple[TreeFileOutline, ...]) -> tuple[StrayRemap, ...]:
-    """All attributes of subtrees, in all trees of a system, that name nothing in their subtree."""
+    """All attributes of subtrees, in all trees of a system, that are not variables of their subtree."""
     trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
     declared = {pair for file in files for pair in file.declared}
     words = {name: _words(tree) for name, tree in trees.items()}
@@ -539,7 +540,7 @@ def _strays(
 
 
 def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[str, frozenset[str]]) -> frozenset[str]:
-    """The names that a tree uses, with those of subtrees that take all names from it."""
+    """The names that a tree uses, with those of subtrees that share all names with it."""
     found, pending, seen = set(words[name]), [name], {name}
     while pending:
         for node in _walk(trees[pending.pop()].root):
@@ -552,8 +553,8 @@ def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[st
 
 
 def _words(tree: TreeOutline) -> frozenset[str]:
-    """Every name in the values of a tree's attributes: variables, and what scripts may name; `{=}` is the attribute's
-    own name."""
+    """Every name in the values of a tree's attributes: variables, and names in scripts; `{=}` is the name of the
+    attribute."""
     found: set[str] = set()
     for node in _walk(tree.root):
         for key, text in node.attributes:

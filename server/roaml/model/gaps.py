@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of a machine that cannot be read might say to the rest of the system.
+"""What the unreadable parts of a machine might declare to the rest of the system.
 
-- A gap is one possible statement, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`,
-  but it serves nothing. An element that resembles nothing in the language says nothing.
-- A rule that misses something in the system (a publisher of a topic, a sender of an event, ...) asks whether a gap may
-  be it, and keeps quiet if so: one mistake is one report. All other mistakes are reported.
-- Gaps hold no places, so they are parts of outlines. `machine_gaps` gives them with their places.
+- A gap is one possible fact, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`, but it
+  serves nothing. An element that resembles nothing in the language causes no gap.
+- A rule that misses something in the system (a publisher of a topic, a sender of an event, ...) checks whether a gap
+  may provide it, and reports nothing then: one error is reported once. All other errors are reported.
+- Gaps contain no positions, so they are parts of outlines. `machine_gaps` returns them with their positions.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from roaml.text import Span
 from roaml.xml_syntax import Element
 
 ANYTHING = ""
-"""The act of a gap that may say whatever there is to say."""
+"""The act of a gap that may provide anything."""
 SENDS = "event-sender"
 RECEIVES = "event-receiver"
 PARAMETER = "event-sender parameter"
@@ -35,25 +35,25 @@ PORT = "port"
 VARIABLE = "variable"
 """Reads or writes a variable of the blackboard."""
 REMAP = "remap"
-"""Gives a subtree a variable, by the name that it has on either side."""
+"""Passes a variable to a subtree, by its inner or outer name."""
 NODE = "node"
 """Is a node of the tree."""
 TREE = "tree"
-"""Takes ticks and halts, or answers them."""
+"""Handles ticks and halts, or answers them."""
 NAME = "name"
 """Is the name of the machine."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Something that may be said where the text cannot be read.
+    """A fact that an unreadable part of a file may contain.
 
     Attributes:
-        act: what is done, with the more special behind the more general: the kind of a declaration (`publisher`), a
-            part of it that is sent or handled (`publisher message`), a field of that (`publisher message field`); or
-            one of the constants of this module.
-        name: the topic, service or action as written, the event, the port; None if it may be any.
-        port: the port that gives the name, if one does.
+        act: what is done, from the general to the specific: the kind of a declaration (`publisher`), a part of it that
+            is sent or handled (`publisher message`), a field of that (`publisher message field`); or one of the
+            constants of this module.
+        name: the topic, service or action as written, the event, the port; `None` if it may be any.
+        port: the port that provides the name, if one does.
     """
 
     act: str
@@ -62,7 +62,7 @@ class Gap:
 
 
 def answers(act: str, wanted: str) -> bool:
-    """Whether what does `act` may do `wanted`, too: who may declare a publisher may also publish."""
+    """Whether a gap with `act` may also do `wanted`: a machine that may declare a publisher may also publish."""
     return act in (ANYTHING, wanted) or wanted.startswith(f"{act} ")
 
 
@@ -130,7 +130,7 @@ class _Search:
         return next((kind for each in types if (kind := _kind(each))), None)
 
     def _unread(self, top: Element, parent: ElementType) -> Iterator[Gap]:
-        """What a misfit and all in it may say."""
+        """The facts that a misfit and its content may contain."""
         stack: list[tuple[Element, ElementType | None]] = [(top, parent)]
         while stack:
             element, outer = stack.pop()
@@ -141,8 +141,8 @@ class _Search:
             stack += [(child, types[0] if types else None) for child in element.elements]
 
     def _resembling(self, element: Element, parent: ElementType | None) -> list[ElementType]:
-        """What an unknown element may be meant as: the element whose name is nearest, else those for which its
-        attributes are made."""
+        """The types that an unknown element may be meant as: the element with the nearest name, otherwise those to
+        which its attributes fit."""
         allowed = list(parent.children) if parent is not None else []
         close = close_names(element.name, allowed, 1) or close_names(element.name, HL_SCXML.elements, 1)
         if close:
@@ -164,7 +164,7 @@ class _Search:
         return not kinds.isdisjoint(known.refers)
 
     def _said(self, element: Element, type_: ElementType) -> Iterator[Gap]:
-        """What an element would say if it were one of this type that is read."""
+        """The facts of an element if it were of this type."""
         if kind := _kind(type_):
             yield _declared(element, type_, kind)
         elif type_.sends is ProtocolPart.EVENT or type_.receives is ProtocolPart.EVENT:
@@ -187,21 +187,21 @@ class _Search:
             yield Gap(TREE)
 
     def _over(self, act: str, kind: SymbolKind, handle: Name | None) -> Iterator[Gap]:
-        """What is done with the declaration called `handle`, or with one that is meant by it."""
+        """The facts about the declaration named `handle`, or one that it may be a misspelling of."""
         right = [d for d in self.machine.declarations if d.kind == kind and d.handle is not None]
         named = [d for d in right if handle and d.handle and d.handle.value == handle.value]
         if handle is None:
-            # One of those that are declared, or one whose declaration is missing.
+            # One of the existing declarations, or one that is missing.
             yield Gap(act)
             return
         if not named:
             if (kind, handle.value) in self.hidden:
-                return  # the declaration is there, but cannot be read: its own gap says more
+                return  # the declaration exists, but cannot be read: its own gap is more specific
             close = close_names(handle.value, [d.handle.value for d in right if d.handle], 1)
             named = [d for d in right if d.handle and d.handle.value in close]
             for declaration in named:
                 if declaration.handle is declaration.interface and isinstance(declaration.interface, Name):
-                    # The topic, service or action is the handle, and may be misspelled where it is declared.
+                    # The topic, service or action is the handle, and may be misspelled in its declaration.
                     yield Gap(kind.value, handle.value)
                     yield Gap(OTHER_SIDE[kind].value, declaration.interface.value)
         if not named:
@@ -212,7 +212,7 @@ class _Search:
             yield Gap(kind.value)  # the declaration is missing
 
     def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
-        """A field or parameter that is said in an unknown way: `<feild name="…">` in an element that sends."""
+        """A field or parameter that is given in an unknown way: `<feild name="…">` in an element that sends."""
         if not element.attributes:
             return
         for chart in self.machine.charts:
@@ -253,7 +253,7 @@ class _Search:
                     yield from self._user(statement, statement.part)
                     if any(field.name is None for field in statement.fields):
                         yield from (PlacedGap(g, statement.element.name_span) for g in self._fields(statement))
-        # A field of no known type is one that the ROS type does not have, or the ROS type is not known.
+        # A field of unknown type does not exist in the ROS type, or the ROS type is unknown.
         for value in self.typed.values:
             owner = owners.get(value.element) if value.use is ValueUse.FIELD else None
             if owner is not None and (value.wanted is None or value.wanted == UNKNOWN):
@@ -285,7 +285,7 @@ class _Search:
         for kind in kinds:
             yield from (PlacedGap(gap, span) for gap in self._over(f"{kind.value} {part.value}", kind, handle))
             if declaration is not None and declaration.kind in INTERFACE_KINDS:
-                # The declaration may be what is wrong.
+                # The declaration may be wrong.
                 yield PlacedGap(_about(kind.value, declaration), span)
 
     def _handlers(self) -> Iterator[PlacedGap]:
@@ -331,7 +331,7 @@ OTHER_SIDE: Mapping[SymbolKind, SymbolKind] = {
     SymbolKind.ACTION_CLIENT: SymbolKind.ACTION_SERVER,
     SymbolKind.ACTION_SERVER: SymbolKind.ACTION_CLIENT,
 }
-"""The kind of declaration that each kind speaks to."""
+"""The opposite kind of each kind of declaration."""
 
 _PARTS: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
     SymbolKind.PUBLISHER: (ProtocolPart.MESSAGE,),
@@ -341,7 +341,7 @@ _PARTS: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
     SymbolKind.ACTION_CLIENT: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
     SymbolKind.ACTION_SERVER: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
 }
-"""The parts of an interface with fields in the translation, which the other side may name."""
+"""The parts of an interface with fields in the translation, which the other side may use."""
 
 
 def _kind(type_: ElementType) -> SymbolKind | None:
@@ -357,7 +357,7 @@ def reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
 
 
 def is_interface_name(name: str) -> bool:
-    """Whether `name` can name a topic, service or action: it becomes a part of event names
+    """Whether `name` is a valid name of a topic, service or action: it becomes a part of event names
     (docs/spec/plain-scxml.md#interface-names)."""
     return bool(name) and not any(character.isspace() for character in name)
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The global variables that the translation of a system will have: what properties may refer to
-(docs/spec/jani.md#global-variables).
+"""The global variables of the translated system, which properties may use (docs/spec/jani.md#global-variables).
 
-Every event that is sent gives `EVENT.valid` and one variable per parameter, arrays also their lengths. The translation
-itself does not read this table; a test holds the two against each other.
+Every event that is sent has `EVENT.valid` and one variable for each parameter, and for arrays also their lengths. The
+translation itself does not read this table; a test compares both.
 """
 
 from __future__ import annotations
@@ -30,7 +29,8 @@ FindInterface = Callable[[str, str], InterfaceType | None]
 class GlobalVariable:
     """A variable of the translated system.
 
-    `event` and `parameter` tell what it carries ("valid" for the flag); `source` is what in the models it comes from.
+    `event` and `parameter` are what it holds ("valid" for the flag); `source` is the part of the models from which it
+    comes.
     """
 
     name: str
@@ -91,7 +91,7 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
 
 
 def _sent(use: InterfaceUse, part: ProtocolPart) -> list[tuple[str, Type]]:
-    """The fields of a part as parameters, with the types that they are sent with."""
+    """The fields of a part as parameters, with the types of the values that are sent."""
     return [_field(field) for field in dict(use.fields).get(part, ())]
 
 
@@ -178,7 +178,7 @@ def _tree(system: System) -> Iterator[_Event]:
 
 
 def _calls(parent: SystemAutomaton, number: int) -> bool:
-    """Whether a parent ever calls its child `number`."""
+    """Whether a parent ever ticks or halts its child `number`."""
     assert parent.instance is not None
     plugin = parent.outline.plugin
     return plugin.any_child or parent.instance.children.index(number) < plugin.children

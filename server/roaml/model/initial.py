@@ -14,7 +14,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class MissingMembers:
-    """An object literal leaves members out."""
+    """An object literal lacks members."""
 
     span: Span
     struct: Struct
@@ -23,7 +23,7 @@ class MissingMembers:
 
 @dataclass(frozen=True, slots=True)
 class ExtraMember:
-    """An object literal has a member that the struct has not, or has twice."""
+    """An object literal has a member that the struct does not have, or has it twice."""
 
     span: Span
     struct: Struct
@@ -40,7 +40,7 @@ class WrongType:
 
 @dataclass(frozen=True, slots=True)
 class TooLong:
-    """More elements than the array holds."""
+    """A literal has more elements than the array can hold."""
 
     span: Span
     length: int
@@ -51,14 +51,14 @@ InitialProblem: TypeAlias = MissingMembers | ExtraMember | WrongType | TooLong |
 
 
 def check_initial(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
-    """What keeps `expr` from being an initial value of type `wanted`. Names are no constants."""
+    """Why `expr` cannot be an initial value of type `wanted`. Names are not constants."""
     problems: list[InitialProblem] = []
     _check(expr, wanted, problems)
     return tuple(problems)
 
 
 def check_bound(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
-    """What keeps `expr` from being a bound of a variable: unlike a value, an int is no bound of a real."""
+    """Why `expr` cannot be a bound of a variable: unlike for a value, an int is not allowed for a real."""
     problems = check_initial(expr, wanted)
     given, _ = infer.infer(expr, lambda _: None)
     if not problems and is_kind(wanted, "real") and is_kind(given, "int"):
@@ -77,7 +77,7 @@ def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
                 _check(element, wanted.element, problems)
         case ObjectLiteral(), Unknown():
             pass
-        case ArrayLiteral(), Unknown():  # perhaps of structs: then its elements may be objects
+        case ArrayLiteral(), Unknown():  # possibly of structs: then its elements may be objects
             for element in expr.elements:
                 _check(element, wanted, problems)
         case ObjectLiteral(), _:

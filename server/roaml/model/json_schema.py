@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Struct declarations given as a JSON Schema (docs/spec/types.md#json-structs).
+"""Struct declarations in a JSON Schema (docs/spec/types.md#json-structs).
 
-The root object is a struct named by its `title`; an inline object is one named after its property; a `$ref` names a
-definition, of which only those that the root reaches exist. What the language has no type for is a finding; then a
-struct that cannot be read, or that is not reached, is declared all the same, as incomplete.
+The root object is a struct named by its `title`; an inline object is a struct named after its property; a `$ref` names
+a definition, and only those that the root reaches exist. A part for which the language has no type is a finding; a
+struct that cannot be read, or that is not reached, is then declared as incomplete.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _DEFINITIONS = ("$defs", "definitions")
 
 
 def structs_in_json(value: JsonValue) -> tuple[tuple[StructDeclaration, ...], tuple[Finding, ...]]:
-    """The structs of a schema, and what of it cannot be a struct."""
+    """The structs of a schema, and the parts that cannot be structs."""
     reader = _Reader(value)
     reader.root()
     reader.unread()
@@ -40,20 +40,20 @@ class _Reader:
     def root(self) -> None:
         schema = self.value
         if not isinstance(schema, JsonObject):
-            self.report(schema, "struct declarations in JSON are a JSON Schema: an object")
+            self.report(schema, "struct declarations in JSON must be a JSON Schema: an object")
             self.incomplete(schema, None)
             return
         if _text(schema.get("type")) != "object":
-            self.report(schema.get("type") or schema, 'the schema of a struct has `"type": "object"`')
+            self.report(schema.get("type") or schema, 'the schema of a struct needs `"type": "object"`')
         title = schema.get("title")
         if not isinstance(title, JsonString) or not title.value:
-            self.report(title or schema, 'the schema has no `"title"`: it is the name of the struct')
+            self.report(title or schema, 'the schema has no `"title"`; add it as the name of the struct')
             self.incomplete(schema, None)
             return
         self.object(schema, Name(title.value, title.content_span))
 
     def unread(self) -> None:
-        """What cannot be read may lead to the definitions that nothing else leads to."""
+        """An unreadable part may use the definitions that nothing else uses."""
         if not self.findings or not isinstance(self.value, JsonObject):
             return
         for section in _DEFINITIONS:
@@ -71,7 +71,7 @@ class _Reader:
             return
         self.done.add(name.value)
         if self.depth >= _MAX_DEPTH:
-            self.report(schema, f"structs are nested more than {_MAX_DEPTH} deep")
+            self.report(schema, f"structs are nested more than {_MAX_DEPTH} levels deep")
             self.incomplete(schema, name)
             return
         self.depth += 1
@@ -80,7 +80,7 @@ class _Reader:
             self.report(properties or schema, f"the struct `{name.value}` has no properties")
             self.incomplete(schema, name)
             return
-        # Its place in the list is before the structs that it contains, as a reader meets them.
+        # It is listed before the structs that it contains.
         index = len(self.structs)
         self.structs.append(StructDeclaration(name, (), schema.span))
         members = tuple(self.member(member) for member in properties.members)
@@ -117,12 +117,12 @@ class _Reader:
         if text in _BASE:
             return _BASE[text]
         if isinstance(kind, JsonArray):
-            self.report(kind, f"`{name.value}` may have several types; a member has one")
+            self.report(kind, f"`{name.value}` may have several types, but a member must have one")
         elif kind is None:
-            self.report(schema, f"`{name.value}` has no `type`; there are {', '.join(_BASE)}, array and object")
+            self.report(schema, f"`{name.value}` has no `type`; valid types are {', '.join(_BASE)}, array and object")
         else:
             self.report(
-                kind, f"the type of `{name.value}` is not supported; there are {', '.join(_BASE)}, array, object"
+                kind, f"the type of `{name.value}` is not supported; valid types are {', '.join(_BASE)}, array, object"
             )
         return ""
 
@@ -130,7 +130,7 @@ class _Reader:
         target = schema.get("$ref")
         path = _text(target).split("/")
         if not isinstance(target, JsonString) or len(path) != 3 or path[0] != "#" or path[1] not in _DEFINITIONS:
-            self.report(target or schema, "a `$ref` leads to a definition in this file: `#/$defs/NAME`")
+            self.report(target or schema, "a `$ref` must refer to a definition in this file: `#/$defs/NAME`")
             return ""
         definitions = self.value.get(path[1]) if isinstance(self.value, JsonObject) else None
         definition = definitions.get(path[2]) if isinstance(definitions, JsonObject) else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file is. Content decides, never the extension alone (docs/spec/files.md#dialects)."""
+"""The kind of a file. The content decides, never the extension alone (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ GRAMMARS: Mapping[FileKind, Grammar] = {
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
 INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")
 PROJECT_EXTENSION = ".btproj"
-"""Projects of Groot2, which list files of trees. They are read where a tree beside them is, and never changed."""
+"""Projects of Groot2, which list files of trees. They are read if a tree beside them is read, and never changed."""
 EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
-"""Files with other extensions are looked at only when they are named."""
+"""Files with other extensions are read only when they are named."""
 
 CONFIG_FILE = "as2fm.toml"
 PROJECT_FILE = "pyproject.toml"
-"""May hold a configuration in its table `tool.as2fm`."""
+"""Files that may contain a configuration in the table `tool.as2fm`."""
 
 CONFIG_FILES = (CONFIG_FILE, PROJECT_FILE)
 
@@ -64,7 +64,7 @@ _HEAD = 20_000
 
 
 def root_name(text: str) -> str:
-    """The name of the first element, "" if there is none near the beginning."""
+    """The name of the first element; "" if there is none near the beginning."""
     at, head = 0, text[:_HEAD]
     while (less := head.find("<", at)) >= 0:
         if skipped := _SKIPPED.match(head, less):
@@ -77,7 +77,7 @@ def root_name(text: str) -> str:
 
 
 def kind_of(path: str, text: str) -> FileKind:
-    """What the file is by itself. What a system lists it as may say more (`roaml.project.analysis`)."""
+    """The kind of a file by its content. A system that lists it may specify more (`roaml.project.analysis`)."""
     name = path.replace("\\", "/").rpartition("/")[2]
     if name == CONFIG_FILE or (name == PROJECT_FILE and _OUR_TABLE.search(text)):
         return FileKind.CONFIGURATION

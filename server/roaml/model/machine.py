@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state machine document as typed data (docs/spec/machines.md): what was written, not yet what it means in a system.
+"""A state machine document as typed data (docs/spec/machines.md): its content, independent of its system.
 
 - Frozen; built from one file alone, so equal texts give equal models.
-- Half-written documents give models with holes: whatever may be missing is None, nothing is invented.
-- Every part keeps its XML element and, through it, its grammar (`ElementType`) and its place.
+- Incomplete documents give incomplete models: everything that may be missing can be `None`, nothing is invented.
+- Every part has its XML element and, through it, its grammar (`ElementType`) and its position.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from roaml.xml_syntax import Element
 
 
 class Dialect(enum.Enum):
-    """Which of the languages that look alike a machine is written in (docs/spec/files.md#dialects)."""
+    """The dialect in which a machine is written (docs/spec/files.md#dialects)."""
 
     CURRENT = "current HL-SCXML"
     OLDER = "older HL-SCXML"
@@ -31,7 +31,7 @@ class Dialect(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Data:
-    """A variable. `comment_type` tells that the type stands in a comment before the element
+    """A variable. `comment_type` means that the type is in a comment before the element
     (docs/spec/machines.md#type-comment)."""
 
     element: Element
@@ -48,12 +48,12 @@ class Declaration:
     """A ROS interface or timer that the machine uses.
 
     Attributes:
-        kind: the kind of symbol it defines: publisher, subscriber, service-client, service-server, action-client,
+        kind: the kind of symbol that it declares: publisher, subscriber, service-client, service-server, action-client,
             action-server or timer.
-        handle: the name by which the rest of the file knows it; without `name` the interface as written.
-        interface: topic, service or action name; None for timers.
-        type: the ROS type; None for timers.
-        rate: of a timer, in Hz.
+        handle: the name that the rest of the file uses; without `name`, the interface as written.
+        interface: topic, service or action name; `None` for timers.
+        type: the ROS type; `None` for timers.
+        rate: the rate of a timer, in Hz.
     """
 
     element: Element
@@ -99,7 +99,7 @@ class Send:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Branch:
-    """One part of an `<if>`; `element` is the `<if>`, `<elseif>` or `<else>`. Only `<else>` has no condition at all."""
+    """One part of an `<if>`; `element` is the `<if>`, `<elseif>` or `<else>`. Only `<else>` has no condition."""
 
     element: Element
     cond: Expression | None
@@ -108,7 +108,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class If:
-    """`otherwise` is None without `<else/>`."""
+    """`otherwise` is `None` without `<else/>`."""
 
     element: Element
     branches: tuple[Branch, ...]
@@ -119,7 +119,7 @@ class If:
 class RosSend:
     """Sends a part of a ROS interface: a message, request, response, goal, feedback, result, ...
 
-    `goal_id` and `thread_id` are None where the element has no such attribute or it is missing.
+    `goal_id` and `thread_id` are `None` if the element has no such attribute or it is missing.
     """
 
     element: Element
@@ -149,7 +149,7 @@ class ReturnHalted:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CallChild:
-    """Ticks or halts a child; `halts` tells which. `child` is its index or a variable."""
+    """Ticks a child, or halts it if `halts`. `child` is its index or a variable."""
 
     element: Element
     halts: bool
@@ -165,7 +165,7 @@ class SetOutput:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NoEffect:
-    """An element that is accepted and does nothing: `<log>`."""
+    """An element that is accepted and has no effect: `<log>`."""
 
     element: Element
 
@@ -175,7 +175,8 @@ Statement: TypeAlias = Assign | Send | If | RosSend | ReturnStatus | ReturnHalte
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Target:
-    """Where a transition leads. `probability` is its text; None if not given. `element` is the `<target>`, if any."""
+    """The target of a transition. `probability` is its text; `None` if not given. `element` is the `<target>`, if
+    any."""
 
     element: Element | None
     state: Name | None
@@ -231,9 +232,9 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """States and data that belong together: a machine's own, or those of one action thread.
+    """The states and data of a machine itself, or those of one action thread.
 
-    `scope` is "" for the machine itself and tells the threads of a file apart.
+    `scope` is "" for the machine itself and distinguishes the threads of a file.
     """
 
     element: Element
@@ -249,8 +250,8 @@ class Chart:
 
     @cached_property
     def executed(self) -> tuple[Statement, ...]:
-        """The statements that some transition executes. Those of `<onentry>` are left out where nothing leads to, those
-        of `<onexit>` where nothing leads away (docs/spec/jani.md: they become parts of the transitions)."""
+        """The statements that a transition executes. Statements of `<onentry>` are left out if no transition leads to
+        the state, those of `<onexit>` if none leaves it (docs/spec/jani.md: they become parts of the transitions)."""
         return tuple(statement for body in self._executed() for statement in statements(body))
 
     def _executed(self) -> Iterator[tuple[Statement, ...]]:
@@ -272,7 +273,7 @@ class Chart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Thread:
-    """An action thread: `count` copies of `chart` (None if that is no positive number)."""
+    """An action thread: `count` copies of `chart` (`None` if the number is invalid)."""
 
     element: Element
     server: Name | None
@@ -319,7 +320,7 @@ def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statemen
 
 
 def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
-    """All statements of a body, those inside `<if>` included, in document order."""
+    """All statements of a body, including those inside `<if>`, in document order."""
     for statement in body:
         yield statement
         if isinstance(statement, If):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The forms of names: which names variables and events may have."""
+"""The syntax of names: which names variables and events may have."""
 
 from __future__ import annotations
 
@@ -18,15 +18,18 @@ def is_reserved(name: str) -> bool:
 
 
 def variable_problem(name: str) -> str:
-    """Why `name` cannot name a variable, or ""."""
+    """Why `name` is not a valid variable name; "" if it is."""
     if name in STATUSES:
-        return f"`{name}` is the answer of a tree node and cannot name a variable"
+        return f"`{name}` is the status of a tree node and cannot be the name of a variable"
     if name in ("length", "Math", "true", "false"):
-        return f"`{name}` has a meaning of its own and cannot name a variable"
+        return f"`{name}` has a special meaning and cannot be the name of a variable"
     if is_reserved(name):
-        return f"`{name}` is a word of ECMAScript and cannot name a variable"
+        return f"`{name}` is a reserved word of ECMAScript and cannot be the name of a variable"
     if not VARIABLE.match(name):
-        return f"`{name}` cannot name a variable: it begins with a letter and holds letters, digits and `_`"
+        return (
+            f"`{name}` is not a valid variable name: it must begin with a letter and contain only letters, "
+            "digits and `_`"
+        )
     if name.endswith("_"):
-        return f"`{name}` ends in `_`, and such a variable cannot be used"
+        return f"`{name}` ends in `_`, which is not allowed in the name of a variable"
     return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How large things are that contain each other, structs and messages, counted before they are put together."""
+"""The sizes of structs and messages that contain each other, computed before they are expanded."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 MAX_FIELDS = 10_000
-"""Of a struct or message, with all that is in its members."""
+"""The maximum number of fields of a struct or message, including those of its members."""
 
 MAX_DEPTH = 100
-"""How deep structs and messages may be in each other."""
+"""The maximum nesting depth of structs and messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class TypeExtent:
     """Attributes:
-    fields: that are no structs themselves.
-    depth: how many structs are in each other at most.
+    fields: the number of fields that are not structs.
+    depth: the maximum number of nested structs.
     """
 
     fields: int
@@ -29,10 +29,10 @@ class TypeExtent:
 
 
 def extents(members: Mapping[str, Sequence[str]]) -> dict[str, TypeExtent]:
-    """The extent of each name, inner ones first. What contains itself counts one field there.
+    """The extent of each name, inner ones first. A recursive use has one field.
 
     Args:
-        members: name -> what its members are; names that are not among the keys are plain fields.
+        members: name -> the types of its members; names that are not keys are plain fields.
     """
     found: dict[str, TypeExtent] = {}
     for name in _inner_first(members):

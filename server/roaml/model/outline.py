@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rest of the system sees of a machine: names and types, no places.
+"""The part of a machine that the rest of the system uses: names and types, without positions.
 
-Two versions of a file with equal outlines are the same to every other file, so typing inside a transition rechecks
-one file only.
+Two versions of a file with equal outlines are equal for every other file, so typing inside a transition rechecks only
+one file.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class PortOutline:
-    """`direction` is "in" or "out"; `type` is as written; `read` and `written` tell what the machine does with it."""
+    """`direction` is "in" or "out"; `type` is as written; `read` and `written` state whether the machine does so."""
 
     key: str
     type: str
@@ -57,14 +57,13 @@ class SentField:
 
 @dataclass(frozen=True, slots=True)
 class InterfaceUse:
-    """A declared ROS interface and what the machine does with it.
+    """A declared ROS interface and its uses by the machine.
 
     Attributes:
         name: topic, service or action as written; "" if it comes from port `port`.
         sends, receives: the parts, as in the roles of the schema.
-        fields: of each part that is sent, the fields with the types that they are sent with, those that are not set
-            included.
-        awaited: of a subscriber, that the machine can come into a state in which it waits for this topic alone.
+        fields: of each part that is sent, the fields with the types of their values, including those that are not set.
+        awaited: for a subscriber, whether the machine can reach a state in which it waits for this topic alone.
     """
 
     kind: SymbolKind
@@ -96,7 +95,8 @@ class EventReceived:
 
 @dataclass(frozen=True, slots=True)
 class TimerOutline:
-    """A declared timer: its rate in Hz as written, or the port it comes from; how many charts have a callback."""
+    """A declared timer: its rate in Hz as written, or the port that provides it; the number of charts with a
+    callback."""
 
     name: str
     rate: str
@@ -116,9 +116,9 @@ class PluginOutline:
 
     Attributes:
         children: the greatest literal child index that it ticks or halts, plus 1.
-        any_child: it ticks or halts children by a variable index.
-        ticked_children: the literal indexes of the children that it ticks; None if it may tick any.
-        halts_children: it halts children and waits for their answer.
+        any_child: whether it ticks or halts children by a variable index.
+        ticked_children: the literal indices of the children that it ticks; `None` if it may tick any.
+        halts_children: whether it halts children and waits for their answer.
     """
 
     ticked: bool
@@ -156,7 +156,7 @@ class MachineOutline:
 
     @property
     def takes_part_in_tree(self) -> bool:
-        """Whether anything in the machine belongs to a behavior tree, were it an event of that name
+        """Whether the machine uses the behavior tree, be it by an event with its name
         (docs/spec/files.md#removed-tree-events)."""
         plugin = self.plugin
         takes = plugin.ticked or plugin.halted
@@ -280,7 +280,7 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
 
 
 def _awaits(machine: Machine, chart: Chart, subscriber: Declaration) -> bool:
-    """Whether a chart comes, without a message of the topic, into a state in which only a message makes it go on."""
+    """Whether a chart reaches, without a message of the topic, a state that only a message can leave."""
     states = {state.id.value: state for state in chart.states if state.id}
     pending = [chart.initial.value] if chart.initial else []
     seen = set(pending)
@@ -345,7 +345,7 @@ def _plugin(machine: Machine) -> PluginOutline:
 
 
 def _index(child: Name | None) -> int | None:
-    """The index of a child if it is written out."""
+    """The index of a child if it is a literal."""
     return int(child.value[:6]) if child and child.value.isascii() and child.value.isdigit() else None
 
 
@@ -360,7 +360,7 @@ def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
 
 
 def event_parameters(tree: Expr) -> Iterator[str]:
-    """The names that stand behind `_event.data.` in an expression."""
+    """The names after `_event.data.` in an expression."""
     for node in walk(tree):
         match node:
             case Member(object=Member(object=NameExpr(name="_event"), name="data")) if node.name:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What HL-SCXML sees of a ROS interface type: its parts as structs of HL types (docs/spec/ros.md#interface-types).
+"""ROS interface types in HL-SCXML: their parts as structs of HL types (docs/spec/ros.md#interface-types).
 
-- Every kind of ROS field has an HL type here. Some kinds the reference translator does not know; models written for it
-  leave such fields out, so they need not be set (`InterfaceType.optional`).
-- A definition that contains itself, or a type that is not found, gives members of unknown type.
+- Every kind of ROS field has an HL type here. The reference translator does not support some kinds; models written for
+  it omit these fields, so they need not be set (`InterfaceType.optional`).
+- A definition that contains itself, or a type that is not found, has members of unknown type.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ _REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
 
 @dataclass(frozen=True, slots=True)
 class RepeatedType:
-    """A ROS type that two files define, not in the same way.
+    """A ROS type that two files define differently.
 
     Attributes:
-        used_by: the declared type that it is, or is a part of, as written.
-        path: of the file that counts; `other` is the one that does not.
+        used_by: the declared type that is repeated, or contains the repeated one, as written.
+        path: the file that is used; `other` is the one that is ignored.
     """
 
     used_by: str
@@ -68,7 +68,7 @@ class InterfaceType:
 
 
 def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
-    """`definition` in HL types; nested messages are looked up with `find`. It must not be too large (`extent_of`)."""
+    """`definition` in HL types; nested messages are resolved with `find`. It must not be too large (`extent_of`)."""
     parts, optional = [], []
     reader = _Reader(find)
     for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
@@ -82,13 +82,13 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
 
 
 def extent_of(definitions: Iterable[Definition]) -> TypeExtent:
-    """How large the first of some definitions is, the others being the messages in it."""
+    """The size of the first definition; the others are the messages in it."""
     fields = {each.full_name: [f.type.name for s in each.sections for f in s.fields] for each in definitions}
     return extents(fields)[next(iter(fields))]
 
 
 class _Reader:
-    """Makes the type of each message once: `inside` are those that are being made."""
+    """Creates the type of each message once; `inside` are those in progress."""
 
     def __init__(self, find: FindMessage) -> None:
         self.find = find
@@ -130,7 +130,7 @@ def _optional(section: Section, path: tuple[str, ...], struct: Struct, find: Fin
 
 
 def known_to_reference(type_: FieldType) -> bool:
-    """Whether the reference translator wants a field of this type to be set (docs/spec/ros.md#required-fields)."""
+    """Whether the reference translator requires a field of this type to be set (docs/spec/ros.md#required-fields)."""
     if not type_.is_primitive:
         return True
     if type_.is_array:

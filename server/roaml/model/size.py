@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How large the translation of a system will be, and what makes it so. `roaml.lower.size` counts it beforehand."""
+"""The size of the translation of a system, and its largest contributions. `roaml.lower.size` computes it in advance."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import Array, EmptyArray, Struct, Type, is_kind
 
 MAX_CELLS = 1_000_000
-"""Cells of a system unless the configuration says otherwise (`max-cells`)."""
+"""The default maximum number of cells of a system (`max-cells`)."""
 
 MAX_PARTS = 3_000_000
-"""Parts of a system unless the configuration says otherwise (`max-parts`)."""
+"""The default maximum number of parts of a system (`max-parts`)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """What one thing in the models adds to a size.
+    """The contribution of one thing in the models to a size.
 
     Attributes:
         count: in cells or parts.
-        words: what it is, for a message.
-        path: the file of the thing; "" for what belongs to no file.
-        symbol: where it is declared, if it has a name.
+        words: a phrase for the thing.
+        path: the file of the thing; "" if it is in no file.
+        symbol: the declaration of the thing, if it has a name.
     """
 
     count: int
@@ -49,7 +49,7 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How large a system may be to be translated."""
+    """The maximum sizes of a system that is translated."""
 
     cells: int = MAX_CELLS
     parts: int = MAX_PARTS
@@ -62,7 +62,7 @@ def cells_of(type_: Type, max_array_size: int, sent: bool = False) -> int:
     """The cells of a variable of a type; see `roaml.to_jani.shapes.shape_of`.
 
     Args:
-        sent: it is a parameter of an event, in which all arrays have `max_array_size` elements.
+        sent: whether it is a parameter of an event, in which all arrays have `max_array_size` elements.
     """
     return _cells(type_, max_array_size, sent, 1, 0)
 

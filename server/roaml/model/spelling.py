@@ -11,7 +11,7 @@ from roaml.xml_syntax import Element
 
 
 def meant(element: Element, name: str, known: Container[str]) -> Name | None:
-    """The value of the attribute `name`, also if the attribute is misspelled as one that the element does not have."""
+    """The value of the attribute `name`, also if the attribute is misspelled."""
     if element.get(name) is not None:
         return name_of(element.get(name))
     strange = [a for a in element.attributes if a.name not in known and are_similar(a.name, name)]

@@ -24,7 +24,7 @@ class MemberDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class StructDeclaration:
-    """`complete` tells that it says no more than could be read."""
+    """`complete` means that all of it could be read."""
 
     name: Name | None
     members: tuple[MemberDeclaration, ...]
@@ -33,7 +33,7 @@ class StructDeclaration:
 
     @property
     def outline(self) -> StructOutline | None:
-        """The declaration without places; None if it has no name."""
+        """The declaration without positions; `None` if it has no name."""
         if self.name is None:
             return None
         members = tuple((m.name.value, m.type.name if m.type else None) for m in self.members if m.name)
@@ -42,8 +42,8 @@ class StructDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class StructOutline:
-    """Name and members of a struct. `complete` tells that there are no members whose declaration cannot be read; the
-    type of a member is None if that cannot be read."""
+    """Name and members of a struct. `complete` means that all declarations of members could be read; the type of a
+    member is `None` if it cannot be read."""
 
     name: str
     members: tuple[tuple[str, TypeName | None], ...]
@@ -51,7 +51,7 @@ class StructOutline:
 
 
 def structs_in_xml(document: Document) -> tuple[StructDeclaration, ...]:
-    """The declarations in a `<types>` file. An element in place of a `<struct>` declares a struct, too."""
+    """The declarations in a `<types>` file. An unknown element in place of a `<struct>` declares a struct as well."""
     if document.root is None:
         return ()
     return tuple(_struct(each) for each in document.root.elements if each.name == "struct" or not each.prefix)
@@ -69,9 +69,9 @@ def _struct(element: Element) -> StructDeclaration:
 
 
 def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
-    """All structs by name, their members resolved. Of equal names the last counts.
+    """All structs by name, with their members resolved. If names are equal, the last declaration is used.
 
-    A member whose type is not known, or that would contain the struct itself, has an unknown type, and so has a struct
+    A member whose type is unknown, or that would contain the struct itself, has an unknown type, and so has a struct
     whose declaration is not complete, or that is too large.
     """
     by_name = {outline.name: outline for outline in outlines}
@@ -90,7 +90,7 @@ def _member_type(name: TypeName | None, resolved: Mapping[str, Type]) -> Type:
 
 
 def struct_extents(outlines: Mapping[str, StructOutline]) -> Mapping[str, TypeExtent]:
-    """How large structs are with all that is in them."""
+    """The sizes of structs, including their members."""
     return extents(_graph(outlines))
 
 
@@ -100,8 +100,8 @@ def _graph(by_name: Mapping[str, StructOutline]) -> dict[str, list[str]]:
 
 
 def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:
-    """The members by which structs contain themselves: struct and member -> the names on the way round, both ends the
-    same. Of each cycle it is the member that leads back to the struct that was declared first."""
+    """The members by which structs contain themselves: struct and member -> the names of the cycle, beginning and
+    ending with the same name. For each cycle it is the member that leads back to the struct that was declared first."""
     found: dict[tuple[str, str], tuple[str, ...]] = {}
     done: set[str] = set()
     for start in outlines:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The smallest parts of every model: names, expressions and port reads, each with its place."""
+"""The smallest parts of every model: names, expressions and port reads, each with its position."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.xml_syntax import Attribute, Document, Element
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A word of the user's and where it stands."""
+    """A name in the file, with its position."""
 
     value: str
     span: Span
@@ -24,7 +24,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """An expression and what is wrong with its form. `source` is its text and the way back to the file."""
+    """An expression and its syntax errors. `source` is its text and the mapping back to the file."""
 
     source: Decoded
     span: Span
@@ -37,7 +37,7 @@ class Expression:
 
     @property
     def broken(self) -> bool:
-        """Whether the tree stands for less than what is written."""
+        """Whether a part of the text is missing in the tree."""
         return bool(self.findings)
 
 
@@ -54,7 +54,7 @@ Value: TypeAlias = Expression | PortRead
 
 @dataclass(frozen=True, slots=True)
 class TypeRef:
-    """A type as written; `name` is None if it has not the form of a type."""
+    """A type as written; `name` is `None` if it does not have the form of a type."""
 
     text: str
     span: Span
@@ -92,7 +92,7 @@ def type_of(attribute: Attribute | None) -> TypeRef | None:
 
 def value_of(document: Document, element: Element, name: str) -> Value | None:
     """A value that may be given as attribute or child element `name` (docs/spec/files.md#attribute-or-child); the
-    attribute wins."""
+    attribute takes precedence."""
     attribute = element.get(name)
     if attribute is not None:
         return expression_of(document, attribute)

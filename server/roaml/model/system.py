@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole system, linked across files: who publishes, serves, calls, sends, receives, reads and writes what.
+"""The whole system, linked across files: which automata publish, serve, call, send, receive, read and write what.
 
-- Made of outlines only, so it holds no places; a `Symbol` leads back to the text.
-- Compared by identity: whoever makes it remembers it by its parts, and all that looks across files depends on it.
+- Built from outlines only, so it contains no positions; a `Symbol` leads back to the text.
+- Compared by identity: it is cached by its parts, and all results across files depend on it.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ CLOCK_TOPIC = "clock"
 CLOCK_TYPE = "builtin_interfaces/Time"
 CHILDREN_COUNT = "CHILDREN_COUNT"
 ANY_TYPE = "any"
-"""Stands where a port has a type, if the port takes any."""
+"""The type of a port that accepts any type."""
 
 
 Fact: TypeAlias = "tuple[str, str | None]"
-"""An act (see `Gap`) and what it is about, with topics as in events; None if it may be about any."""
+"""An act (see `Gap`) and its subject, with topics named as in events; `None` if it may be any."""
 
 
 def sanitise(name: str) -> str:
@@ -63,18 +63,19 @@ def sanitise(name: str) -> str:
 
 
 def safe_name(automaton: str) -> str:
-    """An automaton name as part of an event name: what is no letter, digit, `_`, `.` or `-` becomes `_`."""
+    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
+    `_`."""
     return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
 
 
 @dataclass(frozen=True, slots=True)
 class SystemAutomaton:
-    """A machine in its place in the system: a node, or a plugin for one node of the tree.
+    """A machine in its place in the system: a ROS node, or a plugin for one node of the tree.
 
     Attributes:
-        path: the machine's file; "" for nodes that BehaviorTree.CPP brings along.
-        instance: the tree node, None for nodes of the system.
-        index: counts the listings in the system file, so that a file listed twice gives two automata.
+        path: the machine's file; "" for nodes of BehaviorTree.CPP.
+        instance: the tree node; `None` for ROS nodes.
+        index: counts the entries in the system file, so that a file that is listed twice gives two automata.
     """
 
     name: str
@@ -84,7 +85,7 @@ class SystemAutomaton:
     index: int = 0
 
     def port(self, key: str) -> PortValue | None:
-        """What a declared port holds."""
+        """The value of a declared port."""
         if self.instance is None or self.outline.port(key) is None:
             return None
         if key == CHILDREN_COUNT:
@@ -92,7 +93,7 @@ class SystemAutomaton:
         return self.instance.port(key)
 
     def interface_name(self, use: InterfaceUse) -> str | None:
-        """The topic, service or action of a declaration; None if nothing, or no name, is given."""
+        """The topic, service or action of a declaration; `None` if there is none, or its name is unknown."""
         value = self.port(use.port) if use.port else PortConstant(use.name)
         name = value.text.strip() if isinstance(value, PortConstant) else ""
         return name if is_interface_name(name) else None
@@ -128,7 +129,7 @@ class Channel:
 
 @dataclass(slots=True)
 class PlainEvent:
-    """A plain event with all who send and receive it."""
+    """A plain event with all its senders and receivers."""
 
     name: str
     senders: list[tuple[SystemAutomaton, EventSent]] = field(default_factory=list)
@@ -136,7 +137,7 @@ class PlainEvent:
 
     @property
     def data(self) -> Struct:
-        """All parameters that any sender sends; where types disagree the first known one counts."""
+        """All parameters that any sender sends; if types differ, the first known one is used."""
         params: dict[str, Type] = {}
         for _, sent in self.senders:
             for param in sent.params:
@@ -159,7 +160,7 @@ class BoundPort:
 
 
 _BESIDE_EVENTS = (PORT, VARIABLE, REMAP, NAME, PARAMETER)
-"""What a gap may say that does not decide which events a machine takes and sends."""
+"""The acts of gaps that do not affect which events a machine handles and sends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,17 +204,17 @@ class System:
 
     @property
     def complete(self) -> bool:
-        """Whether everything is known that is said between the files."""
+        """Whether all facts between the files are known."""
         return not self.possible
 
     @cached_property
     def possible(self) -> frozenset[Fact]:
-        """All that may be said where something cannot be read."""
+        """All facts that unreadable parts may contain."""
         found: set[Fact] = set()
         for gap in self.gaps:
             found |= self.facts(gap)
         if self.ticked_nodes or self.idle_plugins:
-            found.add((ANYTHING, None))  # another file is meant
+            found.add((ANYTHING, None))  # another file was probably meant
         for automaton in self.automata:
             found |= self.facts_of(automaton)
         for instance in self.instances:
@@ -222,8 +223,8 @@ class System:
         return frozenset(found)
 
     def may(self, act: str, name: str, automaton: SystemAutomaton | None = None) -> bool:
-        """Whether somebody, or this automaton, may do this where the system cannot be read. `name` is as channels and
-        events are called here."""
+        """Whether an automaton, or this automaton, may do this in an unreadable part. `name` is as for channels and
+        events."""
         possible = self.possible if automaton is None else self.facts_of(automaton)
         return any(answers(other, act) and about in (None, name) for other, about in possible)
 
@@ -232,7 +233,7 @@ class System:
         return any(may_give_variable(act, other, name) for act, other in self.possible)
 
     def facts(self, gap: Gap, automaton: SystemAutomaton | None = None) -> set[Fact]:
-        """What a gap may say, in an automaton or in the files around the automata."""
+        """The facts of a gap, in an automaton or in the files around the automata."""
         if gap.act == NODE:
             return self._facts_of_any_node()
         if gap.act == REMAP:
@@ -249,7 +250,7 @@ class System:
         return {_fact(gap.act, gap.name)}
 
     def facts_of(self, automaton: SystemAutomaton) -> set[Fact]:
-        """What an automaton may say where its machine, or its node in the tree, cannot be read."""
+        """The facts of an automaton in the unreadable parts of its machine, or of its node in the tree."""
         found = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
         for use in automaton.outline.interfaces:
             if use.port and automaton.interface_name(use) is None:
@@ -258,7 +259,7 @@ class System:
 
     @cached_property
     def partly_read(self) -> frozenset[int]:
-        """The automata, by `id`, of which something cannot be read that takes events or sends them."""
+        """The automata, by `id`, of which a part that handles or sends events cannot be read."""
         return frozenset(
             id(automaton)
             for automaton in self.automata
@@ -266,13 +267,13 @@ class System:
         )
 
     def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
-        """What a node of the tree may say whose port should name a topic, service or action, and does not."""
+        """The facts of a tree node whose port should name a topic, service or action, and does not."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
         return {*bound, (use.kind.value, None)}
 
     def facts_of_unknown(self, instance: Instance) -> set[Fact]:
-        """What a node of the tree may say that has no plugin: what the plugin does that is probably meant."""
+        """The facts of a tree node without a plugin: those of the plugin that was probably meant."""
         found: set[Fact] = {(VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
         element = BEHAVIOR_TREE.elements.get(instance.plugin)
         if element is not None and element.node:
@@ -289,7 +290,7 @@ class System:
         return {*found, (TREE, None)}
 
     def _facts_of_any_node(self) -> set[Fact]:
-        """What a node of the tree may say, of whichever plugin."""
+        """The facts of a tree node with any plugin."""
         if not self.plugins_known:
             return {(ANYTHING, None)}
         found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
@@ -300,12 +301,12 @@ class System:
 
     @cached_property
     def ticked_nodes(self) -> frozenset[str]:
-        """The files listed as nodes that are plugins: they take ticks."""
+        """The files listed as nodes that are plugins: they handle ticks."""
         return frozenset(path for path, outline in self.nodes if outline.plugin.ticked)
 
     @cached_property
     def idle_plugins(self) -> frozenset[str]:
-        """The files listed as plugins that have nothing of one, nor does the tree use them by name."""
+        """The files listed as plugins that are not plugins and that the tree does not use by name."""
         if any(gap.act in (ANYTHING, NODE) for gap in self.gaps):
             return frozenset()
         used = {instance.plugin for instance in self.instances}
@@ -326,7 +327,7 @@ class System:
         return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
 
     def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
-        """File and outline of the plugin called `name`; the nodes of BehaviorTree.CPP come first
+        """File and outline of the plugin with this name; the nodes of BehaviorTree.CPP take precedence
         (docs/spec/trees.md#nodes)."""
         builtin = builtin_plugins().get(name)
         if builtin is not None:
@@ -334,7 +335,7 @@ class System:
         return self._plugins.get(name, ("", None))
 
     def automata_of(self, path: str) -> tuple[SystemAutomaton, ...]:
-        """What the machine in the file `path` is in this system."""
+        """The automata of the machine in the file `path`."""
         return tuple(automaton for automaton in self.automata if automaton.path == path)
 
     @cached_property
@@ -380,7 +381,7 @@ class System:
         return found
 
     def channel(self, automaton: SystemAutomaton, use: InterfaceUse) -> Channel | None:
-        """The topic, service or action that a declaration of an automaton means."""
+        """The topic, service or action of a declaration of an automaton."""
         name = automaton.interface_name(use)
         if name is None:
             return None
@@ -404,7 +405,7 @@ class System:
         return found
 
     def is_observed(self, event: str) -> bool:
-        """Whether a property looks at the event: at its flag or at a parameter."""
+        """Whether a property observes the event: its flag or a parameter."""
         return any(name == f"{event}.valid" or name.startswith(f"{event}__") for name in self.observed)
 
     @cached_property
@@ -426,20 +427,20 @@ class System:
 
     @property
     def reads_blackboard(self) -> bool:
-        """Whether some node reads a variable of the blackboard."""
+        """Whether a node reads a variable of the blackboard."""
         return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
 
     def variable_type(self, variable: str) -> str:
-        """The name of a blackboard variable's type: that of the first port that has a definite one
+        """The name of a blackboard variable's type: that of the first port with a definite one
         (docs/spec/trees.md#blackboard)."""
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
         return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
 
     def any_type(self, automaton: SystemAutomaton) -> str:
-        """The name of the type that those ports of a node hold that take any, the ports of `Switch`
+        """The name of the type of those ports of a node that accept any type, the ports of `Switch`
         (docs/spec/nodes.md#control).
 
-        It is that of the first blackboard variable that one of them is bound to; string if none is.
+        It is that of the first blackboard variable to which one of them is bound; string if none is.
         """
         for port in automaton.outline.ports:
             value = automaton.port(port.key)
@@ -459,7 +460,7 @@ def _fact(act: str, name: str | None) -> Fact:
 
 
 def _said(automaton: SystemAutomaton) -> Iterator[Fact]:
-    """What an automaton says that may take part in the system."""
+    """The facts of an automaton that may take part in the system."""
     for use in automaton.outline.interfaces:
         yield _fact(use.kind.value, automaton.interface_name(use))
     yield from ((SENDS, sent.event) for sent in automaton.outline.sent)
@@ -472,7 +473,7 @@ _OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
 
 
 def may_give_variable(act: str, name: str | None, variable: str) -> bool:
-    """Whether who does `act` may give the translation a variable of this name (see `roaml.model.globals`)."""
+    """Whether a gap with `act` may add a variable of this name to the translation (see `roaml.model.globals`)."""
     first = act.partition(" ")[0]
     if first in _PREFIXES:
         of = f"{_PREFIXES[first]}_"
@@ -493,7 +494,7 @@ def may_give_variable(act: str, name: str | None, variable: str) -> bool:
 
 @functools.cache
 def builtin_plugins() -> Mapping[str, MachineOutline]:
-    """The nodes that come along and can be translated, as the schema describes them."""
+    """The translatable nodes of BehaviorTree.CPP, as the schema describes them."""
     return {
         element.name: _builtin(element)
         for element in BEHAVIOR_TREE.elements.values()

@@ -30,7 +30,7 @@ NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SystemInput:
-    """An `<input>`: a file that belongs to the system. `section` is the name of the element around it."""
+    """An `<input>`: a file of the system. `section` is the name of the element around it."""
 
     element: Element
     section: str
@@ -57,7 +57,7 @@ class ListedFile:
 
     @property
     def span(self) -> Span:
-        """Where the file is named, or should be."""
+        """The position of the file name, or where it is missing."""
         return self.input.src.span if self.input.src else self.input.element.name_span
 
     @property
@@ -75,7 +75,7 @@ _WANTED = {
 
 
 def wanted_kind(entry: SystemInput) -> FileKind | None:
-    """What a system takes a listed file for; where its type is misspelled, what is meant."""
+    """The kind of file that a system expects; if its type is misspelled, that of the intended type."""
     if entry.type is None:
         return None
     if entry.type.value == "xml" and entry.section == "properties":
@@ -118,7 +118,7 @@ NO_OVERRIDES = Overrides()
 
 
 def duration(text: str) -> int | None:
-    """Nanoseconds of a text such as `100 s` or `250ms`; None if it is none."""
+    """The duration in `text`, in ns; `None` if `text` is not a duration such as `100 s` or `250ms`."""
     number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
     unit = text.strip().removeprefix(number)
     value = _integer(number.strip())
@@ -142,7 +142,7 @@ class SystemFile:
     unread: frozenset[str]
 
     def parameter(self, name: str) -> Element | None:
-        """The element that sets a parameter: of several the last counts (docs/spec/systems.md#parameters)."""
+        """The element that sets a parameter; if there are several, the last one (docs/spec/systems.md#parameters)."""
         section = _parameter_section(self.element)
         return next((each for each in reversed(section.elements) if each.name == name), None) if section else None
 
@@ -152,7 +152,7 @@ def _parameter_section(root: Element) -> Element | None:
 
 
 def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -> SystemFile | None:
-    """The system file in `document`, or None if its root is not one."""
+    """The system file in `document`; `None` if its root is not that of one."""
     root = document.root
     if root is None or root.name not in SYSTEM.roots:
         return None
@@ -192,7 +192,7 @@ def _unread(root: Element) -> frozenset[str]:
         section = _section(child)
         hidden = [each for part in child.elements if not (section and _is_input(part)) for each in part.walk()]
         if any(each.get("src") for each in (hidden if section else (child, *hidden))):
-            found |= {section} if section else set(SECTIONS)  # whatever it is meant to be, or to stand in
+            found |= {section} if section else set(SECTIONS)  # whatever element or parent was meant
     return frozenset(found)
 
 
@@ -227,7 +227,7 @@ def _integer(text: str) -> int | None:
 
 
 def _positive(text: str) -> float | None:
-    """A positive finite number, or None."""
+    """A positive finite number; `None` for other texts."""
     try:
         value = float(text)
     except ValueError:

@@ -38,7 +38,7 @@ def period(rate: Fraction) -> Period:
 
 
 def periods(system: System, parameters: Parameters) -> Iterator[Period]:
-    """The periods of all timers of a system; those whose rate is none are left out."""
+    """The periods of all timers of a system, without those whose rate is invalid."""
     if system.instances:
         yield period(Fraction(str(parameters.tick_rate)))
     for automaton in system.automata:
@@ -49,7 +49,7 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
-    """A rate in Hz, as written or as `port` of the automaton holds it; None if that is none."""
+    """A rate in Hz, as written or as `port` of the automaton holds it; `None` if it is invalid."""
     value = automaton.port(port) if port else PortConstant(text)
     if not isinstance(value, PortConstant):
         return None

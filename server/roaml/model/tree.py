@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file of behavior trees as typed data (docs/spec/trees.md): what was written, before subtrees are put in place."""
+"""A file of behavior trees as typed data (docs/spec/trees.md): its content before subtrees are expanded."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortSetting:
-    """An attribute of a node that sets a port. `key` holds the port's own name, also where another name is written."""
+    """An attribute of a node that sets a port. `key` is the port's own name, also if another name is written."""
 
     attribute: Attribute
     key: Name
@@ -30,7 +30,7 @@ class PortSetting:
 
     @property
     def variable(self) -> str | None:
-        """The blackboard variable that the value refers to, or None if it is a constant."""
+        """The blackboard variable to which the value refers; `None` if it is a constant."""
         return blackboard_variable(self.value.value)
 
 
@@ -59,7 +59,7 @@ class TreeNode:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tree:
-    """A `<BehaviorTree>`; `roots` holds one node unless the file is wrong."""
+    """A `<BehaviorTree>`; `roots` contains one node unless the file is invalid."""
 
     element: Element
     id: Name | None
@@ -107,7 +107,7 @@ class TreeFile:
 
 
 def build_tree_file(document: Document) -> TreeFile | None:
-    """The trees in `document`, or None if its root is not `<root>`."""
+    """The trees in `document`; `None` if its root is not `<root>`."""
     root = document.root
     if root is None or root.name not in BEHAVIOR_TREE.roots:
         return None
@@ -163,12 +163,12 @@ def _node(element: Element) -> TreeNode:
 
 
 def _is_port(name: str, has_id: bool) -> bool:
-    """Whether an attribute can be a port: not a part of the node itself, nor of a namespace."""
+    """Whether an attribute can be a port: neither an attribute of every node nor one with a namespace."""
     return name != "name" and not (has_id and name == "ID") and name != "xmlns" and ":" not in name
 
 
 def port_key(plugin: str, name: str) -> str:
-    """The name of the port of a plugin that `name` means; ports of nodes of BehaviorTree.CPP may have two names."""
+    """The name of the port of a plugin that `name` refers to; ports of nodes of BehaviorTree.CPP may have two names."""
     type_ = BEHAVIOR_TREE.elements.get(plugin)
     return type_.port_key(name) if type_ else name
 
@@ -208,7 +208,7 @@ def nodes(tree: Tree) -> Iterator[TreeNode]:
 
 
 def blackboard_variable(value: str) -> str | None:
-    """The name in a value `{name}`; None if the value is a constant. The name may be ill-formed."""
+    """The name in a value `{name}`; `None` if the value is a constant. The name may be invalid."""
     match = _REFERENCE.match(value)
     return match[1].strip() if match else None
 
@@ -224,6 +224,6 @@ def is_reserved_variable(name: str) -> bool:
 
 
 def looks_like_reference(value: str) -> bool:
-    """Whether a value begins with `{…}` (the reference translator takes it for a reference,
+    """Whether a value begins with `{…}` (the reference translator reads it as a reference,
     docs/spec/trees.md#port-values)."""
     return bool(_BEGINS_LIKE_REFERENCE.match(value))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every value in a machine with its type, what was wanted there, and what is wrong in it.
+"""Every value in a machine with its type, its required type, and its errors.
 
-One walk over the machine; the rules, hover and completion read its result. What other files contribute comes in as an
-`Environment`; the walk itself looks at one machine only.
+One walk over the machine; the rules, hover and completion read its result. An `Environment` provides what other files
+contribute; the walk itself reads only one machine.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from roaml.xml_syntax import Element
 
 
 class Environment(Protocol):
-    """What a machine needs to know of the rest of the world."""
+    """What a machine needs from its environment."""
 
     def struct(self, name: str) -> Type | None:
         """The struct of that name."""
@@ -61,14 +61,14 @@ class Environment(Protocol):
         """The ROS type `name` (as written in the model) of kind msg, srv or action."""
 
     def published(self, topic: str) -> tuple[InterfaceType, ...]:
-        """The types with which other machines publish on the topic, as written, where they are known."""
+        """The types with which other machines publish on the topic, as written, if they are known."""
 
     def event_data(self, event: str) -> Struct | None:
-        """The parameters that the senders of a plain event send; None if that is not known."""
+        """The parameters that the senders of a plain event send; `None` if they are unknown."""
 
 
 class ValueUse(enum.Enum):
-    """What a value is for."""
+    """The purpose of a value."""
 
     CONDITION = "condition of a transition"
     BRANCH = "condition of an if"
@@ -84,15 +84,15 @@ class ValueUse(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchConditions:
-    """Conditions of the enclosing `<if>` parts, with whether they hold; those before share their memory, as each part
-    of an `<if>` knows the conditions of all parts before it."""
+    """Conditions of the enclosing `<if>` parts, with whether they hold; the earlier ones share their memory, as each
+    part of an `<if>` knows the conditions of all parts before it."""
 
     condition: Expression
     holds: bool
     before: BranchConditions | None
 
     def __iter__(self) -> Iterator[tuple[Expression, bool]]:
-        """The innermost and last first."""
+        """The innermost and latest first."""
         node: BranchConditions | None = self
         while node is not None:
             yield node.condition, node.holds
@@ -101,13 +101,14 @@ class BranchConditions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ValuePlace:
-    """Where a value stands.
+    """The place of a value.
 
     Attributes:
         part: "data", "cond", "body", "onentry" or "onexit".
-        late: something was sent, or a condition evaluated, between the arrival of the event and this value, so the
-            event data may be newer (docs/spec/machines.md#event-data-lifetime).
-        branch_conditions: what is known to hold, or not to hold, by the enclosing `<if>` parts; None for nothing.
+        late: whether something was sent, or a condition evaluated, between the arrival of the event and this value, so
+            that the event data may be newer (docs/spec/machines.md#event-data-lifetime).
+        branch_conditions: the conditions of the enclosing `<if>` parts that are known to hold, or not to hold; `None`
+            if there are none.
     """
 
     chart: Chart
@@ -120,10 +121,10 @@ class ValuePlace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TypedValue:
-    """A value with its type and problems. `wanted` is the type that it should have, None if any will do.
+    """A value with its type and problems. `wanted` is the required type; `None` if any type is allowed.
 
-    `target` is the field, parameter, location or variable that the value is for, in words ("" if none). `sent` is the
-    type that the value has in the translation if it is sent: there `2.0` is an int
+    `target` is a phrase for the field, parameter, location or variable that receives the value ("" if there is none).
+    `sent` is the type that the value has in the translation if it is sent: there `2.0` is an int
     (docs/spec/expressions.md#whole-reals).
     """
 
@@ -178,13 +179,13 @@ STATUS = BASE_TYPES["int8"]
 
 
 def bindings(handler: Handler, part: str, machine: Machine, environment: Environment) -> dict[str, Type]:
-    """The event variables known in the `part` ("cond" or "body") of a handler, with their types."""
+    """The event variables available in the `part` ("cond" or "body") of a handler, with their types."""
     return {binding.name: event_variable(binding, handler, machine, environment) for binding in bound_in(handler, part)}
 
 
 def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
-    """The event variables known in a part of a handler (docs/spec/machines.md#event-variables): a transition without
-    event knows none."""
+    """The event variables available in a part of a handler (docs/spec/machines.md#event-variables): a transition
+    without event has none."""
     if handler.trigger is None:
         return ()
     return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
@@ -244,7 +245,8 @@ CHANNEL_KINDS: Mapping[SymbolKind, SymbolKind] = {
 
 
 def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None:
-    """The declaration that a handler or sending element refers to: of the kind it wants, else the first so named."""
+    """The declaration to which a handler or sending element refers: one of the required kind, otherwise the first with
+    the name."""
     if user.handle is None:
         return None
     wanted = user.type.attributes["name"].refers
@@ -254,7 +256,7 @@ def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None
 
 
 def interface_part(part: ProtocolPart, declaration: Declaration | None, environment: Environment) -> Type:
-    """The struct of fields that `part` of the declared interface has; unknown if that cannot be told."""
+    """The struct of fields of `part` of the declared interface; unknown if it cannot be determined."""
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
         return UNKNOWN
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
@@ -270,8 +272,8 @@ def interface_part(part: ProtocolPart, declaration: Declaration | None, environm
 
 
 def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
-    """A message with the fields of its own type and those of the types that are published (docs/spec/ros.md#topics):
-    that they are not the same is a warning, and each field is there."""
+    """A message with the fields of its own type and those of the types that are published (docs/spec/ros.md#topics): a
+    rule warns that they differ, but each field exists."""
     members = dict(own.members)
     for other in published:
         part = dict(other.parts).get("message", UNKNOWN)
@@ -366,7 +368,7 @@ class _Typer:
 
 
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
-"""The answers of a tree node and the numbers that stand for them (docs/spec/plugins.md#status)."""
+"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 
 
 def port_type(machine: Machine, read: PortRead) -> Type:
@@ -380,7 +382,7 @@ _SENT = (ValueUse.PARAMETER, ValueUse.FIELD, ValueUse.OUTPUT)
 
 
 class _Body:
-    """Types one sequence of statements, keeping track of what happens before what."""
+    """Types one sequence of statements, in the order of their execution."""
 
     def __init__(
         self, typer: _Typer, variables: Mapping[str, Type], known: Mapping[str, Type], place: ValuePlace
@@ -416,7 +418,7 @@ class _Body:
         self.later()
 
     def draws(self, value: Value | None) -> bool:
-        """Whether a random number is drawn for a value, the last one that was typed."""
+        """Whether a random number is drawn for the last value that was typed."""
         problems = self.typer.values[-1].problems if isinstance(value, Expression) else ()
         return any(isinstance(problem, RandomUsed) for problem in problems)
 
@@ -489,7 +491,7 @@ class _Body:
 
 
 def _leaf(part: Type, path: str) -> Type | None:
-    """The type of the leaf field at a dotted path; None if there is none such, unknown if the part is not known."""
+    """The type of the leaf field at a dotted path; `None` if it does not exist, unknown if the part is unknown."""
     type_ = part
     bounds: tuple[int | None, ...] = ()
     for name in path.split("."):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Words of the languages that more than one part of the tool needs, by what they mean."""
+"""Names of the languages that several parts of the tool need, by their meaning."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ INSIDE_THREADS = ("ros_action_handle_thread_start", "ros_action_thread_free")
 OUTSIDE_THREADS = ("ros_action_start_thread", "ros_action_handle_thread_free")
 """The elements that are not allowed in an action thread."""
 UNUSUAL_IN_THREADS = ("ros_action_handle_goal",)
-"""The elements that are allowed in an action thread, but rarely right there."""
+"""The elements that are allowed in an action thread, but seldom directly."""
 
 DEFAULT_TYPES = {"int": "int32", "real": "float64", "bool": "bool", "string": "string"}
 """The type of a declaration for a value, by the kind of the value."""
@@ -40,4 +40,4 @@ FOREIGN_TYPES = {
     **interfaces.FOREIGN_TYPES, "byte": "uint8", "char": "uint8", "String": "string",
     "integer8": "int8", "integer16": "int16", "integer32": "int32", "integer64": "int64",
 }  # fmt: skip
-"""Names of types in other languages, with the names that they have here."""
+"""Names of types in other languages, with the corresponding names of HL-SCXML."""

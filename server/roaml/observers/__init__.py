@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Observers: small deterministic programs that read a trace letter by letter and say whether a property holds on it.
+"""Observers: small deterministic programs that read a trace letter by letter and determine whether a property holds on
+it.
 
-- Knows nothing of SCXML, XML and JANI: conditions are named inputs, times are steps of a clock.
+- Independent of SCXML, XML and JANI: conditions are named inputs, times are steps of a clock.
 - An observer is data (`program.Observer`): registers and assignments. It can be interpreted, and translated to any
   language that has booleans and small integers.
 - Memory is bounded: a few registers, and one bit for each clock step of a lower bound on time.

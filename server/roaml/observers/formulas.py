@@ -27,7 +27,7 @@ def observe_formula(property_: FormulaProperty) -> Observer:
 
 
 def _value(formula: Formula, builder: Builder, known: dict[Formula, Expression]) -> Expression:
-    """Whether the formula is true at this letter. What it remembers is brought up to date before."""
+    """Whether the formula is true at this letter, after its memory has been updated."""
     if formula not in known:
         known[formula] = _computed(formula, builder, known)
     return known[formula]

@@ -17,19 +17,19 @@ from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Si
 from roaml.text import Span
 
 MAX_DEPTH = 100
-"""How deep parentheses and operators may nest."""
+"""The maximum nesting depth of parentheses and operators."""
 MAX_OPERATORS = 200
-"""How many binary operators a formula may have."""
+"""The maximum number of binary operators in a formula."""
 
 
 @dataclass(frozen=True, slots=True)
 class Notation:
-    """What was read.
+    """The result of parsing.
 
     Attributes:
         formula: `None` if there are problems.
-        atoms: the places of the texts in braces, without the braces.
-        problems: places and messages.
+        atoms: the spans of the texts in braces, without the braces.
+        problems: spans and messages.
     """
 
     formula: Formula | None
@@ -134,7 +134,7 @@ class _Parser:
         formula = self.implication()
         if self.next.kind != "end":
             raise _ProblemError(
-                self.next.span, f"an operator or the end of the formula is expected before `{self.next.text}`"
+                self.next.span, f"expected an operator or the end of the formula before `{self.next.text}`"
             )
         return formula
 
@@ -190,12 +190,10 @@ class _Parser:
                     raise _ProblemError(self.next.span, "`)` is expected")
                 return formula
             case "bounds":
-                raise _ProblemError(token.span, "bounds belong to `S`, `H` or `O`: `O[:5] { alarm }`")
+                raise _ProblemError(token.span, "bounds are only allowed after `S`, `H` or `O`: `O[:5] { alarm }`")
             case "end":
-                raise _ProblemError(token.span, "a condition in braces is expected: `{ level < 30 }`")
-        raise _ProblemError(
-            token.span, f"a condition in braces is expected instead of `{token.text}`: `{{ level < 30 }}`"
-        )
+                raise _ProblemError(token.span, "expected a condition in braces: `{ level < 30 }`")
+        raise _ProblemError(token.span, f"expected a condition in braces instead of `{token.text}`: `{{ level < 30 }}`")
 
     def window(self) -> Window:
         if self.next.kind != "bounds":
@@ -203,7 +201,7 @@ class _Parser:
         token = self.take()
         match = _BOUNDS.fullmatch(token.text)
         if match is None:
-            raise _ProblemError(token.span, "bounds are whole clock steps: `[1:5]`, `[:5]` or `[1:]`")
+            raise _ProblemError(token.span, "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`")
         lower, upper = int(match[1] or 0), int(match[2]) if match[2] else None
         if upper is not None and upper < lower:
             raise _ProblemError(token.span, f"the lower bound {lower} is greater than the upper bound {upper}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parts that observers are built of: a list of assignments, counters of clock steps, and delays."""
+"""The parts of observers: a list of assignments, counters of clock steps, and delays."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ TICK = Tick()
 ONE = Literal(1)
 
 _BITS = 30
-"""Bits in one integer: with more, tools with integers of 32 bits could not double it."""
+"""The maximum number of bits in one integer: with more, tools with 32-bit integers could not double it."""
 
 
 class Builder:
-    """Collects registers and assignments. Registers are named after what they hold; equal names get a number."""
+    """Collects registers and assignments. Registers are named after their content; equal names get a number."""
 
     def __init__(self) -> None:
         self.registers: list[Register] = []
@@ -62,7 +62,7 @@ class Builder:
         self.set(register, disjunction(register, condition))
 
     def finish(self) -> None:
-        """Reset what no later letter reads."""
+        """Reset registers that no later letter reads."""
         for register in self._temporary:
             self.set(register, FALSE)
 
@@ -91,7 +91,7 @@ class Age:
         self.builder.set(self.register, choice(condition, Literal(value), self.register))
 
     def forget(self, condition: Expression) -> None:
-        """As if it had happened long ago."""
+        """Set it to the state before it ever happened."""
         self.reset(condition, self.limit)
 
 
@@ -133,11 +133,11 @@ class Delay:
         return at_least(row, 2 ** (width - 1))
 
     def add(self, condition: Expression) -> None:
-        """It happens now, if `condition` holds."""
+        """Record that it happens now, if `condition` holds."""
         self.builder.raise_if(self.now, condition)
 
     def clear(self, condition: Expression) -> None:
-        """It never happened, if `condition` holds."""
+        """Forget all events, if `condition` holds."""
         self.builder.set(self.now, conjunction(self.now, negation(condition)))
         for row, _ in self.rows:
             self.builder.set(row, choice(condition, Literal(0), row))
@@ -171,14 +171,14 @@ class Recent:
             self.builder.raise_if(self.flag, condition)
 
     def add(self, condition: Expression) -> None:
-        """It happens now, if `condition` holds."""
+        """Record that it happens now, if `condition` holds."""
         if self.delay is not None:
             self.delay.add(condition)
         else:
             self._matured(condition, 0)
 
     def clear(self, condition: Expression) -> None:
-        """It never happened, if `condition` holds."""
+        """Forget all events, if `condition` holds."""
         if self.delay is not None:
             self.delay.clear(condition)
         if self.age is not None:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The user's files as one: found, read, remembered by content, linked into systems and checked."""
+"""The user's files as a whole: discovered, read, cached by content, linked into systems and checked."""

@@ -2,9 +2,9 @@
 """From the files of one moment to models and systems.
 
 - An `Analysis` is one moment: it never changes, and every answer is a function of the files' content.
-- Results are memoised by content (`Memo`), so the next moment pays only for what differs: parse and build by the file's
-  digest, types and outline by digest and declarations, a system by the outlines of its files.
-- Nothing here judges; `roaml.project.checking` does.
+- Results are memoised by content (`Memo`), so the next moment recomputes only what differs: parsed files and models by
+  the file's digest, types and outlines by digest and declarations, a system by the outlines of its files.
+- Nothing is reported here; `roaml.project.checking` runs the rules.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ class Structs:
     """The structs of a system.
 
     Attributes:
-        outlines: what they are made of: equal outlines, equal structs.
-        complete: there are no structs whose names cannot be read.
+        outlines: their outlines: equal outlines mean equal structs.
+        complete: whether the names of all structs are known.
     """
 
     outlines: tuple[StructOutline, ...]
@@ -83,7 +83,7 @@ class Structs:
 
 
 BROKEN = ("xml-syntax", "json-syntax", "nesting-too-deep")
-"""Findings that say that a tree is not all that the text is."""
+"""Findings after which a tree may not contain the whole text."""
 
 NO_STRUCTS = Structs((), {}, complete=True)
 
@@ -156,14 +156,14 @@ class Analysis:
         return self.files.text(path)
 
     def kind(self, path: str) -> FileKind:
-        """What the file is by itself."""
+        """The kind of the file by its content."""
         source = self.source(path)
         if source is None:
             return FileKind.UNKNOWN
         return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
 
     def kind_in(self, path: str, system: str | None) -> FileKind:
-        """What a file is: by itself, or else as what a system lists it."""
+        """The kind of a file: by its content, otherwise as a system lists it."""
         kind = self.kind(path)
         if kind is not FileKind.UNKNOWN or system is None:
             return kind
@@ -180,21 +180,21 @@ class Analysis:
         return self._of("configuration", path, read_configuration)
 
     def properties(self, path: str) -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
-        """The properties in a file, and what is wrong with their form."""
+        """The properties in a file, and their syntax errors."""
         value = self.json(path)
         if value is None:
             return (), ()
         return self._of("properties", path, lambda _: read_properties(value[0], path)) or ((), ())
 
     def violations(self, path: str, grammar: Grammar) -> tuple[Violation, ...]:
-        """Where a file does not follow a grammar."""
+        """The places where a file violates a grammar."""
         violations = self._of_document(
             f"violations {grammar.schema}", path, lambda document: validate(document, grammar)
         )
         return violations or ()
 
     def misfits(self, path: str, grammar: Grammar) -> tuple[Misfit, ...]:
-        """The elements of a file that the grammar does not know, or not where they stand."""
+        """The elements of a file that the grammar does not know or does not allow where they are."""
 
         def find(document: Document) -> tuple[Misfit, ...]:
             return tuple(misfits(document.root, document.namespaces, grammar))
@@ -246,7 +246,7 @@ class Analysis:
         return self._of("structs", path, lambda _: structs_in_json(value[0])[0]) or ()
 
     def _of(self, computation: str, path: str, compute: Callable[[SourceFile], T]) -> T | None:
-        """What a file's text gives; None if it cannot be read or is too large to be looked into."""
+        """The result for a file's text; `None` if it cannot be read or is too large."""
         source = self.source(path)
         if source is None or len(source.text) > MAX_CHARACTERS:
             return None
@@ -288,7 +288,7 @@ class Analysis:
         )
 
     def repeated_types(self, machine: Machine) -> tuple[RepeatedType, ...]:
-        """The ROS types of a machine, those of their fields included, that other files define otherwise."""
+        """The ROS types of a machine, including those of their fields, that other files define differently."""
         repeated_types: dict[tuple[str, str], RepeatedType] = {}
         for declaration in machine.declarations:
             if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
@@ -303,7 +303,7 @@ class Analysis:
         return tuple(repeated_types.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
-        """The definition and all messages in it."""
+        """The definition and all nested messages."""
         definitions = [definition]
         names = {definition.full_name}
         for outer in definitions:
@@ -326,7 +326,7 @@ class Analysis:
         return self._listed[path]
 
     def lists_all(self, system: str, section: str) -> bool:
-        """Whether all files that a system means to list in a section are known and can be used."""
+        """Whether all files that a system lists in a section are known and can be used."""
         file = self.system_file(system)
         if file is None or section in file.unread:
             return False
@@ -350,13 +350,13 @@ class Analysis:
         return ListedFile(entry, path, None, wanted, kind)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
-        """The tree files of a system: the listed one, then what it includes, each once."""
+        """The tree files of a system: the listed one, then the included ones, without duplicates."""
         first = next((f.path for f in self.listed(path) if f.wanted is FileKind.TREE and f.usable), None)
         return self.trees_from(first) if first else ()
 
     def trees_from(self, path: str) -> tuple[str, ...]:
-        """A tree file and what it includes, directly or not, then the projects beside it that list it and what of them
-        it needs, each once."""
+        """A tree file and the files that it includes, directly or indirectly, then the projects beside it that list it,
+        and the files of these that it needs, without duplicates."""
         if path not in self._trees:
             own = self._with_included([path])
             self._trees[path] = (own, self._from_projects(path, own))
@@ -364,7 +364,7 @@ class Analysis:
         return (*own, *more)
 
     def outlines_from(self, path: str) -> tuple[TreeFileOutline, ...]:
-        """The outlines of `trees_from`. Of equal names in projects the first counts."""
+        """The outlines of `trees_from`. If names in projects are equal, the first is used."""
         paths = self.trees_from(path)
         own = len(self._trees[path][0])
         outlines = [self.tree_outline(tree_path) for tree_path in paths[:own]]
@@ -388,7 +388,7 @@ class Analysis:
         return tuple(trees)
 
     def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
-        """The projects of Groot2 that list a tree file, and those of their files that hold missing subtrees."""
+        """The projects of Groot2 that list a tree file, and those of their files that contain missing subtrees."""
         if not own or path.endswith(PROJECT_EXTENSION):
             return ()
         projects = [p for p in self.files.beside(path, PROJECT_EXTENSION) if path in self.includes(p)]
@@ -499,21 +499,21 @@ class Analysis:
         return self.memo.get("forest", path, key, lambda: Forest(path, files, self.tree_settings, beside, complete))
 
     def files_of(self, system: str) -> tuple[str, ...]:
-        """The system file and all files that belong to it, each once.
+        """The system file and all files of the system, without duplicates.
 
-        A file that neither its name nor its content makes one of ours is not among them: what it holds is nobody's
-        business, wherever `src` points to.
+        A file that neither its name nor its content identifies as a supported file is not included, wherever `src`
+        refers to.
         """
         listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
         return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
 
     def systems_of(self, path: str) -> tuple[str | None, ...]:
-        """The systems in which a file is looked at; (None) if it is in none."""
+        """The systems in which a file is analysed; (None) if it is in none."""
         return self.memberships.get(path, ()) or (None,)
 
     @cached_property
     def memberships(self) -> Mapping[str, tuple[str, ...]]:
-        """File -> the systems that it belongs to."""
+        """File -> its systems."""
         systems_by_file: dict[str, list[str]] = {}
         for system in self.system_paths:
             for path in self.files_of(system):
@@ -521,7 +521,7 @@ class Analysis:
         return {path: tuple(systems) for path, systems in systems_by_file.items()}
 
     def structs(self, system: str | None) -> Structs:
-        """The structs that a system declares. A struct file in no system declares for itself only."""
+        """The structs that a system declares. A struct file in no system declares structs only for itself."""
         if system is None:
             return NO_STRUCTS
         if system not in self._structs:
@@ -541,7 +541,7 @@ class Analysis:
         return Structs(outlines, resolve_structs(outlines), complete)
 
     def system(self, path: str) -> System | None:
-        """The linked system of a system file, None if the file cannot be read or is none."""
+        """The linked system of a system file; `None` if the file cannot be read or is not one."""
         if path not in self._systems:
             self._systems[path] = self._link(path)
         return self._systems[path]
@@ -586,13 +586,13 @@ class Analysis:
         return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
-        """The names that the properties of a system mention."""
+        """The variables that the properties of a system use."""
         paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
         properties = [declared for path in paths for declared in self.properties(path)[0]]
         return frozenset(name for declared in properties for name, _ in identifiers(declared.expression))
 
     def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
-        """What a system file, its trees and the files that cannot be read may say: file, gap and place."""
+        """The facts that a system file, its trees and the unreadable files may contain: file, gap and place."""
         if path not in self._gaps:
             file = self.system_file(path)
             self._gaps[path] = tuple(self._find_gaps(path, file, self.listed(path))) if file else ()
@@ -624,7 +624,7 @@ class Analysis:
                     yield stray.source.path, PlacedGap(Gap(REMAP, name), key)
 
     def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
-        """What a node may say whose file cannot be used: what the file beside it says that is probably meant."""
+        """The facts of a node whose file cannot be used: those of the file in its folder that is probably meant."""
         taken = {file.path for file in listed}
         beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
         by_name = {_stem(p): p for p in beside}
@@ -640,7 +640,7 @@ class Analysis:
         yield from (Gap(RECEIVES, received.event) for received in outline.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
-        """Why not all nodes of the tree are known that is executed, if the system is to have one: file and place."""
+        """Why some nodes of the executed tree are unknown, if the system should have a tree: file and place."""
         listed_trees = [f for f in listed if f.wanted is FileKind.TREE]
         section = file.element.find("behavior_tree")
         if not listed_trees:
@@ -670,13 +670,13 @@ class Analysis:
                 yield paths[0], first.element.name_span
 
     def _broken(self, path: str) -> Span | None:
-        """Where a file stops being well-formed; None if it is."""
+        """The position where a file stops being well-formed; `None` if it is well-formed."""
         document = self.document(path)
         findings = document.findings if document else ()
         return next((finding.span for finding in findings if finding.code in BROKEN), None)
 
     def _is_well_formed(self, path: str) -> bool:
-        """Whether a file is read as a whole."""
+        """Whether a file can be parsed completely."""
         if self.kind(path) is FileKind.JSON_STRUCTS:
             _, findings = self.json(path) or (None, None)
         else:
@@ -685,7 +685,7 @@ class Analysis:
         return findings is not None and not any(f.code in BROKEN for f in findings)
 
     def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
-        """Whether all plugins are known that the system lists, or would list were it not for a mistake."""
+        """Whether all plugins are known that the system lists, or would list without an error."""
         file = self.system_file(path)
         if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
             return False
@@ -704,7 +704,7 @@ class Analysis:
     # ----------------------------------------------- machines in their system
 
     def outline(self, path: str, system: str, structs: Structs, events: Mapping[str, Struct]) -> MachineOutline:
-        """What the rest of its system sees of a machine."""
+        """The outline of a machine in its system."""
         machine = self.machine(path)
         assert machine is not None
         typed = self.typed(path, system, structs, events)
@@ -715,7 +715,7 @@ class Analysis:
         return outline(machine, typed, self.machine_gaps(path, machine, typed))
 
     def machine_gaps(self, path: str, machine: Machine, typed: TypedMachine) -> tuple[PlacedGap, ...]:
-        """What a machine may say where it cannot be read, with the places."""
+        """The facts in the unreadable parts of a machine, with the places."""
         document = self.document(path)
         assert document is not None
         gaps = machine_gaps(machine, typed, document.namespaces, self._has_type)
@@ -726,23 +726,23 @@ class Analysis:
         return isinstance(self.interface(kind, name), InterfaceType)
 
     def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
-        """A machine with its types. `events` are the data of plain events, as far as they are known."""
+        """A machine with its types. `events` are the known data of plain events."""
         machine = self.machine(path)
         assert machine is not None
         known = {name: events[name] for name in _received(machine) if name in events}
-        # The machine itself, not its text: what was typed refers to its parts.
+        # The machine itself, not its text: the result refers to its parts.
         published = self._published_for(machine, system)
         key = (machine, structs.outlines, self.interfaces_of(machine), published, known)
         environment = _MachineEnvironment(self, structs, known, published)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))
-        # What is known without the events is needed to link the system, and must outlive what is known with them.
+        # The result without the events is needed to link the system, and must outlive the result with them.
         before = self.typed(path, system, structs, {})
         compute = functools.partial(type_machine, machine, environment, before)
         return self.memo.get("typed with events", (path, system), key, compute)
 
     def _published(self, system: str) -> Mapping[str, tuple[str, ...]]:
-        """The types, as written, with which the machines of a system publish on each topic that they name."""
+        """The types, as written, with which the machines of a system publish on each topic."""
         if system not in self._published_types:
             types_by_topic: dict[str, dict[str, None]] = {}
             for listed in self.listed(system):
@@ -755,7 +755,7 @@ class Analysis:
         return self._published_types[system]
 
     def _published_for(self, machine: Machine, system: str | None) -> dict[str, tuple[InterfaceType, ...]]:
-        """The topics that a machine subscribes to, with the types that they are published with, if these are others."""
+        """The topics that a machine subscribes to and that are published with other types, with these types."""
         if system is None:
             return {}
         types_by_topic: dict[str, tuple[InterfaceType, ...]] = {}
@@ -772,7 +772,7 @@ class Analysis:
         return types_by_topic
 
     def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
-        """Those of the message types that there are."""
+        """Those of the message types that exist."""
         definitions = (self.interface("msg", name) for name in names)
         return tuple(type_ for type_ in definitions if isinstance(type_, InterfaceType))
 
@@ -785,12 +785,12 @@ class Analysis:
         )
 
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
-        """A machine with its types as they are in a system, or alone."""
+        """A machine with its types in a system, or alone."""
         linked = self.system(system) if system else None
         return self.typed(path, system, self.structs(system), linked.event_data if linked else {})
 
     def environment(self, system: str | None) -> Environment:
-        """What the machines of a system can name; a machine alone can name ROS types."""
+        """The names that the machines of a system can use; a machine alone can use ROS types."""
         linked = self.system(system) if system else None
         published = {topic: self._messages(types) for topic, types in self._published(system).items()} if system else {}
         return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {}, published)
@@ -805,7 +805,7 @@ class Analysis:
 
 
 _ROUNDS = 4
-"""How often event data are passed on from event to event before their types are taken as they are."""
+"""The maximum number of rounds in which event data are passed from event to event before their types are final."""
 
 
 def _stem(path: str) -> str:
@@ -820,5 +820,5 @@ def _received(machine: Machine) -> set[str]:
 
 
 def _waits_for_events(outlines: Iterable[MachineOutline]) -> bool:
-    """Whether the type of something that is sent is not known yet."""
+    """Whether the type of something that is sent is unknown."""
     return any(param.type == UNKNOWN for o in outlines for sent in o.sent for param in sent.params)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Running the rules: from models and systems to diagnostics.
+"""Runs the rules: from models and systems to diagnostics.
 
-- A file that belongs to several systems is checked in each, and equal findings are merged; a file that belongs to none
+- A file that is part of several systems is checked in each, and equal findings are merged; a file that is part of none
   is checked alone.
-- Findings are memoised by what they depend on: the file's content, its types, its system.
+- Findings are memoised by their dependencies: the file's content, its types, its system.
 - A rule that crashes is reported as `internal-error`, once for each file, and does not stop the others. No setting and
-  no comment keeps that quiet: what the tool did not look at must not seem clean.
+  no comment suppresses that: an unchecked file must not look like a correct one.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ from roaml.text import Location, SourceFile, Span
 log = logging.getLogger(__name__)
 
 MAX_FINDINGS = 1000
-"""Of one rule in one file. Nobody reads more, and each takes time: what is close to a name, how it would be fixed."""
+"""The maximum number of findings of one rule in one file; each takes time, for similar names and fixes."""
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
@@ -71,7 +71,7 @@ class RuleRunner:
         self.settings = settings
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
-        """All that is to be said about a file, sorted by place. Nothing about a file that cannot be read."""
+        """The diagnostics of a file, sorted by position. Empty if the file cannot be read."""
         source = self.analysis.source(path)
         if source is None:
             return ()
@@ -96,7 +96,7 @@ class RuleRunner:
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
 
     def _unused(self, source: SourceFile, systems: tuple[str, ...], hidden: Iterable[Suppression]) -> Iterator[Finding]:
-        """The comments that keep nothing quiet. What a file alone or a damaged one would give is not known."""
+        """The unused suppressions. A file alone, or one with syntax errors, is not checked for them."""
         linked = [self.analysis.system(system) for system in systems]
         findings = [finding for system in systems for finding in self.findings(source.path, system)]
         known = linked and all(system is not None and system.complete for system in linked)
@@ -117,8 +117,8 @@ class RuleRunner:
                 )
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
-        """What keeps a system from being translated: the errors in its files, by the rules' own severities. No setting
-        and no comment makes a model translatable."""
+        """The errors that prevent the translation of a system, by the rules' own severities. No setting and no comment
+        makes a model translatable."""
         return tuple(
             self._diagnostic(path, finding, _own_severity(finding))
             for path in self.analysis.files_of(system)
@@ -127,7 +127,7 @@ class RuleRunner:
         )
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
-        """What the rules find in a file, seen as a part of one system or alone."""
+        """The findings of the rules in a file, as a part of one system or alone."""
         source = self.analysis.source(path)
         if source is None:
             return ()
@@ -136,7 +136,7 @@ class RuleRunner:
         try:
             run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
-        except Exception as error:  # a crash of ours in one file must not keep the others from being checked
+        except Exception as error:  # a crash in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
             return (internal_error("model", error),)
 
@@ -144,7 +144,7 @@ class RuleRunner:
         code, settings = finding.code, self.settings
         if code == _CRASH:
             return True
-        # A choice of rules must not hide that it was not understood.
+        # A selection of rules must not hide that the configuration is invalid.
         chosen = not settings.select or code in settings.select or code in _OF_CONFIGURATION
         return chosen and code not in settings.ignore
 
@@ -168,7 +168,7 @@ class RuleRunner:
 
 
 def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
-    """The findings of one rule in one file: of very many, the first."""
+    """The findings of one rule in one file, limited to the first ones."""
     kept = list(itertools.islice(findings, MAX_FINDINGS + 1))
     if len(kept) > MAX_FINDINGS:
         message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
@@ -177,7 +177,7 @@ def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
-    """A comment without codes does not hide that it is not needed."""
+    """A comment without codes does not suppress the finding that it is unused."""
     is_about_comments = finding.code == unused_suppression.RULE.code
     return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 
@@ -193,7 +193,7 @@ def _is_xml(kind: FileKind) -> bool:
 
 
 def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
-    """Findings that differ only in fixes or related places, as several systems give them, are one."""
+    """Findings that differ only in fixes or related places, because several systems cause them, are merged."""
     seen = set()
     for finding in findings:
         key = (finding.code, finding.span, finding.message)
@@ -223,7 +223,7 @@ class _Run:
         self.system: System | None = analysis.system(system) if system else None
 
     def key(self) -> object:
-        """All that the findings depend on."""
+        """All dependencies of the findings."""
         parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
@@ -253,7 +253,7 @@ class _Run:
     def findings(self) -> tuple[Finding, ...]:
         findings = tuple(self._all())
         if any(finding.code in _FORM for finding in findings):
-            # What seems superfluous may be used in the part that could not be read.
+            # Something that seems unused may be used in the unreadable part.
             return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
         return findings
 
@@ -268,7 +268,7 @@ class _Run:
             self.analysis.memo.checkpoint()
             try:
                 yield from _some(rule, check())
-            except Exception as error:  # a crash of ours must not stop the other rules
+            except Exception as error:  # a crash must not stop the other rules
                 log.exception("rule %s failed on %s", rule.code, self.path)
                 yield internal_error(rule.code, error)
 
@@ -296,7 +296,7 @@ class _Run:
                     return [
                         (r, functools.partial(r.properties, properties)) for r in RULES if r.properties and properties
                     ]
-        except Exception as error:  # as above: the parsers' findings are still worth showing
+        except Exception as error:  # as above: the findings of the parsers are still useful
             log.exception("the model of %s cannot be built", self.path)
             failure = internal_error("model", error)
             return [(internal_error_rule.RULE, lambda: [failure])]
@@ -395,7 +395,7 @@ class _Run:
         return self.analysis.machine_gaps(self.path, machine, self.analysis.typed_in(self.path, self.system_path))
 
     def _gaps(self) -> tuple[PlacedGap, ...]:
-        """The gaps of the system that have their cause in this file."""
+        """The gaps of the system that are caused by this file."""
         gaps = self.analysis.gaps(self.system_path) if self.system_path else ()
         return tuple(placed for path, placed in gaps if path == self.path)
 
@@ -412,13 +412,13 @@ class _Run:
         )
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
-        """The trees that this file is seen with: those of its system, or what it includes."""
+        """The trees with which this file is checked: those of its system, or those that it includes."""
         if self.system_path:
             return self.analysis.tree_outlines(self.system_path)
         return self.analysis.outlines_from(self.path)
 
     def _missing_includes(self) -> dict[str, str]:
-        """What cannot be included, and why."""
+        """The includes that cannot be used, with the reasons."""
         file = self.analysis.tree(self.path)
         problems: dict[str, str] = {}
         for include in file.includes if file else ():
@@ -435,7 +435,7 @@ class _Run:
             if isinstance(source, UnreadableReason):
                 problems[include.path.value] = source.value
             elif self.analysis.tree(target) is None:
-                problems[include.path.value] = "it is no file of behavior trees"
+                problems[include.path.value] = "it is not a file of behavior trees"
             elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
                 problems[include.path.value] = (
                     "it includes this file in turn" if target != self.path else "it is this file"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configuration files: what they say, and what is wrong in them with its place.
+"""Configuration files: their content, and the errors in them with positions.
 
-- `as2fm.toml` goes before `[tool.as2fm]` of a `pyproject.toml` in the same folder. A `pyproject.toml` that is not TOML,
-  or says nothing of this tool, is somebody else's.
-- Files are read as models are: regular files of a bounded size only (`roaml.project.files`).
+- `as2fm.toml` takes precedence over `[tool.as2fm]` of a `pyproject.toml` in the same folder. A `pyproject.toml` that is
+  not valid TOML, or has no table for this tool, is ignored.
+- Files are read like models: only regular files of a limited size (`roaml.project.files`).
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from roaml.toml import Path, Places, TomlError, loads, places
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """What a configuration file says.
+    """The content of a configuration file.
 
     Attributes:
-        table: its values; None if they cannot be read.
-        findings: what is wrong, whatever lies on the disk.
-        folders: the folders that it names, with their places.
+        table: its values; `None` if they cannot be read.
+        findings: the errors, independent of the disk.
+        folders: the folders that it names, with their positions.
     """
 
     table: Mapping[str, Any] | None
@@ -43,9 +43,9 @@ def read_configuration(source: SourceFile) -> Configuration:
     is_ours = os.path.basename(source.path) == CONFIG_FILE
     prefix: Path = () if is_ours else ("tool", "as2fm")
     if len(source.text) > MAX_CHARACTERS:
-        return Configuration(None)  # told by `file-too-large`
+        return Configuration(None)  # reported by `file-too-large`
     if is_ours and source.encoding != "utf-8":
-        text = f"this file is encoded as {source.encoding}, but TOML is written in UTF-8"
+        text = f"the file is encoded as {source.encoding}, but TOML requires UTF-8"
         return Configuration(None, (TOML_SYNTAX.at(Span(0, min(1, len(source.text))), text),))
     try:
         table: Any = loads(source.text)
@@ -68,7 +68,7 @@ def read_configuration(source: SourceFile) -> Configuration:
 
 
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
-    """The folders that are not there at this moment."""
+    """The folders that do not exist at this moment."""
     return tuple(
         MISSING_FOLDER.at(
             span, f"there is no folder `{folder.written}`; relative paths begin at the folder of this file"
@@ -92,7 +92,7 @@ def _finding(source: SourceFile, known: Places, prefix: Path, mistake: SettingMi
 
 
 def _span(source: SourceFile, known: Places, path: Path) -> Span:
-    """The place of a value, or of the nearest one around it that has a place."""
+    """The position of a value, or of the nearest enclosing one that has a position."""
     while path:
         for spans in (known.values, known.keys):
             if path in spans:
@@ -105,8 +105,8 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
     """The configuration in the nearest folder around `path` that has one.
 
     Returns:
-        The settings, and sentences on what is wrong with the configuration. If `Settings.origin` is set, the same is
-        among the diagnostics of that file.
+        The settings, and sentences about errors in the configuration. If `Settings.origin` is set, the same errors are
+            among the diagnostics of that file.
     """
     disk = DiskFiles()
     for folder in folders_above(path):

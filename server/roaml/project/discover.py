@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files of a folder may be ours, and which of them are system files.
+"""The files of a folder that may be supported, and the system files among them.
 
-Folders that hold no sources are passed over; links are followed once. Unreadable folders are as good as empty.
+Folders without sources are skipped; links are followed once. Unreadable folders are treated as empty.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ from roaml.text import decode
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
 MAX_FILES = 50_000
 _HEAD = 65_536
-"""Bytes: more than `root_name` looks at, in any encoding but UTF-32."""
+"""In bytes: more than `root_name` reads, in any encoding except UTF-32."""
 
 
 def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots | None = None) -> Iterator[str]:
-    """All files below the roots that by their name may be ours, sorted within each folder, each once.
+    """All files below the roots that may be supported according to their names, sorted within each folder, without
+    duplicates.
 
     Args:
-        within: links out of these are not followed; out of any if not given.
+        within: links out of these are not followed; by default all links are.
     """
     seen: set[str] = set()
     count = 0
@@ -49,7 +50,7 @@ def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots |
 
 
 def is_candidate(path: str, roots: Iterable[str], exclude: Exclude = NOTHING) -> bool:
-    """Whether `candidates` gives a path if there is such a file."""
+    """Whether `candidates` would return a path if the file exists."""
     for root in roots:
         if is_below(path, root):
             *folders, name = relative(path, root).split("/")

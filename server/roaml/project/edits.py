@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The edits of rules as a file takes them: a rule writes `\\n` and does not care what else stands on a line."""
+"""The edits of rules, adapted to a file: a rule writes `\\n` and ignores what else is on a line."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 def line_end_of(source: SourceFile) -> str:
-    """How the lines of a text end."""
+    """The line end of a text."""
     end = source.lines.line_end(0)
     last = source.text[max(0, end - 2) : end]
     return "\r\n" if last == "\r\n" else last[-1:] if last[-1:] in ("\n", "\r") else "\n"
 
 
 def in_layout(source: SourceFile, edits: Iterable[Edit]) -> Iterator[TextEdit]:
-    """New lines end as the file's lines do; an edit that takes away all that stands on a line takes the line with it.
+    """New lines get the file's line end; an edit that removes everything on a line removes the line as well.
 
-    What stands on a line is seen with all the edits made.
+    The content of a line is determined after all edits.
     """
     edits = sorted(computed(edits))
     line_end = line_end_of(source) if any(_LINE_END.search(edit.new_text) for edit in edits) else "\n"
@@ -43,9 +43,9 @@ _BLANK = re.compile(r"\s*")
 
 
 def _blank_around(source: SourceFile, span: Span) -> Span | None:
-    """The lines that a span stands on if nothing else stands there.
+    """The lines of a span if nothing else is on them.
 
-    Reads no more than the white space around it: a line may be long, and much may be edited in it.
+    Only the white space around the span is read: a line may be long, and have many edits.
     """
     start = source.lines.line_start(source.lines.position(span.start).line)
     end = source.lines.line_end(source.lines.position(span.end).line)

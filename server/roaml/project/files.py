@@ -15,11 +15,11 @@ from roaml.disk import MAX_BYTES, Roots, UnreadableReason, read, status_of
 from roaml.text import SourceFile, decode
 
 MAX_CHARACTERS = 2_000_000
-"""Longer texts are not analysed: nobody writes them by hand, and no editor waits for them."""
+"""The maximum number of characters of an analysed text; hand-written files are much smaller."""
 
 
 class DiskFiles:
-    """The disk, remembered by size and time of change. No file is read that a link out of `roots` leads to."""
+    """The disk, cached by size and modification time. A file to which a link out of `roots` leads is not read."""
 
     def __init__(self, roots: Roots | None = None) -> None:
         self.roots = roots or Roots()
@@ -43,7 +43,7 @@ class DiskFiles:
         return content if isinstance(content, UnreadableReason) else decode(path, content)
 
     def listing(self, folder: str) -> tuple[str, ...]:
-        """The names of the files in a folder, sorted; none if it cannot be read."""
+        """The names of the files in a folder, sorted; empty if it cannot be read."""
         try:
             with os.scandir(folder) as entries:
                 return tuple(sorted(entry.name for entry in entries if entry.is_file()))
@@ -52,7 +52,7 @@ class DiskFiles:
 
 
 class Files:
-    """One moment's view: `open_files` lie above the disk. Each path is looked up once."""
+    """The view of one moment: `open_files` take precedence over the disk. Each path is looked up once."""
 
     def __init__(self, disk: DiskFiles, open_files: Mapping[str, SourceFile]) -> None:
         self._disk = disk

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Making fixes: one file at a time, or all of a kind until none is left.
+"""Applies fixes: to one file, or repeatedly until none is left.
 
-- Fixes that touch each other are not made together: the later one waits for the next pass, which sees what the first
-  has done.
-- Of fixes that are made without a look, those that would bring an error, alone or together, are not made.
+- Overlapping fixes are not applied together: the later one waits for the next pass, which sees the result of the first.
+- Fixes that are applied without a review are not applied if they would cause an error, alone or together.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from roaml.text import TextEdit, apply_edits
 MAX_PASSES = 100
 
 Choice = Callable[[Diagnostic], "Fix | None"]
-"""Which fix of a diagnostic is to be made, if any."""
+"""Selects the fix of a diagnostic to apply, if any."""
 
 
 def safe_fix(diagnostic: Diagnostic) -> Fix | None:
-    """The fix that may be made without a look."""
+    """The fix that may be applied without a review."""
     return next((fix for fix in diagnostic.fixes if fix.safe), None)
 
 
@@ -37,13 +36,13 @@ def fix_edits(snapshot: Snapshot, path: str, choose: Choice) -> tuple[TextEdit, 
 
 
 def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful: bool) -> dict[str, str]:
-    """The texts of files after all chosen fixes, made until none is left. Files that stay as they are are left out.
+    """The texts of files after all selected fixes, applied until none is left. Unchanged files are left out.
 
     Args:
-        snapshot: what is known.
+        snapshot: the state of the workspace.
         paths: the files.
-        choose: which fix of a diagnostic is to be made, if any.
-        careful: make no fix that brings an error to its file or to another file of its systems.
+        choose: selects the fix of a diagnostic to apply, if any.
+        careful: apply no fix that causes an error in its file or in another file of its systems.
     """
     texts: dict[str, str] = {}
     for path in dict.fromkeys(paths):
@@ -56,7 +55,7 @@ def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful
 
 
 def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tuple[str, Snapshot] | None:
-    """The text after as many fixes at once as go together, and what is known then. None if there is none to make."""
+    """The text after as many compatible fixes as possible, and the new snapshot. `None` if there is no fix."""
     source, fixes = snapshot.analysis.source(path), _fixes(snapshot, path, choose)
     if source is None:
         return None
@@ -72,7 +71,7 @@ def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tu
 
 def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
     fixes: list[Fix] = []
-    made: list[TextEdit] = []  # sorted; none touches another one's fix
+    made: list[TextEdit] = []  # sorted; none overlaps another one's fix
     for diagnostic in snapshot.checker.diagnostics(path):
         fix = choose(diagnostic)
         if fix is not None and not any(_touches_one_of(made, edit) for edit in fix.edits):
@@ -83,7 +82,7 @@ def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
 
 
 def _errors(snapshot: Snapshot, path: str) -> int:
-    """The number of errors in a file and in all files of the systems that it belongs to."""
+    """The number of errors in a file and in all files of its systems."""
     analysis = snapshot.analysis
     files = {path}.union(*(analysis.files_of(system) for system in analysis.memberships.get(path, ())))
     return sum(d.severity is Severity.ERROR for file in files for d in snapshot.checker.diagnostics(file))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a symbol to the place where it stands now."""
+"""From a symbol to its current position."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roaml.text import Location
 
 
 def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """Where a symbol is defined; None if it is no longer there."""
+    """The position where a symbol is defined; `None` if it does not exist any more."""
     name = _find(analysis, symbol)
     return None if name is None else Location(symbol.path, name.span)
 

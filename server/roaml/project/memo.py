@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Memory for results that are computed from content.
+"""A cache for results that are computed from content.
 
-- A slot holds the last result of one computation for one subject (a path, or a path in a system) with the key it was
-  computed from; a different key computes anew and replaces it. So memory grows with the files, not with the edits.
-- Keys compare by value. What compares by identity, as a linked system does, stays alive as part of the key.
-- Work may be given up between two computations (`Interrupted`); what was computed before stays known.
+- A slot holds the last result of one computation for one subject (a path, or a path in a system) with its key; for
+  another key the result is recomputed and replaced. So memory grows with the files, not with the edits.
+- Keys are compared by value. A key that is compared by identity, such as a linked system, is kept alive.
+- Work may be abandoned between two computations (`Interrupted`); earlier results are kept.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ T = TypeVar("T")
 
 
 class Interrupted(BaseException):
-    """Nobody waits for the result any more. No error, as `KeyboardInterrupt` is none: nothing must take it for a
-    failure."""
+    """Raised to abandon work whose result is not needed. Like `KeyboardInterrupt` it is not an `Exception`, so that
+    nothing handles it as a failure."""
 
 
 def go_on() -> None:
-    """The checkpoint of work that is never given up."""
+    """The checkpoint of work that is never abandoned."""
 
 
 class Memo:
@@ -44,7 +44,7 @@ class Memo:
         return result
 
     def copy(self) -> Memo:
-        """The same results, to which others are added here only."""
+        """A copy of the cache, so that new results are added only to the copy."""
         other = Memo()
         other._slots = dict(self._slots)
         return other

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moving a system from an older dialect to the current one (docs/spec/files.md#dialects).
+"""Migrates a system from an older dialect to the current one (docs/spec/files.md#dialects).
 
-- Made of the fixes that the rules offer, applied until none is left, so a migration changes what the rules name and
-  nothing else: comments and layout stay.
-- Machine files get the extension and root of the current dialect, and the system files name them so.
+- Applies the fixes of the rules until none is left, so a migration changes only what the rules report: comments and
+  layout are kept.
+- Machine files get the extension and root of the current dialect, and the system files use the new names.
 - A file keeps its encoding.
 """
 
@@ -30,14 +30,14 @@ CODES = frozenset(
         "removed-bt-event",
     )
 )
-"""The rules whose fixes make up a migration."""
+"""The rules whose fixes are part of a migration."""
 
 _OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
 
 
 @dataclass(frozen=True, slots=True)
 class Migration:
-    """What becomes of a file. `new_path` differs from `path` if it is renamed; `data` is `after` in its encoding."""
+    """The migration of a file. `new_path` differs from `path` if it is renamed; `data` is `after` in its encoding."""
 
     path: str
     new_path: str
@@ -47,9 +47,9 @@ class Migration:
 
 
 def migrate(systems: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], Snapshot]) -> tuple[Migration, ...]:
-    """What becomes of the files of some systems; files that stay as they are are left out.
+    """The migrations of the files of some systems, without unchanged files.
 
-    `snapshot_of` gives the systems with some texts in place of what the files hold.
+    `snapshot_of` returns the systems with some texts instead of the content of the files.
     """
     systems = tuple(systems)
     first = snapshot_of({}).analysis
@@ -95,7 +95,7 @@ def _with_current_root(analysis: Analysis, path: str) -> str:
 
 
 def _fixed(snapshot: Snapshot, path: str) -> str:
-    """The text with the first fix of each finding that belongs to a migration; those that touch others wait."""
+    """The text with the first fix of each finding of the migration; overlapping fixes wait for the next pass."""
     return apply_edits(_text(snapshot.analysis, path), fix_edits(snapshot, path, _step))
 
 

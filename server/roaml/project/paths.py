@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths as text: their parts, and one seen from another. Nothing here looks at the disk."""
+"""Paths as text: their parts, and relative paths. Nothing here accesses the disk."""
 
 from __future__ import annotations
 
@@ -53,5 +53,5 @@ def relative(path: str, folder: str) -> str:
 
 
 def seen_from(path: str, base: str) -> str:
-    """A path as the file `base` would name it, with `/`."""
+    """A path relative to the file `base`, with `/`."""
     return relative(path, os.path.dirname(base))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the user has configured, the same for editor and CI.
+"""The user's settings, which are the same for editor and CI.
 
-Read from `as2fm.toml` or `[tool.as2fm]` of a `pyproject.toml` in the root folder. What is wrong in it is reported in
-that file (`roaml.project.configuration`); what is right is still used.
+They are read from `as2fm.toml` or `[tool.as2fm]` of a `pyproject.toml` in the root folder. Errors are reported in that
+file (`roaml.project.configuration`); the valid settings are still used.
 """
 
 from __future__ import annotations
@@ -68,13 +68,13 @@ def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ..
 
 @dataclass(frozen=True, slots=True)
 class SettingMistake:
-    """What is wrong in a configuration table.
+    """An error in a configuration table.
 
     Attributes:
-        path: where in the table: keys of tables and indexes of lists.
-        message: what is wrong and what to do.
-        is_key: whether the key is meant and not its value.
-        instead: names that may be meant in place of what is written.
+        path: its place in the table: keys of tables and indices of lists.
+        message: the error and the correction.
+        is_key: whether the error is in the key, not in its value.
+        instead: names that may be meant.
     """
 
     path: Path
@@ -85,7 +85,7 @@ class SettingMistake:
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """A folder that a configuration names: as written at `path` of the table, and in full."""
+    """A folder in a configuration: as written at `path` of the table, and as an absolute path."""
 
     path: Path
     written: str
@@ -93,10 +93,10 @@ class Folder:
 
 
 def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[SettingMistake, ...]]:
-    """`base` with the values of a configuration table, and the mistakes in it.
+    """`base` with the values of a configuration table, and the errors in it.
 
     Args:
-        folder: what paths in the table are relative to.
+        folder: the base of relative paths in the table.
     """
     mistakes: list[SettingMistake] = []
     changes: dict[str, Any] = {}
@@ -140,7 +140,7 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
 
 
 _Reader = Callable[[Path, Any, list[SettingMistake]], Any]
-"""Reads the value at a path; notes what is wrong, and gives None for a value of which nothing can be used."""
+"""Reads the value at a path; records errors, and returns `None` for an unusable value."""
 
 
 def _strings(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
@@ -216,7 +216,7 @@ def _count(path: Path, value: Any, mistakes: list[SettingMistake]) -> int | None
 
 
 def _scheduler(path: Path, value: Any, mistakes: list[SettingMistake]) -> str | None:
-    """The scheduler that the table `verify` names."""
+    """The scheduler in the table `verify`."""
     if not isinstance(value, dict):
         mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table"))
         return None
@@ -280,7 +280,7 @@ _KEYS: dict[str, _Reader] = {
 
 
 def enclosing_root(path: str) -> str | None:
-    """The nearest folder around `path` that is a repository or holds our configuration."""
+    """The nearest folder around `path` that is a repository or contains a configuration of this tool."""
     for folder in folders_above(path):
         if any(os.path.exists(os.path.join(folder, mark)) for mark in (".git", ".hg", CONFIG_FILE)):
             return folder

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the parts of a JANI model back to the lines that they exist for."""
+"""From the parts of a JANI model back to the lines from which they come."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class VariablePlace(MappedPlace):
 
 
 class EdgePlace(MappedPlace):
-    """An edge; `action` is null where JANI has none."""
+    """An edge; `action` is null if JANI has none."""
 
     location: str
     action: str | None
 
 
 class AutomatonPlaces(MappedPlace):
-    """An automaton with what is in it, in the order of the JANI file."""
+    """An automaton with its parts, in the order of the JANI file."""
 
     name: str
     variables: list[VariablePlace]
@@ -50,12 +50,12 @@ class SourceMap(TypedDict):
 
 
 def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
-    """Where everything in a translated model comes from.
+    """The sources of everything in a translated model.
 
     Args:
-        model: as translated from the system, every part with its origin.
-        analysis: what it was translated from.
-        system: path of the system file.
+        model: translated from the system, with an origin for every part.
+        analysis: the analysis from which it was translated.
+        system: the path of the system file.
     """
     folder = os.path.dirname(system)
 

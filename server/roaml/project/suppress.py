@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comments that keep findings quiet: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` for all codes.
+"""Suppression comments: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` for all codes.
 
-A comment holds for the line that it stands on. Alone on its line, it holds for the element that follows it, with all
-that is in it.
+A comment applies to the line that it is on. Alone on its line, it applies to the element that follows it, with all its
+content.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
 
 @dataclass(frozen=True, slots=True)
 class Suppression:
-    """`codes` is None for all. `comment` is the comment itself."""
+    """`codes` is `None` for all. `comment` is the comment itself."""
 
     span: Span
     codes: frozenset[str] | None
@@ -34,7 +34,7 @@ class Suppression:
 
 
 def suppressions(document: Document | None) -> tuple[Suppression, ...]:
-    """All such comments of a document."""
+    """All suppression comments of a document."""
     if document is None or "as2fm:" not in document.text:
         return ()
     suppressions: list[Suppression] = []
@@ -47,8 +47,8 @@ def suppressions(document: Document | None) -> tuple[Suppression, ...]:
 
 
 def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppression, ...]]:
-    """offset -> the comments that hold for what begins there; of those that hold for the same, the first. They are
-    looked up in a table, as there may be many."""
+    """offset -> the comments that apply to what begins there; of several with the same range, the first. They are
+    indexed in a table, as there may be many."""
     opening: dict[int, list[Suppression]] = {}
     closing: dict[int, list[Suppression]] = {}
     for comment in {
@@ -86,7 +86,7 @@ def _collect(document: Document, nodes: Iterable[Node], suppressions: list[Suppr
 
 
 def _line(text: str, span: Span) -> Span:
-    """The line or lines that a span stands on."""
+    """The line or lines of a span."""
     start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     ends = [i for i in (text.find("\n", span.end), text.find("\r", span.end)) if i >= 0]
     return Span(start, min(ends, default=len(text)))

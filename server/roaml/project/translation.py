@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a checked system to plain SCXML and JANI: collects what lowering needs from the files of one moment."""
+"""From a checked system to plain SCXML and JANI: collects the input of the lowering from the files of one moment."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _observed_variable(variable: LinkedVariable) -> ObservedVariable:
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
-    """The system file at `path`, which must have no errors, with all that it names."""
+    """The system file at `path`, which must have no errors, with all its files."""
     system, file = analysis.system(path), analysis.system_file(path)
     assert system is not None
     assert file is not None
@@ -68,7 +68,7 @@ def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
 
 
 def size_of_translation(analysis: Analysis, path: str) -> Size | None:
-    """How large the translation of a system would be, whether it has errors or not; None if there is no system."""
+    """The size of the translation of a system, with or without errors; `None` if there is no system."""
     system, file = analysis.system(path), analysis.system_file(path)
     if system is None or file is None:
         return None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files of a session over time: folders, open buffers, settings. `snapshot` freezes one moment.
 
-- What an editor has open lies above the disk until it is closed, wherever it lies.
-- Folders are listed once and again after `refresh`; the content of files is looked at anew in every snapshot.
+- An open buffer takes precedence over the disk until it is closed, wherever the file is.
+- Folders are listed once and again after `refresh`; the content of files is checked again in every snapshot.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from roaml.project.settings import Settings
 from roaml.text import SourceFile, decode
 
 _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MODEL)
-"""Kinds of files that are checked only where a system or a person names them."""
+"""Kinds of files that are checked only if a system lists them or the user names them."""
 
 
 class Snapshot:
-    """One moment: what is known (`analysis`) and what is wrong (`checker`). `listed` are the files in the folders, with
-    those of the editor that were never saved."""
+    """One moment: the models (`analysis`) and the diagnostics (`checker`). `listed` are the files in the folders, and
+    the documents of the editor that were never saved."""
 
     def __init__(
         self,
@@ -45,11 +45,12 @@ class Snapshot:
         self._again = again
 
     def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
-        """The same moment with some texts in place of what the files hold."""
+        """The same moment with some texts instead of the content of the files."""
         return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
-        """All files of the workspace that are checked: those of systems, and what else is ours, each once."""
+        """All files of the workspace that are checked: those of systems, and other supported ones, without
+        duplicates."""
         analysis = self.analysis
         files = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
         for path in self._listed:
@@ -60,7 +61,8 @@ class Snapshot:
         return tuple(path for path in files if analysis.source(path) is not None)
 
     def candidates(self) -> tuple[str, ...]:
-        """The files of the workspace whose names say that they may be ours, and those of systems, each once."""
+        """The files of the workspace that may be supported according to their names, and those of systems, without
+        duplicates."""
         analysis = self.analysis
         of_systems = (path for system in analysis.system_paths for path in analysis.files_of(system))
         return tuple(dict.fromkeys((*self._listed, *of_systems, *analysis.files.open_files)))
@@ -95,7 +97,8 @@ class Workspace:
         self._registry = self._new_registry()
 
     def open(self, path: str, text: str | bytes) -> None:
-        """Text of an editor's buffer, or the bytes of a file, from now on in place of what the disk has."""
+        """Use the text of an editor's buffer, or the bytes of a file, instead of the content of the disk from now
+        on."""
         source = decode(path, text) if isinstance(text, bytes) else SourceFile(path, text)
         self._open = {**self._open, path: source}
 
@@ -103,12 +106,12 @@ class Workspace:
         self._open = {known: source for known, source in self._open.items() if known != path}
 
     def refresh(self) -> None:
-        """Files have come or gone."""
+        """Files were created or deleted."""
         self._listed = None
         self._registry.search_path.refresh()
 
     def configure(self, settings: Settings, roots: Iterable[str] | None = None) -> None:
-        """New settings or folders. Everything is looked at anew."""
+        """New settings or folders. Everything is checked again."""
         self.settings = settings
         if roots is not None:
             self.roots = tuple(os.path.abspath(root) for root in roots)
@@ -118,7 +121,7 @@ class Workspace:
         self._registry = self._new_registry()
 
     def look_for_packages_in(self, folders: Iterable[str]) -> None:
-        """Other folders in which ROS packages are looked for."""
+        """Other folders that are searched for ROS packages."""
         self._packages = tuple(os.path.abspath(folder) for folder in folders)
         self._disk = self._new_disk()
         self._registry = self._new_registry()
@@ -128,7 +131,7 @@ class Workspace:
 
     def _snapshot(self, opened: Mapping[str, SourceFile], memo: Memo) -> Snapshot:
         def again(texts: Mapping[str, SourceFile]) -> Snapshot:
-            """What might be is looked at with a memory of its own, so that nothing that is is forgotten for it."""
+            """A copy for hypothetical texts, with a separate cache, so that no current result is discarded."""
             return self._snapshot({**opened, **texts}, memo.copy())
 
         files = Files(self._disk, opened)
@@ -142,7 +145,7 @@ class Workspace:
         return Snapshot(analysis, RuleRunner(analysis, self.settings), self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
-        """A system that is named belongs to the workspace with the folder in which it really lies."""
+        """A system that is named is part of the workspace, with the folder that really contains it."""
         settings = self.settings
         named = (folder for path in self._named for folder in (os.path.dirname(path), _real_folder(path)))
         return DiskFiles(

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """All rules, grouped by subject. One rule is one module with one document beside it; both are named like the code.
 
-The rules whose findings are made by parsers are in one module, `parser_rules`; their documents are in the groups, too.
+The rules whose findings are made by parsers are in one module, `parser_rules`; their documents are in the groups as
+well.
 """
 
 from __future__ import annotations
@@ -214,7 +215,7 @@ GROUPS = (
     "variables",
     "xml_syntax",
 )
-"""The packages with rules."""
+"""The packages that contain rules."""
 
 RULES: tuple[Rule, ...] = (
     answer_needs_time.RULE,
@@ -404,12 +405,13 @@ BY_CODE = {rule.code: rule for rule in RULES}
 
 
 def document(code: str) -> str:
-    """The document of a rule (Markdown), with a link relative to its file. KeyError if there is no such rule."""
+    """The document of a rule (Markdown), with links relative to its file. Raises `KeyError` if there is no such
+    rule."""
     return document_file(code).read_text(encoding="utf-8")
 
 
 def document_file(code: str) -> Path:
-    """The file of the document of a rule. KeyError if there is no such rule."""
+    """The file of the document of a rule. Raises `KeyError` if there is no such rule."""
     rule_name = BY_CODE[code].code.replace("-", "_")
     files = (_FOLDER / group / f"{rule_name}.md" for group in GROUPS)
     return next(file for file in files if file.is_file())

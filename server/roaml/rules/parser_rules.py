@@ -11,7 +11,7 @@ from roaml.rules.rule import FileContext, Rule
 
 
 def parser_findings(code: str, context: FileContext) -> Iterator[Finding]:
-    """What the parsers found in a file under `code`."""
+    """The findings of the parsers in a file under `code`."""
     return (finding for finding in context.findings if finding.code == code)
 
 
@@ -21,30 +21,26 @@ def _parser_rule(code: str, severity: Severity, summary: str) -> Rule:
 
 DUPLICATE_ATTRIBUTE = _parser_rule("duplicate-attribute", Severity.ERROR, "An element has the same attribute twice.")
 DUPLICATE_JSON_KEY = _parser_rule(
-    "duplicate-json-key", Severity.WARNING, "An object has the same key twice; only the last one counts."
+    "duplicate-json-key", Severity.WARNING, "An object has the same key twice; only the last value is used."
 )
 INTERFACE_SYNTAX = _parser_rule(
-    "interface-syntax", Severity.ERROR, "A ROS interface definition does not follow the rules of ROS 2."
+    "interface-syntax", Severity.ERROR, "A ROS interface definition violates the rules of ROS 2."
 )
 INVALID_SETTING = _parser_rule(
     "invalid-setting",
     Severity.ERROR,
-    "A configuration file has a setting that does not exist, or a value that does not fit.",
+    "A configuration file has an unknown setting or an invalid value.",
 )
 JANI_NAME = _parser_rule("jani-name", Severity.ERROR, "Two properties in a file have the same name.")
-JANI_SYNTAX = _parser_rule("jani-syntax", Severity.ERROR, "A property does not have the form that JANI wants.")
-JSON_SCHEMA = _parser_rule("json-schema", Severity.ERROR, "A JSON Schema says something for which there is no struct.")
+JANI_SYNTAX = _parser_rule("jani-syntax", Severity.ERROR, "A property violates the JANI specification.")
+JSON_SCHEMA = _parser_rule("json-schema", Severity.ERROR, "A part of a JSON Schema has no corresponding type.")
 JSON_SYNTAX = _parser_rule("json-syntax", Severity.ERROR, "The file is not well-formed JSON.")
 MISSING_FOLDER = _parser_rule(
     "missing-folder", Severity.WARNING, "A configuration file names a folder that does not exist."
 )
-NESTING_TOO_DEEP = _parser_rule(
-    "nesting-too-deep", Severity.ERROR, "Elements are nested deeper than the analysis goes."
-)
-TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not TOML.")
-UNDEFINED_ENTITY = _parser_rule(
-    "undefined-entity", Severity.ERROR, "An entity is used that is not one of the five predefined ones."
-)
+NESTING_TOO_DEEP = _parser_rule("nesting-too-deep", Severity.ERROR, "Elements are nested too deeply to be analysed.")
+TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not valid TOML.")
+UNDEFINED_ENTITY = _parser_rule("undefined-entity", Severity.ERROR, "An entity is not one of the five predefined ones.")
 XML_SYNTAX = _parser_rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.")
 
 RULES = (

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rule is, and what it gets to see.
+"""What a rule is, and what it can access.
 
-- A rule is a code, a default severity, one sentence, and a check per kind of file it looks at. Its document stands
-  beside its module (`name.md`): the manual page, the text of `--explain` and the first test are made of it.
-- A check is a pure function from a context to findings. Everything that a context holds is immutable.
+- A rule is a code, a default severity, one sentence, and a check for each kind of file that it supports. Its document
+  is beside its module (`name.md`): the manual page, the text of `--explain` and the first test are made of it.
+- A check is a pure function from a context to findings. Everything in a context is immutable.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ from roaml.xml_syntax import Document
 
 @dataclass(frozen=True, slots=True)
 class FileContext:
-    """Any file: its text, its tree if it is XML, and what the parsers found. `grammar` is None for other files."""
+    """Any file: its text, its tree if it is XML, and the findings of the parsers. `grammar` is `None` for other
+    files."""
 
     source: SourceFile
     findings: tuple[Finding, ...]
@@ -53,11 +54,11 @@ class FileContext:
 
 @dataclass(frozen=True, slots=True)
 class MachineContext:
-    """A machine. `automata` is what it is in `system`; both are empty for a machine that belongs to no system.
+    """A machine. `automata` are its automata in `system`; both are empty if the machine is not part of a system.
 
-    `all_structs` tells that the system has no other structs than those in `struct_names`; `interface` looks up ROS
-    types by kind and name as written; `gaps` are what the machine may say where it cannot be read; `repeated_types` are
-    ROS types that it uses and that are defined twice; `older` tells that the older dialect is checked.
+    `all_structs` means that the system has no other structs than those in `struct_names`; `interface` finds ROS types
+    by kind and name as written; `gaps` are the facts that unreadable parts of the machine may contain; `repeated_types`
+    are ROS types that it uses and that are defined twice; `older` means that the older dialect is checked.
     """
 
     source: SourceFile
@@ -100,7 +101,7 @@ class TreeContext:
 
 @dataclass(frozen=True, slots=True)
 class SystemContext:
-    """A system file. `size` is that of its translation, `limits` what is translated at most."""
+    """A system file. `size` is the size of its translation, `limits` are the maximum sizes."""
 
     source: SourceFile
     document: Document
@@ -115,8 +116,8 @@ class SystemContext:
 
 @dataclass(frozen=True, slots=True)
 class StructsContext:
-    """A file of struct declarations, XML or JSON. `outlines` are the structs of the system; `complete` tells that they
-    are all whose names can be read."""
+    """A file of struct declarations, XML or JSON. `outlines` are the structs of the system; `complete` means that the
+    names of all structs are known."""
 
     source: SourceFile
     declarations: tuple[StructDeclaration, ...]
@@ -181,7 +182,7 @@ def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:
 
 
 def unused(name: str, names: Iterable[str]) -> str:
-    """`name` with the least number behind it that makes it none of `names`."""
+    """`name` with the smallest number at its end with which it is not in `names`."""
     taken = set(names)
     return next(new for number in itertools.count(2) if (new := f"{name}_{number}") not in taken)
 

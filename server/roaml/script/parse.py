@@ -30,7 +30,7 @@ from roaml.text import Decoded, Span
 
 MAX_DEPTH = 150
 MAX_PROBLEMS = 20
-"""Of a script with more mistakes, the first ones are told."""
+"""The maximum number of errors that are reported in one script."""
 
 _INT64 = range(-(2**63), 2**63)
 
@@ -40,7 +40,7 @@ UNARY = ("-", "~", "!")
 BINARY = {
     "*": 9, "/": 9, "+": 8, "-": 8, "..": 8, "&": 7, "|": 6, "^": 6, "&&": 4, "||": 3,
 }  # fmt: skip
-"""How tight the binary operators bind, comparisons (5) left out."""
+"""The precedences of the binary operators, without comparisons (5)."""
 
 _COMPARISON, _CONDITIONAL, _ASSIGNMENT = 5, 2, 1
 
@@ -57,10 +57,10 @@ _TOKEN = re.compile(
 )
 
 _INSTEAD = {
-    "%": "the script language has no remainder",
+    "%": "the script language does not support the remainder",
     "++": "write `+= 1`",
-    "<<": "the script language has no shifts",
-    ">>": "the script language has no shifts",
+    "<<": "the script language does not support shifts",
+    ">>": "the script language does not support shifts",
     "===": "write `==`",
     "!==": "write `!=`",
 }
@@ -69,7 +69,7 @@ _WORDS = {"and": "&&", "or": "||", "not": "!"}
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with a script; `replacement` is what was probably meant at the place, or ""."""
+    """An error in a script; `replacement` is what was probably meant at the position, or ""."""
 
     span: Span
     message: str
@@ -96,7 +96,7 @@ class _MistakeError(Exception):
 
 
 def parse(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
-    """The script in a text, and what is wrong with its form."""
+    """The script in a text, and its syntax errors."""
     return _Parser(source).script()
 
 
@@ -116,7 +116,7 @@ class _Parser:
         self.at = 0
         self.depth = 0
         self.height = 0
-        """Of the expression that was read last."""
+        """The height of the last expression."""
         self.problems: list[Problem] = []
 
     @property
@@ -150,7 +150,7 @@ class _Parser:
         if self.token.kind == "end":
             self.problems.append(Problem(whole, "the script is empty"))
         elif self.token.text == ";":
-            self.problems.append(Problem(self.span(self.token), "a script does not begin with `;`"))
+            self.problems.append(Problem(self.span(self.token), "a script cannot begin with `;`"))
         while self.token.kind != "end":
             if not self.takes(";"):
                 statements.append(self.statement())
@@ -172,7 +172,7 @@ class _Parser:
         return expr
 
     def _begins_nothing(self) -> bool:
-        """Whether the next token can neither go on with the statement nor begin another one."""
+        """Whether the next token can neither continue the statement nor begin another one."""
         token = self.token
         return token.kind == "operator" and token.text not in (";", "(", *UNARY)
 
@@ -180,7 +180,7 @@ class _Parser:
         token = self.token
         text = token.text
         if token.kind == "end":
-            return _MistakeError(token, "the script ends where a value is missing")
+            return _MistakeError(token, "the script ends where a value is expected")
         if token.kind == "junk":
             return self._junk(token)
         if text in ASSIGNMENTS:
@@ -190,27 +190,28 @@ class _Parser:
                 token, "this `)` closes nothing" if self.depth <= 1 else "a value is missing before `)`"
             )
         if text == ":":
-            return _MistakeError(token, "this `:` belongs to no `?`")
+            return _MistakeError(token, "this `:` has no `?`")
         return _MistakeError(token, f"a value is missing before `{text}`")
 
     def _junk(self, token: _Token) -> _MistakeError:
         text = token.text
         if text.startswith('"'):
             plain = text.strip('"')
-            return _MistakeError(token, "texts stand in single quotes", "" if "'" in plain else f"'{plain}'")
+            return _MistakeError(token, "a string needs single quotes", "" if "'" in plain else f"'{plain}'")
         if text.startswith("'"):
-            return _MistakeError(token, "the text is not closed by `'`")
+            return _MistakeError(token, "the string has no closing `'`")
         if text[0] in "0123456789.":
-            return _MistakeError(token, f"`{text}` is not a number: a point has digits on both sides")
+            return _MistakeError(token, f"`{text}` is not a number: a point needs digits on both sides")
         why = _INSTEAD.get(text)
         return _MistakeError(
-            token, f"the script language has no `{text}`" if why is None else f"unknown operator `{text}`: {why}"
+            token,
+            f"the script language does not support `{text}`" if why is None else f"unknown operator `{text}`: {why}",
         )
 
     # ----------------------------------------------------------- expressions
 
     def expression(self, least: int) -> Expr:
-        """An expression whose operators bind at least as tight as `least`."""
+        """An expression whose operators have at least the precedence `least`."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise self._too_deep()
@@ -230,7 +231,7 @@ class _Parser:
             raise self._too_deep()
 
     def _too_deep(self) -> _MistakeError:
-        return _MistakeError(self.token, f"the script is nested deeper than {MAX_DEPTH} levels")
+        return _MistakeError(self.token, f"the script is nested more than {MAX_DEPTH} levels deep")
 
     def _strength(self) -> int | None:
         token = self.token
@@ -280,7 +281,7 @@ class _Parser:
             self.at += 1
             inner = self.expression(_ASSIGNMENT)
             if not self.takes(")"):
-                raise _MistakeError(token, "this `(` is not closed")
+                raise _MistakeError(token, "this `(` is never closed")
             return inner
         self.height = 1
         match token.kind:
@@ -308,7 +309,7 @@ class _Parser:
 
     def _name(self, token: _Token) -> Expr:
         if token.text == "@":
-            raise _MistakeError(token, "`@` needs the name of an entry of the root blackboard behind it")
+            raise _MistakeError(token, "`@` must be followed by the name of an entry of the root blackboard")
         follows = self.token
         if token.text in _WORDS and follows.kind in ("name", "number", "string"):
             raise _MistakeError(

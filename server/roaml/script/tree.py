@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The syntax tree of a script.
 
-- Every node has a `span` in the source file, escapes of the surrounding XML already accounted for.
-- Where something is missing or not understood there is an `ErrorExpr`, so the rest of the tree stays usable.
+- Every node has a `span` in the source file, with escapes of the surrounding XML resolved.
+- A missing or invalid part is an `ErrorExpr`, so the rest of the tree stays usable.
 - No tree is deeper than `roaml.script.parse.MAX_DEPTH`: functions over trees may recurse.
 """
 
@@ -39,7 +39,7 @@ class String:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """An enumeration constant of the program or an entry; a leading `@` means an entry of the root blackboard."""
+    """An enumeration constant of the program or an entry; a leading `@` refers to the root blackboard."""
 
     span: Span
     name: str
@@ -67,7 +67,7 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`a < b == c`: each of `operators` stands between two of `operands`; all must hold."""
+    """`a < b == c`: each of `operators` is between two of `operands`; all must hold."""
 
     span: Span
     operators: tuple[str, ...]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML as frozen data, and its writer. Knows expressions, nothing of HL-SCXML, ROS or JANI."""
+"""Plain SCXML as frozen data, and its writer. Depends on expressions, not on HL-SCXML, ROS or JANI."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML: what HL-SCXML is lowered to, and what becomes JANI (docs/spec/plain-scxml.md).
+"""Plain SCXML: the result of lowering HL-SCXML, and the input of the translation to JANI (docs/spec/plain-scxml.md).
 
 - Flat state machines that share nothing and exchange events by name. No ROS, no trees, no structs: variables are
-  scalars, strings and arrays of those.
-- Frozen. Everything has an `origin`: the place in the models that it exists for, synthesised parts included.
-- Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans lie
+  scalars, strings and arrays of these.
+- Frozen. Everything has an `origin`, the place in the models from which it comes, including added parts.
+- Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans are
   in the file of the origin around them.
 - Whole numbers are ints outside of initial values, however they were written (docs/spec/expressions.md#whole-reals).
 """
@@ -22,7 +22,7 @@ from roaml.text import Location
 
 
 class Role(enum.Enum):
-    """What an automaton is in the system; the translation to JANI treats some differently
+    """The role of an automaton in the system; the translation to JANI treats some roles differently
     (docs/spec/jani.md#discarding)."""
 
     MACHINE = "machine"
@@ -105,7 +105,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """The first branch whose condition holds is executed, else `otherwise`."""
+    """The first branch whose condition holds is executed, otherwise `otherwise`."""
 
     branches: tuple[Branch, ...]
     otherwise: Body
@@ -118,7 +118,7 @@ Body: TypeAlias = tuple[Statement, ...]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where a transition leads and what it does on the way; the probabilities of one transition add up to 1."""
+    """The target of a transition and the statements on the way; the probabilities of one transition add up to 1."""
 
     state: str
     probability: float
@@ -147,7 +147,8 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Automaton:
-    """One state machine. Entering a state runs its `entry`; the initial state's runs once at the start."""
+    """One state machine. Entering a state executes its `entry`; that of the initial state is executed once at the
+    start."""
 
     name: str
     role: Role
@@ -162,8 +163,8 @@ class Network:
     """All automata of a system, in processing order (docs/spec/systems.md#processing-order).
 
     Attributes:
-        max_array_size: the most elements of an array without a bound, and of every array that is sent.
-        random_values: how many values `Math.random()` has.
+        max_array_size: the maximum number of elements of an array without a bound, and of every array that is sent.
+        random_values: the number of values of `Math.random()`.
     """
 
     automata: tuple[Automaton, ...]
@@ -172,7 +173,7 @@ class Network:
 
 
 def statements(body: Body) -> Iterator[Statement]:
-    """All statements of a body in document order, those inside of an `If` included."""
+    """All statements of a body in document order, including those inside of an `If`."""
     for statement in body:
         yield statement
         if isinstance(statement, If):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plain SCXML as documents that other tools read (docs/spec/plain-scxml.md#documents): one for each automaton.
 
-- Every `<data>` has its type in a comment before it, as SCXML itself knows none.
+- Every `<data>` has its type in a comment before it, because SCXML has no types.
 - A `<send>` is written once for each automaton that receives the event, with that as its target; `NONE` if there is
   none.
-- A transition with several targets becomes a state that draws a number and goes on by it, so every taking of the
-  transition draws anew (docs/spec/plain-scxml.md#documents).
+- A transition with several targets becomes a state that draws a number and selects a target by it, so each time the
+  transition is taken, a new number is drawn (docs/spec/plain-scxml.md#documents).
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ NAMESPACE = "http://www.w3.org/2005/07/scxml"
 NOBODY = "NONE"
 DRAWN = "__RAND__"
 DELAY = "1"
-"""Of the clock's event to itself, so that time passes only when nothing else is to be done."""
+"""The delay of the clock's event to itself, so that time passes only when no other event waits."""
 _INDENT = "    "
 
 
 class WrittenLine(NamedTuple):
-    """A line without its end, and the place in the models that it exists for."""
+    """A line without its terminator, and the place in the models from which it comes."""
 
     text: str
     origin: Location
@@ -111,7 +111,7 @@ class _Writer:
             yield from self.draw(identifier, transition)
 
     def draw(self, identifier: str, transition: Transition) -> Lines:
-        """The state in which it is decided which of several targets is taken."""
+        """The state that chooses one of several targets."""
         origin = transition.origin
         assign = WrittenLine(f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>", origin)
         lines = [*_element("onentry", {}, (assign,), origin)]
@@ -186,7 +186,7 @@ def _fresh(wanted: str, taken: Iterable[str]) -> str:
 def _element(
     name: str, attributes: Mapping[str, str], content: Iterable[WrittenLine], origin: Location, always: bool = False
 ) -> Lines:
-    """An element; one without content or attributes is left out unless `always`."""
+    """An element; without content or attributes it is omitted unless `always`."""
     start, lines = f"<{name}{_attributes(**attributes)}", list(content)
     if lines:
         yield WrittenLine(f"{start}>", origin)
@@ -197,7 +197,7 @@ def _element(
 
 
 def _attributes(**attributes: str) -> str:
-    """Attributes in the order given, those without a value left out."""
+    """Attributes in the given order, without those that have no value."""
     return "".join(f' {name}="{escape(value, _QUOTES)}"' for name, value in attributes.items() if value)
 
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions -> bytecode.
 
-- Types are known beforehand, so each instruction is for ints or for reals.
-- Conditions become jumps; `∧`, `∨`, `⇒` and `ite` compute only what they need, as `roaml.jani.semantics` defines.
-- What has a value already is computed here. What can only go wrong stays in the code: it may never be reached.
-- Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is filled up with zeros.
+- Types are known in advance, so each instruction is for ints or for reals.
+- Conditions become jumps; `∧`, `∨`, `⇒` and `ite` evaluate only the operands that they need, as `roaml.jani.semantics`
+  defines.
+- Constant expressions are computed here. An expression that always fails stays in the code: it may never be reached.
+- Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is padded with zeros.
 - A function is compiled where it is called.
 """
 
@@ -53,7 +54,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ pieces of code
 
     def condition(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
-        """Code that tells whether `expression` holds."""
+        """Code that tests whether `expression` holds."""
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
         self.jump(expression, names, otherwise, False)
@@ -63,7 +64,7 @@ class ExpressionAssembler:
         return start
 
     def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
-        """Code that gives the number of the real register with the value of `expression`."""
+        """Code that returns the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)
         value = self.cells.as_real(self.value(expression, names))
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
@@ -134,7 +135,7 @@ class ExpressionAssembler:
         return self.operators.computed(node, first, self.value(right, names), into)
 
     def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
-        """`a + b + c ...`: as deep as it likes."""
+        """`a + b + c ...`, of any length."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
             parts.append(parts[-1].left)
@@ -172,7 +173,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ conditions
 
     def jump(self, node: Expression, names: StorageNames, label: Label, when: bool) -> None:
-        """Jump to `label` if the value of `node` is `when`, else go on."""
+        """Jump to `label` if the value of `node` is `when`, otherwise continue."""
         while isinstance(node, Unary) and node.operator is UnaryOperator.NOT:
             node, when = node.operand, not when
         match node:
@@ -197,7 +198,7 @@ class ExpressionAssembler:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
     def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
-        """Chains of one operator are as long as they like."""
+        """Chains of one operator may have any length."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
             last = parts.pop()
@@ -287,7 +288,7 @@ class ExpressionAssembler:
         return Region(whole.kind, shape, base + fixed, offset)
 
     def region(self, node: Expression, names: StorageNames) -> Region:
-        """The registers of an array; what is not in registers is put there."""
+        """The registers of an array; an array that is not in registers is copied there."""
         match node:
             case Name():
                 meaning = names.meaning(node)
@@ -308,7 +309,7 @@ class ExpressionAssembler:
         return region
 
     def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
-        """Store an array into a region without offset; where it is smaller, zeros are added."""
+        """Store an array into a region without offset; a smaller one is padded with zeros."""
         match node:
             case ArrayValue(elements):
                 if len(elements) > into.shape[0]:
@@ -358,7 +359,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ functions
 
     def called(self, node: Call, names: StorageNames) -> tuple[Expression, StorageNames]:
-        """The body of a function, and what names mean in it."""
+        """The body of a function, and the meaning of its names."""
         function = names.called(node)
         bound: dict[str, Meaning] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments -> bytecode: at once, or in two parts, first what is computed and then what is stored.
+"""Assignments -> bytecode: in one part, or in two, first the computation and then the storing.
 
-A value that is stored in an array of the same or a larger shape is filled up with zeros.
+A value that is stored in an array of the same or a larger shape is padded with zeros.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
 class Later(NamedTuple):
-    """An assignment whose value is computed: where it goes, the register where the value is kept, whom to tell."""
+    """An assignment whose value is computed: its target, the register of the value, and the variable to notify."""
 
     place: Region
     register: int
@@ -70,7 +70,7 @@ class AssignmentAssembler:
         if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
             self.expressions.fill(value, place, names, watch)
             return
-        # What is stored may be made of what is there.
+        # The stored value may depend on the current one.
         copy = self.expressions.materialized(value, place.kind, place.shape, names)
         self.write_early(place, copy.base, watch)
 
@@ -87,7 +87,7 @@ class AssignmentAssembler:
                 self.tape.emit(Op.NOTE, watch)
 
     def early(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> Later:
-        """Compute what will be assigned, and where; `finish` assigns it."""
+        """Compute the value and the target of an assignment; `finish` assigns it."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
         place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
@@ -109,7 +109,7 @@ class AssignmentAssembler:
         self.write_early(later.place, later.register, later.watch)
 
     def reset(self, storage: Storage) -> None:
-        """Give a variable its first value again."""
+        """Reset a variable to its initial value."""
         for i in range(product(storage.shape)):
             cells: Sequence[Number] = self.tape.reals if storage.kind == REAL else self.tape.ints
             value = self.tape.constant(storage.kind, cells[storage.base + i])

@@ -20,7 +20,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
 
 SLICE = 200_000
-"""Steps after which Python has a moment, to see an interrupt: some hundredths of a second."""
+"""The number of steps after which Python can handle an interrupt: some hundredths of a second."""
 
 
 class Payload(NamedTuple):
@@ -31,7 +31,7 @@ class Payload(NamedTuple):
 
 
 class TraceProblem(NamedTuple):
-    """What went wrong in a trace; see `Kernel.problem`."""
+    """An undefined operation in a trace; see `Kernel.problem`."""
 
     trace: int
     code: int
@@ -54,8 +54,8 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BatchOutcome:
-    """What came of a batch: for each trace FALSE, TRUE or UNKNOWN, why it has ended (`End`), its steps, and for
-    questions about rewards its reward. A problem ends the batch; the trace that has it is not counted."""
+    """The result of a batch: for each trace FALSE, TRUE or UNKNOWN, why it has ended (`End`), its steps, and for
+    questions about rewards its reward. A problem ends the batch; its trace is not counted."""
 
     verdicts: bytes
     ends: bytes
@@ -65,7 +65,7 @@ class BatchOutcome:
 
 
 def pack(compiled: Compiled) -> Payload:
-    """A compiled model as a worker is sent it."""
+    """A compiled model in the form in which it is sent to workers."""
     digest = hashlib.sha256()
     for part in (compiled.program, compiled.goal):
         for field in fields(part):
@@ -76,7 +76,8 @@ def pack(compiled: Compiled) -> Payload:
 
 
 class _Kernels(threading.local):
-    """The last kernel of each thread: a kernel walks one trace at a time, and some executors run batches in threads."""
+    """The last kernel of each thread: a kernel simulates one trace at a time, and some executors run batches in
+    threads."""
 
     digest = ""
     kernel: Kernel | None = None
@@ -99,13 +100,13 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
     """Run the traces of a batch.
 
     Args:
-        pulse: told now and then the number of the trace and its steps; what it raises ends the batch.
+        pulse: called regularly with the number of the trace and its steps; what it raises ends the batch.
     """
     return run_on(kernel_of(task.payload), task, pulse)
 
 
 def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
-    """The same on a kernel that nobody else uses meanwhile."""
+    """The same on a kernel that nothing else uses meanwhile."""
     verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)
@@ -126,7 +127,7 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
 
 
 class StoppedError(Exception):
-    """Nobody waits for the batch any more."""
+    """The batch is not needed any more."""
 
 
 _stopping: Event | None = None
@@ -140,7 +141,8 @@ def start_worker(stopping: Event) -> None:
     """
     global _stopping  # noqa: PLW0603
     _stopping = stopping
-    # The main process alone is interrupted by the keyboard, and tells its workers. If it is killed, they end, too.
+    # Only the main process handles interrupts from the keyboard, and notifies its workers. If it is killed, they end as
+    # well.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     main = multiprocessing.parent_process()
     if main is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moving values between registers and the cells of arrays, and filling up with zeros what is smaller."""
+"""Copies values between registers and the cells of arrays, and pads smaller values with zeros."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from roaml.smc.registers import INT, REAL, Operand, Region, Tape, product
 
 
 class CellAssembler:
-    """Writes code that moves what is computed already. `watch` is the number of a variable that is written, or -1."""
+    """Writes code that copies computed values. `watch` is the number of a variable that is written, or -1."""
 
     def __init__(self, tape: Tape) -> None:
         self.tape = tape
 
     def end(self) -> None:
-        """The end of a piece of code whose result nobody wants."""
+        """The end of a piece of code whose result is not used."""
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
 
     def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
-        """Something that has no value, if it is ever reached."""
+        """Code for something without a value, which fails if it is reached."""
         self.tape.place(node.origin)
         self.tape.emit(Op.FAULT, code, value, size)
         return Operand(kind, self.tape.temporary(kind))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the answer under uniform choices says about `Pmin` and `Pmax`: whether all schedulers agree, and if that is not
-known, how far apart schedulers were found to be.
+"""What the result under uniform choices means for `Pmin` and `Pmax`: whether all schedulers agree, and if that is
+unknown, how far apart schedulers were found to be.
 
-1. A model without nondeterminism: nobody chooses anything.
-2. All states are looked at, where they are few (`solve`): the minimum and the maximum are known.
-3. Else schedulers are sampled (`lss.probe`), with a part of the effort that the answer has cost.
+1. A model without nondeterminism: there is nothing to choose.
+2. All states are explored, if there are few (`solve`): the minimum and the maximum are known.
+3. Otherwise schedulers are sampled (`lss.probe`), with a part of the effort of the result.
 
-What is done depends on the model, the question, the options and the traces of the answer only.
+The method depends only on the model, the question, the options and the traces of the result.
 """
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ from roaml.smc.solve import solve
 from roaml.smc.statistics import Bounds
 
 EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform choices"
-"""How an extreme was found."""
+"""The method by which an extreme was found."""
 
 _SHARE = 5
-"""The effort for schedulers is this part of that for the answer."""
+"""The effort for schedulers, as a part of that for the result."""
 _LEAST_STEPS, _MOST_STEPS = 50_000, 400_000
 _USUAL_SIZE = 200
-"""Registers and automata of a model with which a step costs about as much as usual; with more it costs more."""
+"""The number of registers and automata of a model with a normal cost per step; with more, steps cost more."""
 
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """The least or the greatest probability, as far as it is known.
+    """The minimum or the maximum probability, as far as it is known.
 
     Attributes:
         value: the estimate, or the exact value.
-        bounds: hold the probability that some scheduler achieves: with the method's confidence, or certainly if it was
-            found by looking at all states.
-        found: how: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
-        scheduler: the one that achieves it, in words; empty for the best of all schedulers.
-        traces: so many were made for it.
+        bounds: contain the probability that some scheduler achieves: with the method's confidence, or certainly if all
+            states were explored.
+        found: the method: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
+        scheduler: a description of the scheduler that achieves it; empty for the best of all schedulers.
+        traces: the number of traces for it.
     """
 
     value: float
@@ -62,8 +62,8 @@ class Choices:
     """What is known of other schedulers than the uniform one.
 
     Attributes:
-        agreement: why all give the same; empty if that is not known.
-        minimum, maximum: what schedulers achieve; None if nothing is known of it.
+        agreement: why all have the same value; empty if that is unknown.
+        minimum, maximum: what schedulers achieve; `None` if unknown.
         tried: the number of schedulers that were sampled.
     """
 
@@ -103,11 +103,11 @@ def look_at_choices(
     if solution is not None:
         states = "1 state" if solution.states == 1 else f"{solution.states:,} states"
         if not solution.has_choices:
-            return Choices(f"nothing is left to choose in any of {states}", *_of_answer(answer))
+            return Choices(f"there is only one choice in each of {states}", *_of_answer(answer))
         if solution.minimum is not None and solution.maximum is not None:
             least, greatest = (_exact(each) for each in (solution.minimum, solution.maximum))
             if least is not None and greatest is not None:
-                return Choices(f"all {states} were looked at" if solution.agrees else "", least, greatest)
+                return Choices(f"all {states} were explored" if solution.agrees else "", least, greatest)
     question, tally = answer.question, answer.tally
     if question.is_reward or not tally.traces:
         return Choices()
@@ -130,7 +130,7 @@ def look_at_choices(
 
 
 def _exact(bounds: Bounds) -> Extreme | None:
-    """An extreme that is enclosed narrowly enough to be called exact."""
+    """An extreme whose bounds are close enough to be called exact."""
     if bounds.half_width > 5e-7:
         return None
     middle = (bounds.lower + bounds.upper) / 2

@@ -27,7 +27,7 @@ SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
 @dataclass(frozen=True, slots=True)
 class Legend:
-    """What the numbers of a program stand for; workers do not need it.
+    """The meaning of the numbers in a program; workers do not need it.
 
     Attributes:
         locations: instance and name of each location.
@@ -43,10 +43,10 @@ class Legend:
 
 
 class Compilation:
-    """Compiles `model` so that conditions over `formulas` can be watched; `program` closes it.
+    """Compiles `model` so that conditions over `formulas` can be watched; `program` completes it.
 
     Raises:
-        FaultError: the model has parts that cannot be run, or that are wrong whatever happens.
+        FaultError: the model has parts that cannot be run, or that always fail.
     """
 
     def __init__(self, model: Model, formulas: Iterable[Formula] = ()) -> None:
@@ -65,7 +65,7 @@ class Compilation:
         self._write()
 
     def _watch(self, formulas: Iterable[Formula]) -> None:
-        """Number the variables whose changes must be known: those that guards and properties read."""
+        """Number the variables whose changes must be tracked: those that guards and properties read."""
 
         def watch(name: str, names: StorageNames) -> None:
             meaning = names.values.get(name)
@@ -119,7 +119,7 @@ class Compilation:
         self._write_moves()
 
     def _is_entangled(self, slots: list[int]) -> bool:
-        """Whether what one part of a vector assigns matters to another one."""
+        """Whether the assignments of one part of a vector affect another part."""
         if len(slots) < 2:
             return False
         shared = []
@@ -205,7 +205,7 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """What changes between the locations of each way."""
+        """The changes between the locations of each way."""
         self.move_start, self.move_slot, self.move_count = [0], list[int](), list[int]()
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):
@@ -225,7 +225,7 @@ class Compilation:
             self.way_move.append(known[source, target])
 
     def _counts(self, location: int) -> dict[int, int]:
-        """For each slot the number of edges that are enabled here, or -1 - group if that depends on guards."""
+        """For each slot the number of enabled edges, or -1 - group if that depends on guards."""
         found = {}
         for group in range(self.group_start[location], self.group_start[location + 1]):
             steps = self.group_steps[group]
@@ -321,7 +321,7 @@ class Compilation:
         return Legend(self.layout, self.network.locations, self.ways, self.network.vectors, self.network.slots)
 
     def _write_transient(self) -> tuple[int, Ints]:
-        """Code that resets transient variables, and for each location the values that they have in it."""
+        """Write code that resets transient variables, and for each location the values that they have in it."""
         model = self.model
         code = [-1] * len(self.network.locations)
         scopes: list[tuple[StorageNames, Iterable[Storage], Mapping[str, bool]]] = [
@@ -391,7 +391,7 @@ def _ranges(lists: Iterable[list[int]]) -> tuple[Ints, Ints]:
 
 
 def _by_index(assignments: tuple[Assignment, ...]) -> list[list[Assignment]]:
-    """The assignments of each index, in the order in which they are executed."""
+    """The assignments of each index, in the order of their execution."""
     groups: dict[int, list[Assignment]] = {}
     for assignment in assignments:
         groups.setdefault(assignment.index, []).append(assignment)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Why a trace has ended.
 
-What can be seen in any model: the goal is decided, no step is possible (DEADLOCK), only steps that change nothing are
-possible (IDLE), or there were too many steps (CUT). Who knows what the automata of a model mean marks their locations,
-and so tells why a trace ends that changes nothing any more: of the marks of all locations that are reached then, the
-least number counts.
+In any model: the goal is decided, no step is possible (DEADLOCK), only steps without any change are possible (IDLE), or
+there were too many steps (CUT). A caller that knows the meaning of the automata marks their locations, which explains
+why a trace without further changes ends: of the marks of all current locations, the smallest number is used.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ class End(IntEnum):
     """The numbers are those of the kernel; `TIME` to `QUIET` are the marks of locations."""
 
     DECIDED = 0
-    """What is asked about the trace was decided."""
+    """The question about the trace was decided."""
     TIME = 1
     """The time of the model is over."""
     FINISHED = 2
@@ -32,16 +31,16 @@ class End(IntEnum):
     IDLE = 6
     """Only steps that change nothing are possible."""
     CUT = 7
-    """The trace was as long as allowed."""
+    """The trace had the maximum length."""
 
     @property
     def text(self) -> str:
-        """For people."""
+        """A phrase for users."""
         return _TEXTS[self]
 
     @property
     def key(self) -> str:
-        """For programs."""
+        """A key for programs."""
         return self.text.replace(" ", "_")
 
 
@@ -58,4 +57,4 @@ _TEXTS = {
 
 
 Marks: TypeAlias = Mapping[tuple[str, str], End]
-"""(automaton, location) -> what it means that a trace ends there."""
+"""(automaton, location) -> the meaning of a trace that ends there."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All states of a model, where there are few: for exact answers, and for tests of the engine itself."""
+"""All states of a model, if there are few: for exact results, and for tests of the engine itself."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
 
 MOST_CHOICES = 1 << 20
-"""Combinations of edges and destinations in one state: some seconds."""
+"""The maximum number of combinations of edges and destinations in one state: some seconds."""
 
 
 class ExploredState(NamedTuple):
-    """Where all instances are, and the values of all variables."""
+    """The locations of all instances, and the values of all variables."""
 
     place: tuple[int, ...]
     ints: tuple[int, ...]
@@ -37,11 +37,11 @@ class TooManyStatesError(Exception):
 
 
 class TooManyChoicesError(Exception):
-    """In one state there are more combinations of edges and their destinations than allowed."""
+    """One state has more combinations of edges and their destinations than allowed."""
 
 
 class StateFaultError(Exception):
-    """Something that has no meaning happens in a state."""
+    """An undefined operation is executed in a state."""
 
     def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
@@ -49,11 +49,11 @@ class StateFaultError(Exception):
 
 
 class Explorer:
-    """Looks at all states that can be reached before a goal without step bounds is decided.
+    """Explores all states that can be reached before a goal without step bounds is decided.
 
     Args:
-        limit: no more combinations of edges and destinations than that are enumerated in one state. With n automata of
-            k edges on one action there are kⁿ of them.
+        limit: the maximum number of combinations of edges and destinations that are enumerated in one state. With n
+            automata of k edges on one action there are kⁿ of them.
     """
 
     def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES) -> None:
@@ -64,15 +64,15 @@ class Explorer:
         self.initial = self._state()
 
     def verdict(self, state: ExploredState) -> int:
-        """What is known of the goal in a state that is reached first."""
+        """The verdict on the goal in a state that is reached first."""
         self._kernel.restore(*state)
         return self._kernel.look()
 
     def choices(self, state: ExploredState) -> Iterator[tuple[int, list[Successor]]]:
-        """The choices of a state with their successors, and how many choices there are that differ in nothing else.
+        """The choices of a state with their successors, and the number of otherwise equal choices.
 
         Raises:
-            StateFaultError: one of them goes wrong.
+            StateFaultError: one of them executes an undefined operation.
             TooManyChoicesError: there are more than `limit`; nothing has been enumerated.
         """
         self._kernel.restore(*state)
@@ -96,7 +96,7 @@ class Explorer:
                 yield times, branches
 
     def reachable(self, limit: int) -> dict[ExploredState, int]:
-        """All states with what is known of the goal there; beyond a decided one nothing is looked at.
+        """All states with the verdict on the goal; states after a decided one are not explored.
 
         Raises:
             TooManyStatesError: there are more than `limit`.

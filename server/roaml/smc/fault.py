@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with a model or property, found before or while it runs."""
+"""Errors in a model or property, found before or during a run."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any
 from roaml.jani.node import Origin
 
 MODEL_FAULT = "model-fault"
-"""The code of what a model does wrong while it runs, or that the model checker cannot run."""
+"""The code of undefined operations, and of models that cannot be run."""
 
 
 class FaultError(Exception):
-    """A model or property cannot be run, or did something that has no meaning.
+    """A model or property cannot be run, or executed an undefined operation.
 
     Attributes:
         message: one sentence without a full stop.
-        origin: the place of the part that is wrong, as far as it is known.
-        trace: the number of the trace in which it happened; None if it was found beforehand.
-        code: the rule whose document says more.
+        origin: the position of the invalid part, if known.
+        trace: the number of the trace in which it happened; `None` if it was found before.
+        code: the rule that documents it.
     """
 
     def __init__(

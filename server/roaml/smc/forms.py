@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which forms of properties sampling can answer, seen from the property alone.
+"""The forms of properties that sampling can decide, determined from the property alone.
 
-`goal.ask` compiles what is of these forms; the rule `unsupported-property` reports the others before anything is run.
+`goal.ask` compiles these forms; the rule `unsupported-property` reports the others before anything is run.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from roaml.jani.properties import (
 from roaml.smc.fault import FaultError
 
 UNSUPPORTED = "unsupported-property"
-"""The code under which `--check` and `verify` report such a property."""
+"""The code under which `--check` and `verify` report an unsupported property."""
 BOUNDS = "ignored-bounds"
 """The same for bounds on time and rewards."""
 
@@ -52,14 +52,14 @@ _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, Fil
 
 
 def faults_in(property_: Property) -> Iterator[FaultError]:
-    """Why sampling cannot answer a property of this form, with the places of the parts that are to blame."""
+    """Why sampling cannot decide a property of this form, with the positions of the unsupported parts."""
     for what, node in _faults(property_.expression):
         code = BOUNDS if what in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
         yield FaultError(f"{what}; {ANSWERED}", node.origin or property_.origin, code=code)
 
 
 def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:
-    """The bounds on time and rewards, wherever they are in a property, and why no translated model can have them."""
+    """The bounds on time and rewards, anywhere in a property, and why translated models do not support them."""
     for formula in walk(property_.expression):
         if isinstance(formula, (UnaryPath, BinaryPath)):
             yield from _in_bounds(formula)
@@ -113,7 +113,7 @@ def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
             case BinaryFormula(operator, left, right) if operator in COMPARISONS and not is_compared:
                 is_compared = True
                 if isinstance(left, ProperFormula) and isinstance(right, ProperFormula):
-                    yield "a probability is compared with something that is not a number", right
+                    yield "a probability must be compared with a number", right
                 formula = left if isinstance(left, ProperFormula) else right
             case Probability(_, path):
                 yield from _in_path(path)
@@ -127,14 +127,14 @@ def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
 
 
 def _about(states: Formula) -> str:
-    """The `states` of a filter in words."""
+    """A phrase for the `states` of a filter."""
     if isinstance(states, Predicate):
         return f"`states` of the filter is `{states.predicate.value}`"
     return "`states` of the filter is a condition"
 
 
 def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
-    """What is wrong with a formula over paths."""
+    """The errors in a formula over paths."""
     waiting = [path]
     while waiting:
         formula = waiting.pop()
@@ -159,7 +159,7 @@ def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
 
 
 def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
-    """What is wrong with a formula about states."""
+    """The errors in a formula about states."""
     while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
         formula = formula.operand
     if isinstance(formula, Predicate):
@@ -180,7 +180,7 @@ def _in_bounds(formula: PathBounds) -> Iterator[tuple[str, Node]]:
 def _in_reward(formula: Expectation) -> Iterator[tuple[str, Node]]:
     others = (formula.step_instant, formula.time_instant, formula.reward_instants or None)
     if formula.reach is None or formula.accumulate is None or any(other is not None for other in others):
-        yield "only rewards that are accumulated until something is reached are supported", formula
+        yield "only rewards that are accumulated until a condition holds are supported", formula
         return
     if Accumulation.TIME in formula.accumulate:
         yield "no time passes in this kind of model, so rewards are accumulated on `steps` or `exit`", formula

@@ -52,7 +52,7 @@ _MIRRORED = {
     BinaryOperator.GREATER: BinaryOperator.LESS,
     BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
 }
-"""Each comparison -> the same with its sides exchanged."""
+"""Each comparison, with the operator for exchanged sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,21 +67,21 @@ class Threshold:
 
     @property
     def is_lower(self) -> bool:
-        """Whether values above the threshold are the good ones."""
+        """Whether values above the threshold satisfy it."""
         return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is asked about all traces.
+    """The question about all traces.
 
     Attributes:
         name: of the property.
         operator: `Pmin`, `Pmax`, `Emin` or `Emax`.
-        is_reward: whether an expected reward is asked for, not a probability.
-        threshold: what the value is compared with, if it is.
-        variables: what the property reads.
-        is_stuck: whether it is asked whether traces get stuck (`ask_stuck`).
+        is_reward: whether it is about an expected reward, not a probability.
+        threshold: the comparison of the value, if there is one.
+        variables: the variables that the property reads.
+        is_stuck: whether it is about stuck traces (`ask_stuck`).
     """
 
     name: str
@@ -115,13 +115,13 @@ def ask(compilation: Compilation, property_: Property, open_: Expression | None 
 
 
 STUCK_PROPERTY = "stuck"
-"""The name of the property that every model has: that a trace gets stuck, whatever else is asked about it."""
+"""The name of the property that every model has: that a trace gets stuck."""
 
 
 def ask_stuck(compilation: Compilation) -> CompiledProperty:
-    """How probable it is that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
+    """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
     ever change. Every trace runs to its end."""
-    # JANI has no word for it; this is what comes nearest.
+    # JANI has no such predicate; this is the closest one.
     path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
     states = Predicate(StatePredicate.INITIAL)
     formula = Filter(FilterFunction.VALUES, Probability(ProbabilityOperator.PMAX, path), states)
@@ -210,13 +210,13 @@ class _Writer:
         except EvaluationError as error:
             raise FaultError(error.message, error.origin or formula.origin) from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise FaultError("a number is needed here", formula.origin)
+            raise FaultError("a number is required here", formula.origin)
         return value
 
     # ------------------------------------------------------------ paths
 
     def path(self, formula: Formula) -> None:
-        """Write a formula over paths; its value is on top of the stack then."""
+        """Write a formula over paths; its value is then on top of the stack."""
         lasting = lasting_part(formula)
         if lasting is not None:
             self.at_end(lasting)

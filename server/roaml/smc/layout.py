@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where variables and constants live, and what names mean in each instance of an automaton."""
+"""The registers of variables and constants, and the meaning of names in each instance of an automaton."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ class MemoryLayout:
 
 
 def lay_out(model: Model, tape: Tape) -> MemoryLayout:
-    """Give a place to everything that has a value; registers of variables come before all others.
+    """Assign a register to everything that has a value; registers of variables come before all others.
 
     Raises:
-        FaultError: a constant or variable has no value, or one that is not supported.
+        FaultError: a constant or variable has no value, or an unsupported one.
     """
     functions = {function.name: function for function in model.functions}
     constants = _constants(model, functions)
@@ -124,7 +124,7 @@ def _check_start(model: Model, layout: MemoryLayout) -> None:
         except EvaluationError as error:
             raise FaultError(error.message, error.origin) from None
         if not holds:
-            raise FaultError("there is no initial state: the initial values do not fulfil this", clause.exp.origin)
+            raise FaultError("there is no initial state: the initial values do not satisfy this", clause.exp.origin)
 
 
 def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
@@ -209,7 +209,7 @@ def _grow(scopes: list[tuple[Automaton, StorageNames]], constants: Mapping[str, 
                 changed = True
         if not changed:
             return
-    raise FaultError("the sizes of the arrays do not settle")
+    raise FaultError("the sizes of the arrays do not converge")
 
 
 def _assignments(automaton: Automaton) -> Iterator[Assignment]:

@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The least and the greatest probability over schedulers, by sampling schedulers (Legay, Sedwards and Traonouez 2014):
+"""The minimum and the maximum probability over schedulers, by sampling schedulers (Legay, Sedwards and Traonouez 2014):
 a scheduler is a number, and its choice in a state a hash of both.
 
 Four kinds are tried, each with many numbers:
 
-- memoryless ones;
-- some with memory: what was done last counts, too;
-- for each automaton some that take its edges only where nothing else is possible;
-- for each automaton some that take its edges wherever that is possible.
+- memoryless schedulers;
+- some with memory of the last step;
+- for each automaton, some that take its edges only if nothing else is possible;
+- for each automaton, some that take its edges whenever possible.
 
-Smart sampling (D'Argenio, Legay, Sedwards and Traonouez 2015): many schedulers are tried a little, the better half is
-tried more, until one is left. What it achieves is then estimated with traces that had no part in choosing it. So the
-interval is one for the probability under the scheduler that was found; the true least or greatest probability may be
-farther out.
+Smart sampling (D'Argenio, Legay, Sedwards and Traonouez 2015): many schedulers are tried briefly, and the better half
+longer, until one is left. Its probability is then estimated with traces that were not used to select it. So the
+interval is one for the probability under this scheduler; the true minimum or maximum may be more extreme.
 """
 
 from __future__ import annotations
@@ -28,19 +27,19 @@ from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import ADAPTIVE, FIXED, SPRT, Answer, Options, Tally, TraceFaultError, answer
 
 SCHEDULERS = 256
-"""So many memoryless ones are tried at first."""
+"""The initial number of memoryless schedulers."""
 TRIED = 16
-"""Traces for each in the first round; in each further round there are twice as many."""
+"""The number of traces for each in the first round; it doubles in each further round."""
 SURE = 3
-"""Rounds after which a scheduler is taken that has never, or always, had a success."""
+"""The number of rounds after which a scheduler is selected that has never, or always, succeeded."""
 USUAL = 100
-"""Traces with uniform choices, to see how long they are."""
+"""The number of traces with uniform choices, to measure their length."""
 PROBED = 6
-"""Traces for each scheduler where the budget is small."""
+"""The number of traces for each scheduler with a small budget."""
 LARGE = 1 << 40
-"""Numbers of traces from here on are for choosing schedulers."""
+"""Trace numbers from here on are for the selection of schedulers."""
 
-# The number of a scheduler: its kind, an automaton of the system, and which of those it is. The kernel reads it.
+# The number of a scheduler: its kind, an automaton of the system, and its index. The kernel reads it.
 MEMORY, STARVE, FAVOUR = 1 << 56, 2 << 56, 4 << 56
 _KINDS = 7 << 56
 _AUTOMATON = 32
@@ -49,11 +48,11 @@ _NUMBERS = (1 << _AUTOMATON) - 1
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """What the schedulers that were found achieve.
+    """What the selected schedulers achieve.
 
     Attributes:
         least_by, greatest_by: their numbers.
-        tried: how many were tried.
+        tried: the number of schedulers that were tried.
     """
 
     least: Answer
@@ -64,7 +63,7 @@ class Extremes:
 
 
 def described(scheduler: int, automata: Sequence[str]) -> str:
-    """A scheduler in words.
+    """A description of a scheduler.
 
     Args:
         automata: the names of the elements of the system.
@@ -74,7 +73,7 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
     does = {
         STARVE: f"lets `{name}` act only where nothing else can act",
         FAVOUR: f"lets `{name}` act wherever it can",
-        MEMORY: "decides by the state and what was done last",
+        MEMORY: "decides by the state and the last step",
     }
     return f"sampled scheduler {number}, which {does.get(kind, 'decides by the state alone')}"
 
@@ -102,7 +101,7 @@ SIDES = (LEAST, GREATEST)
 
 
 class Side(NamedTuple):
-    """The scheduler that was found for the least or the greatest probability, and the traces that were made with it."""
+    """The selected scheduler for the minimum or the maximum probability, and its traces."""
 
     scheduler: int
     tally: Tally
@@ -142,14 +141,14 @@ def search(
     watch: Callable[[Search], None] | None = None,
     pulse: Pulse | None = None,
 ) -> None:
-    """Look for schedulers under which the probability is small, and such under which it is great.
+    """Search for schedulers that minimise and maximise the probability.
 
     Args:
-        state: where what is found is kept.
-        watch: told after each scheduler that was tried, and after each batch of traces with the one that was chosen.
+        state: receives the intermediate results.
+        watch: called after each scheduler that was tried, and after each batch of traces with the selected one.
 
     Raises:
-        TraceFaultError: a trace went wrong.
+        TraceFaultError: a trace failed.
     """
     state.tried = len(schedulers)
     told = watch or (lambda _: None)
@@ -174,7 +173,7 @@ def _longest(length: float) -> int:
 
 
 def sampling_options(options: Options) -> Options:
-    """How the probability under a scheduler that was found is estimated: no threshold decides about the traces."""
+    """The options for the estimate under a selected scheduler: no threshold decides about the traces."""
     return replace(options, method=ADAPTIVE) if options.method == SPRT else options
 
 
@@ -188,19 +187,19 @@ def probe(
     length: float,
     pulse: Pulse | None = None,
 ) -> Extremes | None:
-    """The same with about so many steps as `budget`: one round for all schedulers, then some traces for the two best.
+    """The same with about `budget` steps: one round for all schedulers, then some traces for the two best.
 
-    A trace that is far longer than usual is given up, and counts as undecided.
+    A trace that is much longer than usual is abandoned, and is undecided.
 
     Args:
         budget: steps in the first round, and again in the second.
-        length: of an average trace with uniform choices.
+        length: the average length of a trace with uniform choices.
 
     Returns:
-        None if the budget suffices for no choice.
+        `None` if the budget is too small.
 
     Raises:
-        TraceFaultError: a trace went wrong.
+        TraceFaultError: a trace failed.
     """
     longest = min(options.max_steps, max(_longest(length), budget // 2))
     traces = int(budget / max(1.0, length))
@@ -243,7 +242,7 @@ def _best(
     told: Callable[[Search], None],
     pulse: Pulse | None,
 ) -> int:
-    """The scheduler with the least or greatest share of successes; a trace that was given up counts as half a one."""
+    """The scheduler with the smallest or greatest share of successes; an abandoned trace is half a success."""
     sign = 1 if state.side == GREATEST else -1
     candidates = dict.fromkeys(schedulers, (0.0, 0))
     tried, first = TRIED, LARGE
@@ -264,7 +263,7 @@ def _best(
         state.best = successes / traces
         candidates = {number: candidates[number] for number in ranked[: (len(ranked) + 1) // 2]}
         if state.round >= SURE and state.best == max(sign, 0):
-            return ranked[0]  # There is nothing farther out.
+            return ranked[0]  # A more extreme value is impossible.
         first += tried
         tried *= 2
     return next(iter(candidates))

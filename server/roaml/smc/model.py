@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A JANI model that is ready to be asked: the entrance to this package."""
+"""A JANI model prepared for verification: the public interface of this package."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
 from roaml.smc.size import check_size
 
 DEPTH = 15_000
-"""Python's limit while expressions are compiled, which may be nested as deep as JSON is read."""
+"""Python's recursion limit while expressions are compiled, which may be nested as deeply as JSON allows."""
 
 
 class ModelChecker:
@@ -104,7 +104,7 @@ class ModelChecker:
         return {name: self.open_[name]} if name in self.open_ else {}
 
     def payload(self, asked: CompiledProperty) -> Payload:
-        """What workers need to answer a question."""
+        """The data that workers need for a question."""
         return pack(self.compiled(asked))
 
     def answer(
@@ -119,7 +119,7 @@ class ModelChecker:
         """Answer a question by traces with uniform choices; see `roaml.smc.run.answer`.
 
         Raises:
-            FaultError: a trace went wrong.
+            FaultError: a trace failed.
         """
         try:
             return answer(self.payload(asked), asked.question, options, pool, tally, watch, pulse)
@@ -135,13 +135,13 @@ class ModelChecker:
         watch: Callable[[Search], None] | None = None,
         pulse: Pulse | None = None,
     ) -> None:
-        """Look for schedulers with which the probability is small and great; see `roaml.smc.lss.search`.
+        """Search for schedulers with a small and a great probability; see `roaml.smc.lss.search`.
 
         Raises:
-            FaultError: a trace went wrong, or the question is about rewards.
+            FaultError: a trace failed, or the question is about rewards.
         """
         if asked.question.is_reward:
-            raise FaultError("schedulers are sampled for probabilities only", asked.property.origin)
+            raise FaultError("schedulers can be sampled only for probabilities", asked.property.origin)
         try:
             schedulers = candidates(len(self.automata))
             search(self.payload(asked), asked.question, options, pool, schedulers, state, watch, pulse)
@@ -149,10 +149,10 @@ class ModelChecker:
             raise self.fault(error.problem) from None
 
     def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
-        """What is known of other schedulers than the uniform one, of which an answer tells.
+        """What is known of other schedulers than the uniform one, to which an answer refers.
 
         Raises:
-            FaultError: a trace under some scheduler went wrong.
+            FaultError: a trace under some scheduler failed.
         """
         reduced = self.reduced(asked)
         compiled = reduced.compiled(asked if reduced is self else reduced.asked[0])
@@ -163,7 +163,7 @@ class ModelChecker:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of all properties that were chosen, answered or not."""
+        """The names of all selected properties, supported or not."""
         return self._names
 
     @property
@@ -172,7 +172,7 @@ class ModelChecker:
         return tuple(element.automaton for element in self.model.system.elements)
 
     def fault(self, problem: TraceProblem) -> FaultError:
-        """What went wrong in a trace, in words."""
+        """A description of the undefined operation in a trace."""
         code = FaultCode(problem.code)
         value: float = problem.value
         if code is FaultCode.DOMAIN or (code is FaultCode.RANGE and problem.value == 0 and problem.real != 0):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names stand for while a model is compiled."""
+"""The meaning of names while a model is compiled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from roaml.smc.registers import Number, Operand, Region
 
 @dataclass(slots=True)
 class Storage:
-    """Where a variable or constant lives. `watch` is its number if something must be told of changes, else -1."""
+    """The register of a variable or constant. `watch` is its number if its changes must be tracked, otherwise -1."""
 
     name: str
     type: Type
@@ -30,12 +30,12 @@ class Storage:
 
 
 Meaning: TypeAlias = Storage | Operand | Region
-"""What a name stands for: a variable, a bound scalar, a bound array."""
+"""The meaning of a name: a variable, a bound scalar, a bound array."""
 
 
 @dataclass(frozen=True)
 class StorageNames:
-    """What names mean somewhere; `calls` are the functions in whose bodies this is."""
+    """The meaning of names at a place; `calls` are the functions whose bodies contain it."""
 
     values: Mapping[str, Meaning]
     functions: Mapping[str, Function]
@@ -45,7 +45,7 @@ class StorageNames:
         return replace(self, values={**self.values, **more})
 
     def inside(self, function: Function, parameters: Mapping[str, Meaning]) -> StorageNames:
-        """What names mean in the body of a function."""
+        """The meaning of names in the body of a function."""
         return StorageNames({**self.values, **parameters}, self.functions, (*self.calls, function.name))
 
     def constants(self) -> dict[str, Number]:
@@ -71,7 +71,7 @@ class StorageNames:
 
 
 def variables_in(expression: Expression, functions: Mapping[str, Function]) -> set[str]:
-    """The names that the value of an expression depends on."""
+    """The names on which the value of an expression depends."""
     found: set[str] = set()
     called: set[str] = set()
     stack = [expression]
@@ -87,7 +87,7 @@ def variables_in(expression: Expression, functions: Mapping[str, Function]) -> s
 
 
 def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[str]:
-    """The names that an assignment depends on: its value, and where it stores this."""
+    """The names on which an assignment depends: its value, and its target."""
     found = variables_in(assignment.value, functions)
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):
@@ -97,5 +97,5 @@ def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[st
 
 
 def unsupported(node: Node) -> str:
-    """The message for a kind of expression that the engine does not know."""
+    """The message for an unsupported kind of expression."""
     return f"the model checker does not support this kind of expression ({type(node).__name__})"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can happen in a model: locations, the edges that can be taken, and which of them are taken together.
+"""The behaviour of a model: locations, the edges that can be taken, and their synchronisation.
 
 - Every edge without action and every combination of edges of a synchronisation vector is one choice.
 - Edges that can never be taken and ways of probability 0 are left out.
@@ -24,7 +24,7 @@ _CLOSE = 1e-6
 
 @dataclass(slots=True)
 class Way:
-    """A destination of an edge; `probability` is None where it depends on the state."""
+    """A destination of an edge; `probability` is `None` if it depends on the state."""
 
     destination: Destination
     probability: float | None
@@ -53,7 +53,8 @@ class Slot:
 
 
 class Reads:
-    """Which variables matter to a part of a model: looked up once. The part is kept, so that no other gets its id."""
+    """The variables that affect a part of a model, computed once. The part is kept alive, so that its id is not
+    reused."""
 
     def __init__(self) -> None:
         self._found: dict[int, tuple[Node, set[str]]] = {}
@@ -139,7 +140,7 @@ class CompiledNetwork:
         return self.slots[self._slot_of[key]]
 
     def _step(self, edge: Edge, instance: AutomatonInstance) -> EdgeStep | None:
-        """None for what can never be taken."""
+        """The step of an edge; `None` if it can never be taken."""
         if edge.rate is not None:
             raise FaultError("rates are not supported", edge.origin)
         guard = None if edge.guard is None else edge.guard.exp
@@ -206,7 +207,7 @@ def root(assignment: Assignment) -> str:
 
 
 def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:
-    """Loops that accept an action wherever no edge for it is enabled: what `input-enable` means."""
+    """Loops that accept an action wherever no edge for it is enabled, as `input-enable` requires."""
     found = []
     for action in actions:
         for location in instance.automaton.locations:

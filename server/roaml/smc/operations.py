@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Operators on values that are in registers: computed here where they are known, else code.
+"""Operators on values in registers: computed here if the values are known, otherwise by code.
 
-What can only go wrong stays in the code: it may never be reached.
+An operation that always fails stays in the code: it may never be reached.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
 MOST = (1 << 63) - 1
 
 COMPARISONS = {
-    # operator: for ints: (jump if it holds, jump if not, whether operands change places for either)
+    # operator: for ints: (jump if it holds, jump if not, whether operands are exchanged for either)
     BinaryOperator.EQUAL: ((Op.JUMP_EQ, False), (Op.JUMP_NE, False)),
     BinaryOperator.NOT_EQUAL: ((Op.JUMP_NE, False), (Op.JUMP_EQ, False)),
     BinaryOperator.LESS: ((Op.JUMP_LT, False), (Op.JUMP_LE, True)),
@@ -84,7 +84,7 @@ class OperatorAssembler:
         return self.call(node, op, (first, second), kind, into)
 
     def compared(self, op: BinaryOperator, first: Operand, second: Operand, label: Label, when: bool) -> None:
-        """Jump to `label` if the comparison of two scalars is `when`, else go on."""
+        """Jump to `label` if the comparison of two scalars is `when`, otherwise continue."""
         if first.value is not None and second.value is not None:
             if bool(op.function(first.value, second.value)) is when:
                 self.tape.jump(Op.JUMP, label)
@@ -103,7 +103,7 @@ class OperatorAssembler:
         if when:
             self.tape.jump(_REAL_JUMPS[code], label, first.register, second.register)
             return
-        # Not the opposite comparison: with a number that is none, neither holds.
+        # Not the opposite comparison: with NaN, neither holds.
         holds = Label()
         self.tape.jump(_REAL_JUMPS[code], holds, first.register, second.register)
         self.tape.jump(Op.JUMP, label)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Batches on many processors or machines, in order, whatever happens to workers.
+"""Batches on several processors or machines, in order, whatever happens to workers.
 
-The results of batches come in the order of the batches, so nothing depends on who was faster. A batch is a pure
-function: if a worker dies, what it had is run again.
+The results are in the order of the batches, so they do not depend on the speed of workers. A batch is a pure function:
+if a worker dies, its batch is run again.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
 PATIENCE = 0.4
-"""Seconds that are worked alone before workers are started: most questions are answered by then."""
+"""The time in s before workers are started: most questions are answered by then."""
 ATTEMPTS = 5
-"""How often workers may be lost without any progress in between."""
+"""The maximum number of consecutive losses of workers without progress."""
 _TICK = 0.1
 
 Pulse: TypeAlias = Callable[[int, int], None]
 
 
 class WorkersLostError(Exception):
-    """Workers die again and again."""
+    """Workers die repeatedly."""
 
 
 class Alone:
@@ -52,11 +52,11 @@ class Runner(Protocol):
 
 
 class Pool:
-    """Runs batches: alone at first, then on `jobs` processes; or on an executor that is given.
+    """Runs batches: in this process at first, then on `jobs` processes; or on a given executor.
 
-    Without `patience`, nothing is ever run in this process, which then has time for other things.
+    Without `patience`, nothing is run in this process, which then stays responsive.
 
-    To be used in a `with` statement; leaving it ends the workers.
+    Use it in a `with` statement; leaving it ends the workers.
     """
 
     def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = PATIENCE) -> None:
@@ -109,7 +109,7 @@ class Pool:
                         raise
                     lost += 1
                     if lost > ATTEMPTS:
-                        raise WorkersLostError(f"workers are lost again and again: {error}") from error
+                        raise WorkersLostError(f"worker processes end repeatedly: {error}") from error
                     if self.is_own:
                         self._stop()
                     again = [each for each, _ in running]
@@ -125,7 +125,7 @@ class Pool:
                     each.cancel()
 
     def _submit(self, task: Task) -> Future[BatchOutcome] | None:
-        """None if workers are being lost right now."""
+        """Submit a batch; `None` if workers are being lost right now."""
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model and a goal as flat arrays: what the kernel walks, what workers are sent.
+"""A model and a goal as flat arrays, which the kernel simulates and workers receive.
 
 Numbers: an *instance* is an automaton as an element of the system; *locations*, *groups* (the edges of a location for
-one slot), *edges* and *ways* (destinations) are counted through all instances. `x_start[i]` to `x_start[i + 1]` is the
-range of what belongs to `i`. Code is given by the place of its first instruction, -1 for none.
+one slot), *edges* and *ways* (destinations) are numbered across all instances. `x_start[i]` to `x_start[i + 1]` is the
+range of the parts of `i`. Code is given by the index of its first instruction, -1 for none.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from typing import TypeAlias
 from roaml.jani.operators import Operator
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
-"""What becomes of a trace. The kernel has the same numbers; UNKNOWN: it can go on, and undecided if it does not."""
+"""The verdict on a trace. The kernel has the same numbers; UNKNOWN: it can continue, and is undecided if it does
+not."""
 
 AT_END = -1
 """A lower bound; see `Goal`."""
@@ -125,7 +126,7 @@ class Goal:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Compiled:
-    """A program with its goal: all that a worker needs."""
+    """A program with its goal: all data that a worker needs."""
 
     program: Program
     goal: Goal

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace again, step by step: what was taken, what has changed, and the places that it all exists for."""
+"""A trace, simulated again step by step: the edges taken, the changes, and the places from which they come."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class TraceStep:
 
 @dataclass(slots=True)
 class Recording:
-    """A trace that is walked again. `verdict` and `end` are known when it is done, `problem` if it went wrong."""
+    """A trace that is simulated again. `verdict` and `end` are set when it is complete, `problem` if it failed."""
 
     trace: int
     verdict: int = UNKNOWN
@@ -68,7 +68,7 @@ class Recording:
 
 
 class StepReader:
-    """Reads off a kernel what the step that it has taken last was.
+    """Reads the last step from a kernel.
 
     Attributes:
         variables: those of the model, then those of each instance.
@@ -94,12 +94,12 @@ class StepReader:
         self.start()
 
     def start(self) -> None:
-        """Take the present state for the one before the next step."""
+        """Make the current state the one before the next step."""
         self._places = [self._kernel.location(i) for i in range(len(self.legend.layout.instances))]
         self._ints, self._reals = self._kernel.snapshot()
 
     def read(self, number: int) -> TraceStep:
-        """The step from the state before to the present one, which is the one before the next step then."""
+        """The step from the previous state to the current one, which then is the one before the next step."""
         places, ints, reals = self._places, self._ints, self._reals
         self.start()
         _, action = self.legend.vectors[self._kernel.vector]
@@ -107,7 +107,7 @@ class StepReader:
         return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
 
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
-        """Their values in the present state."""
+        """The values of the variables in the current state."""
         ints, reals = self._kernel.snapshot()
         return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
 
@@ -141,7 +141,7 @@ class StepReader:
 
 
 class Recorder:
-    """Walks single traces of a question."""
+    """Simulates single traces of a question."""
 
     def __init__(
         self, checker: ModelChecker, asked: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
@@ -162,11 +162,11 @@ class Recorder:
         return list(self.legend.layout.shared)
 
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
-        """Their values in the state that is reached."""
+        """The values of the variables in the current state."""
         return self._steps.values(storages)
 
     def initial(self, storages: Sequence[Storage]) -> list[Plain]:
-        """Their values at first."""
+        """The initial values of the variables."""
         self._kernel.begin(self.seed, 0)
         return self.values(storages)
 
@@ -179,7 +179,7 @@ class Recorder:
         self._finish(recording, verdict)
 
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
-        """The steps of a trace; `values` tells what holds after each."""
+        """The steps of a trace; `values` are those after each step."""
         kernel, done = self._kernel, 0
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
         self._steps.start()
@@ -200,11 +200,11 @@ class Recorder:
             recording.problem = TraceProblem(recording.trace, *self._kernel.problem())
 
     def standstill(self) -> Standstill:
-        """The state that the last walk has reached."""
+        """The state in which the last walk ended."""
         return self._steps.standstill(self.system)
 
     def reads(self, part: AutomatonStep) -> set[RecordedVariable]:
-        """The variables that a part of a step depends on."""
+        """The variables on which a part of a step depends."""
         layout = self.legend.layout.instances[part.instance]
         found = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
         for assignment in part.destination.assignments:

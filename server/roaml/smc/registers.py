@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers and instructions as they are handed out while a model is compiled."""
+"""The allocation of registers and instructions while a model is compiled."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def product(shape: tuple[int, ...]) -> int:
 
 
 class Label:
-    """A place in the code that is known later."""
+    """A place in the code that is determined later."""
 
     def __init__(self) -> None:
         self.at = -1
@@ -79,7 +79,7 @@ class Tape:
         self.code += (op, d, a, b, c)
 
     def place(self, origin: Origin | None) -> None:
-        """What follows exists for `origin`."""
+        """Set the origin of the following instructions."""
         if origin is not None:
             self.origins.append((len(self.code), origin))
 
@@ -94,7 +94,7 @@ class Tape:
 
     def constant(self, kind: str, value: Number) -> Operand:
         """A register that always has this value."""
-        # The sign tells -0.0 from 0.0, which are equal.
+        # The sign distinguishes -0.0 from 0.0, which are equal.
         key = (f"{kind}{str(value)[0]}", value)
         found = self._constants.get(key)
         if found is None:
@@ -103,7 +103,7 @@ class Tape:
         return found
 
     def room(self, kind: str, size: int, value: Number = 0) -> int:
-        """New registers, one after the other, that nothing else uses."""
+        """New consecutive registers that nothing else uses."""
         if kind == REAL:
             self.reals += [float(value)] * size
             return len(self.reals) - size
@@ -111,13 +111,13 @@ class Tape:
         return len(self.ints) - size
 
     def begin(self, origin: Origin | None = None) -> int:
-        """A new piece of code, which exists for `origin`; all temporary registers are free in it. Where it begins."""
+        """Begin a piece of code with an origin; all temporary registers are free in it. Returns its index."""
         self._used_ints = self._used_reals = 0
         self.origins.append((len(self.code), origin))
         return len(self.code)
 
     def temporary(self, kind: str) -> int:
-        """A register for an intermediate result of this piece of code."""
+        """A register for an intermediate result in this piece of code."""
         if kind == REAL:
             if self._used_reals == len(self._free_reals):
                 self._free_reals.append(self.room(kind, 1))
@@ -129,14 +129,14 @@ class Tape:
         return self._free_ints[self._used_ints - 1]
 
     def function(self, operator: Operator) -> int:
-        """The number under which code calls the function of an operator."""
+        """The number by which code calls the function of an operator."""
         if operator not in self._functions:
             self._functions[operator] = len(self.functions)
             self.functions.append(operator)
         return self._functions[operator]
 
     def origin_of(self, at: int) -> Origin | None:
-        """What the instruction at a place of the code exists for."""
+        """The origin of the instruction at an index of the code."""
         found = None
         for place, origin in self.origins:
             if place > at:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a question to its answer: how many traces, and what they say.
+"""From a question to its answer: the number of traces, and their result.
 
 - Whether more traces are needed is decided after whole batches, in the order of their numbers, and the size of a batch
-  depends on the traces before it only. So the answer is a function of model, property, seed and options.
-- What must be known to go on after an interruption is a `Tally`: a few numbers.
+  depends only on the traces before it. So the answer is a function of model, property, seed and options.
+- The state that is needed to continue after an interruption is a `Tally`: a few numbers.
 """
 
 from __future__ import annotations
@@ -27,27 +27,27 @@ FIRST_BATCH = 100
 LARGEST_BATCH = 5000
 GROWTH = 0.1
 PEEKING = 0.75
-"""Stopping as soon as the interval is narrow enough makes it miss a bit more often; so it is computed for this part of
-the error that is allowed. The test computes that the whole then keeps what it promises."""
+"""Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this part of
+the allowed error. A test computes that the total error stays within the confidence."""
 LEAST_EPSILON = 1e-9
-"""An interval narrower than that needs more traces than can be counted."""
+"""The minimum half-width of an interval; a narrower one needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
 KEPT = 1000
-"""So many trace numbers of each verdict are remembered."""
+"""The maximum number of stored trace numbers for each verdict."""
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How to answer.
+    """How to answer a question.
 
     Attributes:
-        confidence: the probability with which the interval holds the true value.
-        epsilon: half the width of the interval; for rewards in parts of the value.
-        max_traces: no more than that; with the method "fixed", exactly that.
+        confidence: the probability with which the interval contains the true value.
+        epsilon: half the width of the interval; for rewards relative to the value.
+        max_traces: the maximum number of traces; with the method "fixed", the exact number.
         max_steps: traces that are not decided by then stay undecided.
 
     Raises:
-        ValueError: a number makes no sense; the message says which.
+        ValueError: a number is not valid; the message states which.
     """
 
     confidence: float = 0.95
@@ -61,15 +61,15 @@ class Options:
         if not 0 < self.confidence < 1:
             raise ValueError("the confidence must be a number between 0 and 1")
         if not LEAST_EPSILON <= self.epsilon < 1:
-            raise ValueError(f"epsilon must be a number from {LEAST_EPSILON:g} to 1, and less than 1")
+            raise ValueError(f"epsilon must be a number of at least {LEAST_EPSILON:g} and less than 1")
         if self.method not in METHODS:
-            raise ValueError(f"there is no method `{self.method}`; there are {', '.join(METHODS)}")
+            raise ValueError(f"there is no method `{self.method}`; the methods are {', '.join(METHODS)}")
         if self.method == FIXED and self.max_traces is None:
             raise ValueError("the method `fixed` needs a number of traces (--max-traces)")
 
 
 class Seen(NamedTuple):
-    """A trace that is remembered: its number and its steps."""
+    """A stored trace: its number and its steps."""
 
     trace: int
     steps: int
@@ -77,7 +77,7 @@ class Seen(NamedTuple):
 
 @dataclass(slots=True)
 class Ended:
-    """The traces that have ended for one reason: how many, and the shortest one."""
+    """The traces that have ended for one reason: their number, and the shortest one."""
 
     count: int
     shortest: Seen
@@ -85,14 +85,14 @@ class Ended:
 
 @dataclass(slots=True)
 class Tally:
-    """What is known after some batches; all that is needed to go on.
+    """The state after some batches; sufficient to continue.
 
     Attributes:
-        accepted: what a sequential test has decided.
-        is_revised: whether the options were changed when something was known: then the number of traces was chosen by
-            somebody who had seen results.
+        accepted: the decision of a sequential test.
+        is_revised: whether the options were changed after results were known: then the number of traces was chosen with
+            knowledge of them.
         examples: for each verdict the first traces; shortest: for each the shortest one.
-        ends: why traces have ended; for each reason that there was.
+        ends: why traces have ended, by reason.
     """
 
     traces: int = 0
@@ -108,7 +108,7 @@ class Tally:
     ends: dict[End, Ended] = field(default_factory=dict)
 
     def ended(self, *reasons: End) -> int:
-        """How many traces have ended for one of these reasons."""
+        """The number of traces that have ended for one of these reasons."""
         return sum(self.ends[reason].count for reason in reasons if reason in self.ends)
 
     def to_json(self) -> dict[str, object]:
@@ -154,14 +154,15 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What the traces say.
+    """The result of the traces.
 
     Attributes:
-        value: the estimate: of a probability, the middle of what undecided traces leave open; of a reward, infinity if
-            some trace never reaches what it is counted to.
+        value: the estimate: of a probability, the middle of the range that undecided traces leave; of a reward,
+            infinity if some trace never reaches its target.
         bounds: the interval for the true value.
-        is_complete: whether the interval is as narrow as was asked for, or the test has decided.
-        is_anytime: whether the interval holds whenever one stops; else it holds for the rule by which the method stops.
+        is_complete: whether the interval is as narrow as requested, or the test has decided.
+        is_anytime: whether the interval is valid at any stopping time; otherwise it is valid for the stopping rule of
+            the method.
     """
 
     question: Question
@@ -174,7 +175,7 @@ class Answer:
 
     @property
     def interval(self) -> str:
-        """What kind of interval it is; those for rewards hold for many traces only."""
+        """The kind of the interval; those for rewards are valid only for many traces."""
         if self.question.is_reward:
             return "asymptotic confidence sequence" if self.is_anytime else "Student's t"
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
@@ -188,7 +189,7 @@ Watch = Callable[[Tally], None]
 
 
 class TraceFaultError(Exception):
-    """A trace did something that has no meaning; who knows the code tells what and where."""
+    """A trace executed an undefined operation; the compiled code determines which and where."""
 
     def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
@@ -209,12 +210,13 @@ def answer(
     """Run traces until the question is answered.
 
     Args:
-        tally: where to go on; it is changed as batches come in, so that it tells what is known if this is interrupted.
-        watch: told after each batch.
+        tally: the state to continue from; it is updated after each batch, so that it contains the result if this is
+            interrupted.
+        watch: called after each batch.
         first: the number of the first trace.
 
     Raises:
-        TraceFaultError: a trace went wrong.
+        TraceFaultError: a trace failed.
     """
     tally = Tally() if tally is None else tally
     if not tally.is_finished:
@@ -233,7 +235,7 @@ def answer(
 
 
 def summary(question: Question, options: Options, tally: Tally) -> Answer:
-    """What a tally says, finished or not."""
+    """The result of a tally, complete or not."""
     is_anytime = not tally.is_finished or _stops_freely(tally, options)
     bounds = bounds_of(tally, question, options, is_anytime)
     if question.is_reward:
@@ -247,10 +249,10 @@ def summary(question: Question, options: Options, tally: Tally) -> Answer:
 
 
 def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bool = True) -> Bounds:
-    """The interval that a tally gives.
+    """The interval of a tally.
 
     Args:
-        is_anytime: whether it must hold whenever one stops; else only where the method stops by its own rule.
+        is_anytime: whether it must be valid at any stopping time; otherwise only for the stopping rule of the method.
     """
     error = 1 - options.confidence
     confidence = 1 - error * PEEKING if options.method == ADAPTIVE and not is_anytime else options.confidence
@@ -265,13 +267,13 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
 
 
 def _stops_freely(tally: Tally, options: Options) -> bool:
-    """Whether the number of traces depends on what was seen in a way for which only an interval that holds at any time
-    keeps its promise: by a sequential test, or by somebody who has seen results and goes on with other options."""
+    """Whether the number of traces depends on the results in a way for which only an anytime-valid interval is correct:
+    by a sequential test, or because the options were changed after results were known."""
     return options.method == SPRT or tally.is_revised
 
 
 def wanted_traces(options: Options) -> int | None:
-    """How many traces a method without adaption takes."""
+    """The number of traces of a method that is not adaptive."""
     if options.method == OKAMOTO:
         return okamoto(options.confidence, options.epsilon)
     return options.max_traces if options.method == FIXED else None
@@ -326,7 +328,7 @@ def _add_end(tally: Tally, reason: int, seen: Seen) -> None:
 
 
 def ratio_of(question: Question, options: Options) -> Ratio | None:
-    """The sequential test, where one is to be made."""
+    """The sequential test, if one is required."""
     if options.method != SPRT or question.threshold is None or question.is_reward:
         return None
     return Ratio(question.threshold.number, options.epsilon, 1 - options.confidence)
@@ -357,7 +359,7 @@ def _is_narrow(tally: Tally, question: Question, options: Options, bounds: Bound
 
 
 def _is_hopeless(tally: Tally, options: Options) -> bool:
-    """Whether so many traces stay undecided that no number of traces makes the interval narrow enough."""
+    """Whether so many traces are undecided that no number of traces makes the interval narrow enough."""
     if tally.undecided == 0:
         return False
     share = clopper_pearson(tally.undecided, tally.traces, options.confidence)

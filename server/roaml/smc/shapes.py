@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What kind of values an expression has and of which shape, told before any code for it is written.
+"""The kind and the shape of the value of an expression, determined before any code for it is written.
 
-A kind is `bool`, `int` or `real`, of an array that of its elements; a shape is the lengths of an array in all
+A kind is `bool`, `int` or `real`, for an array that of its elements; a shape is the lengths of an array in all
 dimensions, () for a scalar.
 """
 
@@ -121,14 +121,14 @@ def shape(node: Expression, names: StorageNames) -> tuple[int, ...]:
 
 
 def _argument(node: Expression, type_: Type, names: StorageNames) -> Meaning:
-    """What a parameter stands for where only shapes are asked for."""
+    """The value of a parameter where only shapes are needed."""
     if isinstance(type_, ArrayType):
         return Region(kind_of(type_), shape(node, names), -1)
     return Operand(kind_of(type_), -1, known(node, names))
 
 
 def length(node: ArrayConstructor, names: StorageNames) -> int:
-    """How many elements an array constructor has."""
+    """The number of elements of an array constructor."""
     try:
         size = evaluate(node.length, names.constants(), names.functions)
     except EvaluationError as error:
@@ -182,7 +182,7 @@ def shape_of(value: Value) -> tuple[int, ...]:
 
 
 def larger(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
-    """The least shape that holds both."""
+    """The smallest shape that contains both."""
     if len(first) != len(second):
         return first if len(first) > len(second) else second
     return tuple(map(max, first, second))

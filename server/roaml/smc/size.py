@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How large a model becomes when it is compiled, counted before it is: calls of functions are replaced by their bodies,
-and array constructors by their elements."""
+"""The size of a compiled model, computed in advance: calls of functions are replaced by their bodies, and array
+constructors by their elements."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from roaml.jani.properties import Property
 from roaml.smc.fault import FaultError
 
 MAX_OPERATIONS = 300_000
-"""Of all calls of functions together, with the calls in their bodies."""
+"""The maximum number of operations of all calls of functions together, including the calls in their bodies."""
 
 MAX_CELLS = 10_000_000
-"""Elements of one array constructor, over all its dimensions."""
+"""The maximum number of elements of one array constructor, over all its dimensions."""
 
 
 def check_size(model: Model, properties: Iterable[Property]) -> None:
@@ -38,12 +38,13 @@ def check_size(model: Model, properties: Iterable[Property]) -> None:
         own = {function.name: function for function in automaton.functions}
         total += _called(automaton, function_sizes({**shared, **own}) if own else sizes)
         if total > MAX_OPERATIONS:
-            message = f"calls of functions stand for {total:,} operations here; at most {MAX_OPERATIONS:,} are compiled"
+            message = f"calls of functions expand to {total:,} operations here; at most {MAX_OPERATIONS:,} are compiled"
             raise FaultError(message, automaton.origin)
 
 
 def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
-    """The operations of each function with those of all that it calls. What calls itself counts as one there.
+    """The operations of each function including those of all functions that it calls. A recursive call is one
+    operation.
 
     Raises:
         FaultError: one is too large.
@@ -66,13 +67,13 @@ def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
                 continue
             sizes[name] = len(body) + sum(sizes.get(each, 1) for each in calls)
             if sizes[name] > MAX_OPERATIONS:
-                words = f"`{name}` stands for {sizes[name]:,} operations with all that it calls"
+                words = f"`{name}` expands to {sizes[name]:,} operations with all calls in it"
                 raise FaultError(f"{words}; at most {MAX_OPERATIONS:,} are compiled", functions[name].origin)
     return sizes
 
 
 def _called(part: object, sizes: Mapping[str, int]) -> int:
-    """The operations of all calls in a part of a model, but for those in the bodies of functions."""
+    """The operations of all calls in a part of a model, without those in the bodies of functions."""
     return sum(sizes.get(node.function, 1) for node in _nodes(part) if isinstance(node, Call))
 
 
@@ -95,4 +96,4 @@ def _check_array(node: ArrayConstructor) -> None:
             cells *= max(0, body.length.value)
         body = body.body
     if cells > MAX_CELLS:
-        raise FaultError(f"an array cannot have {cells:,} elements; at most {MAX_CELLS:,} are held", node.origin)
+        raise FaultError(f"an array cannot have {cells:,} elements; at most {MAX_CELLS:,} are supported", node.origin)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The least and the greatest probability of a goal over all schedulers, from all states of a model, where they are few.
+"""The minimum and the maximum probability of a goal over all schedulers, from all states of a model, if there are few.
 
 - Every value is enclosed from below and above. From below by value iteration; from above by Park induction, as in
-  optimistic value iteration (Hartmanns and Kaminski 2020): values that no step makes greater are at least those sought.
-  Strongly connected components are solved one after the other, the last ones first, so that most need one look.
-- Goals of one path operator without step bounds are solved. For all others it is found out whether the model has any
-  choices at all.
+  optimistic value iteration (Hartmanns and Kaminski 2020): values that no step increases are upper bounds. Strongly
+  connected components are solved in reverse topological order, so that most need one iteration.
+- Goals of one path operator without step bounds are solved. For all others, only the existence of choices is
+  determined.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from roaml.smc.program import AT_END, FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
 
 LIMIT = 4000
-"""No more states are looked at."""
+"""The maximum number of explored states."""
 WORK = 400_000
-"""Neither are more numbers than that, counted over all states and choices."""
+"""The maximum number of values, counted over all states and choices."""
 _CLOSE = 1e-6
 _FLOAT = 1e-13
 _SWEEPS = 1_000_000
-"""So many numbers are added for a component; then its values are as wide as they are."""
+"""The maximum number of additions for a component; then its bounds stay as wide as they are."""
 
 _Choice: TypeAlias = tuple[tuple[float, int], ...]
-"""Where a choice leads: probabilities and numbers of states."""
+"""The destinations of a choice: probabilities and numbers of states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,14 +56,14 @@ class Solution:
 
 
 def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution | None:
-    """Look at all states.
+    """Explore all states.
 
     Args:
-        limit: no more states than that.
-        work: no more registers and automata, of all states that are reached by all choices.
+        limit: the maximum number of states.
+        work: the maximum number of registers and automata, over all states that are reached by all choices.
 
     Returns:
-        None if there are more, or something goes wrong in one of them.
+        `None` if there are more, or one of them executes an undefined operation.
     """
     goal = compiled.goal
     is_reward = goal.step_reward >= 0 or goal.exit_reward >= 0
@@ -90,10 +90,10 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
 def _explored(
     compiled: Compiled, limit: int, work: int, stops: bool
 ) -> tuple[list[int], list[tuple[_Choice, ...]]] | None:
-    """What is known of the goal in each state, and the choices of each.
+    """The verdict on the goal in each state, and the choices of each.
 
     Args:
-        stops: whether nothing beyond a state in which the goal is decided matters.
+        stops: whether states after one in which the goal is decided are irrelevant.
     """
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
     explorer = Explorer(compiled, limit=work // max(1, size))
@@ -127,7 +127,7 @@ def _explored(
 
 
 def _solved(verdicts: list[int], choices: list[tuple[_Choice, ...]], target: int, is_max: bool) -> Bounds:
-    """The least or greatest probability to reach a state with the verdict `target`, from state 0."""
+    """The minimum or maximum probability to reach a state with the verdict `target`, from state 0."""
     low = [1.0 if verdict == target else 0.0 for verdict in verdicts]
     high = list(low)
     best = max if is_max else min
@@ -154,7 +154,7 @@ def _solved(verdicts: list[int], choices: list[tuple[_Choice, ...]], target: int
 def _enclose(
     states: list[int], choices: list[tuple[_Choice, ...]], low: list[float], high: list[float], is_max: bool
 ) -> None:
-    """Upper values for the states of a component; those beyond it are there."""
+    """Upper bounds for the states of a component; those of later components are known."""
     best = max if is_max else min
     slack = 1e-10
     while slack < _CLOSE:

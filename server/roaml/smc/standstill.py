@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state that does not change any more: where all automata are, and what each could do if the others did, too."""
+"""A state that does not change any more: the locations of all automata, and what each could do with the others."""
 
 from __future__ import annotations
 

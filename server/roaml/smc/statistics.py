@@ -82,7 +82,7 @@ def student_quantile(probability: float, freedom: float) -> float:
 
 
 def clopper_pearson(successes: int, traces: int, confidence: float, undecided: int = 0) -> Bounds:
-    """The exact interval for a probability. Undecided traces may have been successes or not, so they widen it."""
+    """The exact interval for a probability. Undecided traces may be successes or failures, so they widen it."""
     if traces == 0:
         return Bounds(0.0, 1.0)
     tail = (1 - confidence) / 2
@@ -137,8 +137,8 @@ def _crossing(successes: int, traces: int, limit: float) -> float:
 
 
 def okamoto(confidence: float, epsilon: float) -> int:
-    """How many traces make the estimate of a probability miss by more than `epsilon` with a probability of at most
-    1 - `confidence` (Okamoto 1958, by Hoeffding's bound)."""
+    """The number of traces for which the estimate of a probability is wrong by more than `epsilon` with a probability
+    of at most 1 - `confidence` (Okamoto 1958, by Hoeffding's bound)."""
     return math.ceil(math.log(2 / (1 - confidence)) / (2 * epsilon**2))
 
 
@@ -199,7 +199,7 @@ class Ratio(NamedTuple):
     error: float
 
     def decision(self, successes: int, traces: int) -> bool | None:
-        """Whether the probability is above the threshold; None while that is open."""
+        """Whether the probability is above the threshold; `None` while that is undecided."""
         high = min(self.threshold + self.epsilon, 1 - 1e-12)
         low = max(self.threshold - self.epsilon, 1e-12)
         failures = traces - successes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A tally that was stored in a file may have been changed there: whether it is one that traces can have given."""
+"""Validates a tally from a file, which may have been changed: whether traces can have produced it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import KEPT, SPRT, Options, Seen, Tally
 
 _MOST = 1 << 62
-"""No counter reaches this."""
+"""A limit that no counter reaches."""
 
 
 def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
@@ -19,10 +19,10 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
 
     Args:
         value: from JSON.
-        question, options: what the traces were made for.
+        question, options: the question and the options of the traces.
 
     Raises:
-        ValueError: it is not of that form, or its numbers contradict one another; the message says where.
+        ValueError: it does not have that form, or its numbers contradict each other; the message states where.
     """
     shape = _row(value, "tally")
     for key in ("traces", "successes", "undecided", "steps"):
@@ -32,7 +32,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     _expect(shape.get("accepted") in (None, True, False), "accepted")
     mean = shape.get("mean")
     if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(each, str) for each in mean[1:]):
-        raise ValueError("`mean` cannot be so")
+        raise ValueError("`mean` is not possible")
     _whole(mean[0], "mean")
     for row in _row(shape.get("ends"), "ends").values():
         _expect(isinstance(row, list) and len(row) == 3, "ends")
@@ -50,7 +50,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
-        raise ValueError("it has not the form of a tally") from None
+        raise ValueError("it is not a tally") from None
     _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
     _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
     _check_sums(tally, question, options)
@@ -91,7 +91,7 @@ _VERDICTS = (TRUE, FALSE, UNKNOWN)
 
 def _expect(holds: bool, key: str) -> None:
     if not holds:
-        raise ValueError(f"`{key}` cannot be so")
+        raise ValueError(f"`{key}` is not possible")
 
 
 def _row(value: Any, key: str) -> dict[str, Any]:

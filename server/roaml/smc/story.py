@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace as a story: what led to its end.
+"""A trace as a story: the steps that led to its end.
 
-What matters is what the property depends on: the steps that change what it reads, and what these steps have needed,
-back to the start: the last change of each variable that they read, and what woke the automaton that takes them.
+The relevant steps are those that change a variable of the property, and those on which these depend, back to the start:
+the last change of each variable that they read, and the step that triggered the automaton that takes them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     """The story of a trace.
 
     Args:
-        clock: the variables that hold the seconds and nanoseconds of the model's time.
+        clock: the variables for the seconds and nanoseconds of the model's time.
     """
     recording = Recording(trace)
     shared = recorder.shared
@@ -111,7 +111,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
 
 
 def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) -> int | None:
-    """The latest earlier step in which the automaton did something together with another one."""
+    """The latest earlier step in which the automaton took part together with another one."""
     before = [k for k in own if k < i]
     for k in reversed(before):
         if len(steps[k].parts) > 1:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML -> JANI (docs/spec/jani.md): every automaton an automaton, every event a buffer of one place.
+"""Plain SCXML -> JANI (docs/spec/jani.md): every automaton becomes an automaton, every event a buffer of size one.
 
-Knows `roaml.scxml` and `roaml.jani`, nothing of HL-SCXML, ROS or files.
+Depends on `roaml.scxml` and `roaml.jani`, not on HL-SCXML, ROS or files.
 """
 
 from roaml.to_jani.network import translate

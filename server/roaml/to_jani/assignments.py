@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments of plain SCXML -> JANI (docs/spec/jani.md#assignments): of an array its elements and all its lengths, at
-once."""
+"""Assignments of plain SCXML -> JANI (docs/spec/jani.md#assignments): the elements of an array and all its lengths are
+assigned at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Write = tuple[LValue, Expression]
 
 
 def assigned(location: Expr, value: Expr, scope: JaniScope) -> list[Write]:
-    """All that `location := value` stores; the values are those before it."""
+    """The assignments for `location := value`; the values are those before it."""
     if isinstance(location, Member) and location.name == "length":
         array = scope.stored(location.object)
         if array is not None and array.dimensions > 0:
@@ -29,7 +29,7 @@ def assigned(location: Expr, value: Expr, scope: JaniScope) -> list[Write]:
 
 
 def stored_in(variable: str, shape: ArrayShape, value: Expr, scope: JaniScope) -> list[Write]:
-    """All that storing a value in a whole variable stores."""
+    """The assignments that store a value in a whole variable."""
     return list(_content(Stored(variable, shape), value, scope))
 
 
@@ -45,7 +45,7 @@ def _content(target: Stored, value: Expr, scope: JaniScope) -> Iterator[Write]:
 
 
 def _grown(target: Stored) -> Iterator[Write]:
-    """Writing an element makes the array, and every array around it, at least so long."""
+    """Writing an element makes the array, and every array around it, at least long enough to contain it."""
     for depth in reversed(range(len(target.indexes))):
         length = at(jani.Name(length_name(target.variable, depth + 1)), *target.indexes[:depth])
         needed = jani.Binary(BinaryOperator.ADD, target.indexes[depth], Integer(1))

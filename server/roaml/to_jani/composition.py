@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Event automata, and how all automata synchronise (docs/spec/jani.md#event-automata).
+"""Event automata, and the synchronisation of all automata (docs/spec/jani.md#event-automata).
 
-- An event has one buffer: sent, it waits in its automaton until all receivers take it at once.
-- The clock steps, and timers tick, only while no event waits; the blackboard is asked only while no write to it waits.
+- Each event has one buffer: a sent event waits in its automaton until all receivers take it at once.
+- The clock steps, and timers fire, only while no event waits; the blackboard is read only while no write to it waits.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def has_automaton(event: EventUsage) -> bool:
 
 
 def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
-    """The buffer of an event; one that nobody receives takes everything."""
+    """The buffer of an event; if the event has no receiver, the buffer accepts everything."""
     origin = event.origin
 
     def edge(source: str, action: str, target: str) -> Edge:
@@ -56,7 +56,7 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
         buffers: event -> index of its automaton.
     """
     waited_for = {name: index for name, index in buffers.items() if table[name].receivers}
-    # Made once: every timer waits for all of them.
+    # Created once: every timer waits for all of them.
     calm = {name: (index, CLOCK_ENABLE) for name, index in waited_for.items()}
     syncs: list[Sync] = []
     for event in table.values():

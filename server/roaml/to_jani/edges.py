@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The moves of one automaton -> locations and edges (docs/spec/jani.md#edges).
 
-- Probabilities and bounds on steps depend on how many edges a move takes: assignments join the edge before them; a
-  `send`, each branch of an `if` and each draw of a random number is an edge of its own.
+- Probabilities and step bounds depend on the number of edges of a move: assignments join the edge before them; a
+  `send`, each branch of an `if` and each draw of a random number is a separate edge.
 - Between two states an automaton receives nothing.
 """
 
@@ -31,7 +31,7 @@ FIRST = "-first-exec"
 
 @dataclass(slots=True)
 class _Way:
-    """A destination while it is being filled."""
+    """A destination under construction."""
 
     probability: Clause | None
     origin: Origin
@@ -39,18 +39,18 @@ class _Way:
     assignments: list[Assignment] = field(default_factory=list)
 
     def store(self, writes: Iterable[Write], origin: Origin) -> None:
-        """Assignments that happen together, after all before them."""
+        """Add simultaneous assignments, after all earlier ones."""
         index = len(self.assignments)
         self.assignments += [Assignment(target, value, index, origin=origin) for target, value in writes]
 
     def send(self, writes: Iterable[Write], origin: Origin) -> None:
-        """Assignments that happen together at first."""
+        """Add simultaneous assignments at the beginning."""
         self.assignments += [Assignment(target, value, origin=origin) for target, value in writes]
 
 
 @dataclass(slots=True)
 class _Draft:
-    """An edge while it is being filled."""
+    """An edge under construction."""
 
     source: str
     action: str
@@ -76,10 +76,10 @@ class Flow:
 
 
 def flow_of(behavior: AutomatonMoves, table: Mapping[str, EventUsage], max_array_size: int, random_values: int) -> Flow:
-    """The flow of an automaton. What waits for an event that nobody sends is left out; its further course stays.
+    """The flow of an automaton. Transitions on an event that no automaton sends are left out.
 
     Args:
-        random_values: how many values `Math.random()` has (docs/spec/expressions.md#random).
+        random_values: the number of values of `Math.random()` (docs/spec/expressions.md#random).
     """
     return _FlowBuilder(behavior, table, max_array_size, random_values).build()
 
@@ -122,7 +122,7 @@ class _FlowBuilder:
         return self.scopes[event]
 
     def location(self, wanted: str, origin: Origin) -> str:
-        """A new location, called `wanted` unless a state of the user's is."""
+        """A new location, named `wanted` unless a state of the user has that name."""
         name = wanted
         while name in self.locations:
             name += "'"
@@ -132,7 +132,8 @@ class _FlowBuilder:
     # ------------------------------------------------------------------- states
 
     def state(self, moves: Sequence[Move]) -> dict[str, list[Expression | None]]:
-        """The edges of all transitions of a state. Returns the conditions of those on each event, None for none."""
+        """Add the edges of all transitions of a state. Returns the conditions of those on each event, `None` for
+        none."""
         conditions: dict[str, list[Expression | None]] = {}
         for move in moves:
             scope, earlier = self.scope(move.event), conditions.setdefault(move.event, [])
@@ -166,7 +167,7 @@ class _FlowBuilder:
     def discarding(
         self, state: State, handled: Mapping[str, Sequence[Expression | None]], events: Iterable[str]
     ) -> None:
-        """Self-loops that swallow the events which a state does not handle (docs/spec/jani.md#discarding)."""
+        """Self-loops that discard the events which a state does not handle (docs/spec/jani.md#discarding)."""
         if self.behavior.automaton.role in (Role.TREE_ROOT, Role.HANDLER) or None in handled.get("", ()):
             return
         for event in events:
@@ -179,7 +180,7 @@ class _FlowBuilder:
     # ------------------------------------------------------------------- bodies
 
     def run(self, body: Body, way: _Way, tag: str, final: str, scope: JaniScope) -> None:
-        """Continues `way` with everything in `body`; it ends in the location `final`."""
+        """Continue `way` with everything in `body`; it ends in the location `final`."""
         for i, statement in enumerate(body):
             stem = f"{tag}-{i}"
             match statement:

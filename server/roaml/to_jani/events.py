@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All events of a network: who sends them, who receives them, and the types of their parameters
+"""All events of a network: their senders, their receivers, and the types of their parameters
 (docs/spec/jani.md#global-variables)."""
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
 
 
 _ROUNDS = 4
-"""How often types are passed on from the data of one event to the parameters of another."""
+"""The maximum number of rounds in which types are passed from the data of one event to the parameters of another."""
 
 
 def _occurrences(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
@@ -83,7 +83,8 @@ def _sent(body: Body, index: int, table: dict[str, EventUsage]) -> None:
 
 
 def _infer_params(behaviors: Sequence[AutomatonMoves], table: Mapping[str, EventUsage]) -> bool:
-    """One round over everything that is sent; whether some type is still unknown that more rounds may tell."""
+    """Infer types once from everything that is sent; return whether an unknown type remains that another round may
+    infer."""
     waiting = False
     for behavior in behaviors:
         local: dict[str, Type] = {data.id: data.type for data in behavior.automaton.data}

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an automaton does, transition by transition: everything that runs between two states in one sequence.
+"""The behaviour of an automaton, transition by transition: everything that is executed between two states in one
+sequence.
 
-The body of a move is `<onexit>` of the source, the transition's own, `<onentry>` of the target
-(docs/spec/jani.md#transitions). The start is a move, too, if the initial state has an `<onentry>`.
+The body of a move is `<onexit>` of the source, the transition's own body, `<onentry>` of the target
+(docs/spec/jani.md#transitions). The start is a move as well if the initial state has an `<onentry>`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class MoveOutcome:
-    """One target of a transition with all that is done on the way."""
+    """One target of a transition with all statements on the way."""
 
     state: str
     probability: float
@@ -52,7 +53,7 @@ class AutomatonMoves:
     moves: tuple[tuple[State, tuple[Move, ...]], ...]
 
     def bodies(self) -> Iterator[tuple[str, Body]]:
-        """Every body with the event in whose data it may look, transitions first, the start last."""
+        """Every body with the event whose data it may read, transitions first, the start last."""
         for _, moves in self.moves:
             for move in moves:
                 for outcome in move.outcomes:

@@ -37,7 +37,7 @@ def translate(
     has_clock = any(automaton.role is Role.CLOCK for automaton in network.automata)
     automata = [_automaton(behavior, table, network) for behavior in behaviors]
     events = [event for event in table.values() if has_automaton(event)]
-    # The question to the blackboard comes last, as in the reference.
+    # The read request of the blackboard is last, as in the reference translator.
     events.sort(key=lambda event: event.role is EventRole.BLACKBOARD_READ)
     buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
     automata += [event_automaton(event, has_clock) for event in events]

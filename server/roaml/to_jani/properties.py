@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as they are checked (docs/spec/jani.md#properties).
+"""Properties in the form in which they are checked (docs/spec/jani.md#properties).
 
-- Comparisons with an array literal are spelled out.
-- Bounds on time and rewards stay as they are, although the model counts steps and has no rewards: `roaml.smc.forms`
-  says so of each property that has some. Without its bounds, a property would ask another question.
+- Comparisons with an array literal are expanded.
+- Bounds on time and rewards are kept, although the model counts steps and has no rewards: `roaml.smc.forms` reports
+  properties with them. Without its bounds, a property would have another meaning.
 - Only path formulas and operators keep their comments.
 """
 

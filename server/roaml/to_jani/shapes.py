@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How values are stored: scalars as they are, strings and arrays with fixed capacities and lengths beside them.
+"""The storage of values: scalars unchanged, strings and arrays with fixed capacities and separate lengths.
 
 An array `a` of n dimensions has the companions `a.d1_len`, an int, ..., `a.dn_len`, an array of n - 1 dimensions: its
 element i is the length of row i (docs/spec/jani.md#array-storage).
@@ -22,7 +22,7 @@ _ITERATOR = "__array_iterator_dim_"
 
 @dataclass(frozen=True, slots=True)
 class ArrayShape:
-    """`capacities` are the most elements in each dimension, outermost first; empty for scalars."""
+    """`capacities` are the maximum numbers of elements in each dimension, outermost first; empty for scalars."""
 
     base: BasicType
     capacities: tuple[int, ...] = ()
@@ -33,7 +33,7 @@ class ArrayShape:
 
     @property
     def element(self) -> ArrayShape:
-        """What the outermost dimension holds."""
+        """The shape of an element of the outermost dimension."""
         return ArrayShape(self.base, self.capacities[1:])
 
     def lengths(self, array: str) -> Iterator[tuple[str, ArrayShape]]:
@@ -50,7 +50,7 @@ def length_name(array: str, dimension: int) -> str:
 
 
 def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape:
-    """The shape of a variable. What is sent has the capacity `max_array_size` in every dimension
+    """The shape of a variable. A parameter of an event has the capacity `max_array_size` in every dimension
     (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
     if isinstance(element, EmptyArray) or is_kind(element, "string"):
@@ -67,7 +67,7 @@ def jani_type(shape: ArrayShape) -> JaniType:
 
 
 def zero(shape: ArrayShape) -> Expression:
-    """The value of a variable that nothing was stored in."""
+    """The value of a variable before anything is stored in it."""
     value = _ZEROS[shape.base]
     for capacity in reversed(shape.capacities):
         value = ArrayValue((value,) * capacity)
@@ -75,7 +75,7 @@ def zero(shape: ArrayShape) -> Expression:
 
 
 def constructed_zero(shape: ArrayShape) -> Expression:
-    """The same, written with array constructors: its size does not grow with the capacities."""
+    """The same, written with array constructors, so that its size does not grow with the capacities."""
     value = _ZEROS[shape.base]
     for k in range(shape.dimensions, 0, -1):
         value = ArrayConstructor(f"{_ITERATOR}{k}", Integer(shape.capacities[k - 1]), value)

@@ -2,7 +2,7 @@
 """Expressions of plain SCXML -> JANI (docs/spec/jani.md#values).
 
 - Strings are arrays of their UTF-8 bytes. An array (`ArrayForm`) is several JANI values: its elements and its lengths.
-- `-x` is `0 - x`, nothing is folded or simplified otherwise.
+- `-x` is `0 - x`; nothing else is folded or simplified.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ _MOST_IN_A_ROW = 100
 
 
 def all_of(terms: Sequence[Expression]) -> Expression | None:
-    """The conjunction of the terms, None of none. Many are put together in halves: readers of JANI, ours included, take
-    only so many brackets in each other."""
+    """The conjunction of the terms; `None` if there are none. Many terms are combined in halves: readers of JANI,
+    including ours, limit the nesting of brackets."""
     if len(terms) > _MOST_IN_A_ROW:
         middle = len(terms) // 2
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
@@ -106,7 +106,7 @@ def at(array: Expression, *indexes: Expression) -> Expression:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """A variable, or the part of one that `indexes` lead to."""
+    """A variable, or the part of one at `indexes`."""
 
     variable: str
     shape: ArrayShape
@@ -121,7 +121,7 @@ class Stored:
         return at(jani.Name(self.variable), *self.indexes)
 
     def lengths(self, dimension: int) -> Expression:
-        """The length variable of the part's own dimension `dimension` (from 1)."""
+        """The length variable of the part's dimension `dimension` (from 1)."""
         return at(jani.Name(length_name(self.variable, len(self.indexes) + dimension)), *self.indexes)
 
     def element(self, index: Expression) -> Stored:
@@ -130,7 +130,7 @@ class Stored:
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """A literal: its elements are scalars or, in more dimensions, further literals."""
+    """A literal: its elements are scalars or, with several dimensions, further literals."""
 
     elements: tuple[Expression | Listed, ...]
 
@@ -158,7 +158,7 @@ def length_of(array: ArrayForm) -> Expression:
 
 
 def elements_as(array: ArrayForm, shape: ArrayShape) -> Expression:
-    """The JANI value of an array, literals padded with zeros to the capacities of `shape`
+    """The JANI value of an array, with literals padded with zeros to the capacities of `shape`
     (docs/spec/jani.md#assignments)."""
     match array:
         case Stored():
@@ -213,12 +213,12 @@ def as_base(value: Expression, shape: ArrayShape) -> Expression:
 
 @dataclass(frozen=True, slots=True)
 class JaniScope:
-    """What names mean in one place.
+    """The meaning of names in one place.
 
     Attributes:
-        variables: of the automaton.
-        event: whose data `_event.data` is; "" for none.
-        params: of that event.
+        variables: the variables of the automaton.
+        event: the event of `_event.data`; "" for none.
+        params: the parameters of that event.
     """
 
     variables: Mapping[str, ArrayShape]
@@ -226,9 +226,9 @@ class JaniScope:
     params: Mapping[str, ArrayShape]
 
     def stored(self, expr: Expr) -> Stored | None:
-        """The variable or parameter that `expr` is, or is a part of; None if it is something else.
+        """The variable or parameter that `expr` is, or is a part of; `None` for other expressions.
 
-        What nobody sends has no variable; an event that is never sent is never received either.
+        A parameter that is never sent has no variable; an event that is never sent is never received either.
         """
         indexes: list[Expression] = []
         while isinstance(expr, Index):
@@ -243,7 +243,7 @@ class JaniScope:
         return None
 
     def array(self, expr: Expr) -> ArrayForm | None:
-        """The array that `expr` is, None if it is a scalar."""
+        """The array that `expr` is; `None` if it is a scalar."""
         match expr:
             case String():
                 return Listed(tuple(Integer(byte) for byte in expr.value.encode("utf-8", "surrogatepass")))
@@ -312,7 +312,7 @@ class JaniScope:
         return ZERO
 
     def length(self, expr: Member) -> Expression:
-        """`.length` of an array; of a parameter that is called so, its value."""
+        """`.length` of an array; the value of a parameter with that name."""
         array = self.array(expr.object)
         return self.read(expr) if array is None else length_of(array)
 
@@ -348,7 +348,7 @@ class JaniScope:
 
 
 def equal_arrays(left: ArrayForm, right: ArrayForm) -> Expression:
-    """Equal lengths and equal elements. Storm and others know no equality of arrays
+    """Equal lengths and equal elements. Storm and other tools do not support equality of arrays
     (docs/spec/jani.md#array-equality)."""
     if isinstance(left, Chosen):
         return jani.Conditional(left.test, equal_arrays(left.then, right), equal_arrays(left.otherwise, right))
@@ -395,7 +395,7 @@ def _equal_literals(left: Listed, right: Listed) -> Expression:
 
 
 def _equal_stored(left: Stored, right: Stored) -> Expression:
-    """Elements beyond the length do not count."""
+    """Elements beyond the length are ignored."""
     same = [equal(left.lengths(1), right.lengths(1))]
     depth = len(left.indexes)
     capacity = min(left.shape.capacities[depth], right.shape.capacities[len(right.indexes)])

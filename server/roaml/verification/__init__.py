@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verifying the properties of a target, and judging the answers.
+"""Verification of the properties of a target, and verdicts on the results.
 
-- A `Target` is a model with the texts in which its places are: a translated system or a JANI file.
-- A `Verifier` answers its properties. Each `Result` holds the answer, a verdict on each expectation, whether traces got
-  stuck, what is known of other schedulers, or a refusal that says why there is no answer.
-- A result can walk its traces again: `counterexample` explains the shortest one that speaks against an expectation.
+- A `Target` is a model with the texts that its positions refer to: a translated system or a JANI file.
+- A `Verifier` decides its properties. Each `Result` contains the answer, a verdict on each expectation, whether traces
+  got stuck, what is known of other schedulers, or a refusal with the reason why there is no answer.
+- A result can simulate its traces again: `counterexample` explains the shortest one that contradicts an expectation.
 
-Nothing here reads or writes files, prints, or knows of editors.
+Nothing here reads or writes files, prints, or depends on editors.
 """

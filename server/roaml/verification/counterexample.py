@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shortest trace that shows why a property fails, as a story whose lines know their places."""
+"""The shortest trace that shows why a property fails, as a story whose lines have positions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Counterexample:
 
 
 def unwanted_verdict(result: Result) -> int:
-    """The verdict of the traces that speak against what is expected."""
+    """The verdict of the traces that contradict an expectation."""
     if result.answer is not None and result.answer.question.is_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
@@ -39,9 +39,9 @@ def unwanted_verdict(result: Result) -> int:
 
 
 def unwanted_trace(result: Result) -> Seen | None:
-    """The shortest trace that speaks against what is expected; one that was not decided if there is none.
+    """The shortest trace that contradicts an expectation; an undecided one if there is none.
 
-    If any trace got stuck, the shortest of these: it says why the number means little.
+    If any trace got stuck, the shortest of these, because it explains why the number is doubtful.
     """
     if result.answer is None:
         return None
@@ -52,10 +52,10 @@ def unwanted_trace(result: Result) -> Seen | None:
 
 
 def counterexample(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
-    """Walk the shortest trace that speaks against what is expected again; None if there is none.
+    """Simulate the shortest trace that contradicts an expectation again; `None` if there is none.
 
     Args:
-        place_of: how a place is written; `path:line` if not given.
+        place_of: formats a position; the default is `path:line`.
     """
     seen, traces = unwanted_trace(result), result.traces
     if seen is None or traces is None:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`NAME >= 0.95`: what somebody expects of a property, and whether it is so.
+"""`NAME >= 0.95`: the expected value of a property, and whether it holds.
 
-- Judged by the estimate, not by its interval: no number of traces could ever show that a probability is 1. That the
-  interval holds numbers that meet the expectation and others that do not is only told (`Verdict.is_certain`).
-- A bound on a probability counts undecided traces as if each had gone the wrong way; `==` means at most epsilon away.
-- What a sequential test has decided about the same number stands.
+- Decided by the estimate, not by its interval: no number of traces could ever show that a probability is 1. If the
+  interval contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
+- A bound on a probability treats undecided traces as if each had the unfavourable result; `==` means at most epsilon
+  away.
+- A decision of a sequential test about the same number takes precedence.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _FORM = re.compile(r"\s*(.+?)\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """That the value of a property is in some relation to a number. `is_own`: the property itself says so."""
+    """A comparison of the value of a property with a number. `is_own`: it is part of the property itself."""
 
     name: str
     threshold: Threshold
@@ -61,7 +62,7 @@ class Verdict:
 
     @property
     def text(self) -> str:
-        """For people."""
+        """A phrase for users."""
         if self.is_met:
             return "met under uniform choices" if self.is_uniform else "met"
         return f"NOT MET {self.under}".rstrip()
@@ -70,7 +71,7 @@ class Verdict:
         """Why the interval leaves the verdict open; "" if it does not.
 
         Args:
-            epsilon: what `==` allows a value to be away.
+            epsilon: the difference that `==` allows.
         """
         if self.is_certain:
             return ""
@@ -96,12 +97,12 @@ def parse(text: str) -> Expectation:
     except ValueError:
         number = math.nan
     if match is None or math.isnan(number):
-        raise ValueError(f"an expectation is written like 'NAME >= 0.95', not '{text}'")
+        raise ValueError(f"an expectation must have a form like 'NAME >= 0.95', not '{text}'")
     return Expectation(match[1], Threshold(_RELATIONS[match[2]], number))
 
 
 class RangeError(ValueError):
-    """A probability is compared with a number that it cannot have; the message says which."""
+    """A probability is compared with an impossible number; the message states which."""
 
 
 def check_range(expectation: Expectation, question: Question) -> None:
@@ -117,7 +118,7 @@ def check_range(expectation: Expectation, question: Question) -> None:
 
 
 def judge(expectation: Expectation, answer: Answer) -> Verdict:
-    """Whether an answer meets an expectation."""
+    """Whether an answer satisfies an expectation."""
     threshold, tally = expectation.threshold, answer.tally
     if tally.traces == 0:
         return Verdict(expectation, False, False)

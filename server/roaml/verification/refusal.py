@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why a property has no answer, with its place: the others are answered all the same."""
+"""Why a property has no answer, with its position; the other properties are still decided."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ def refusal(fault: FaultError, target: VerificationTarget, seed: int) -> Refusal
 
 
 def fault_message(fault: FaultError, seed: int) -> str:
-    """What went wrong, with the trace that shows it."""
+    """A description of the undefined operation, with the trace that shows it."""
     return fault.message if fault.trace is None else f"{fault.message} (in trace {fault.trace} of seed {seed})"

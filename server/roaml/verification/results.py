@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What came of one property."""
+"""The result of one property."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from roaml.verification.target import VerificationTarget
 
 @dataclass(frozen=True, slots=True)
 class Exact:
-    """The exact least and greatest value over all schedulers, and the number of states."""
+    """The exact minimum and maximum over all schedulers, and the number of states."""
 
     least: float
     greatest: float
@@ -46,7 +46,7 @@ class SampledResult:
 
 @dataclass(frozen=True, slots=True)
 class Traces:
-    """The traces under uniform choices that a property was asked about. Each can be walked again."""
+    """The traces under uniform choices for a property. Each can be simulated again."""
 
     target: VerificationTarget
     checker: ModelChecker
@@ -54,7 +54,7 @@ class Traces:
     options: Options
 
     def recorder(self) -> Recorder:
-        """Walks single traces; one recorder is used by one thread at a time."""
+        """Simulates single traces; one recorder is used by one thread at a time."""
         return Recorder(self.checker, self.asked, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
@@ -66,7 +66,7 @@ class Traces:
         return self.recorder().walk(Recording(trace))
 
     def story(self, trace: int) -> Story:
-        """A whole trace, with the steps that matter to the property."""
+        """A whole trace, with the steps that are relevant for the property."""
         return tell(self.recorder(), trace, self.target.clock)
 
 
@@ -102,17 +102,17 @@ class Result:
 
     @property
     def asks_stuck(self) -> bool:
-        """Whether the question is whether traces get stuck."""
+        """Whether the question is about stuck traces."""
         return any(answer.question.is_stuck for answer in self._answers())
 
     @property
     def epsilon(self) -> float:
-        """By how much a value may differ from a number that it is expected to equal."""
+        """The difference that `==` allows."""
         return next((answer.options.epsilon for answer in self._answers()), 0.0)
 
     @property
     def is_met(self) -> bool:
-        """Whether there is an answer, and every expectation is met."""
+        """Whether there is an answer, and every expectation holds."""
         return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)
 
     def _answers(self) -> Iterator[Answer]:

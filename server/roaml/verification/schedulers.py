@@ -21,10 +21,10 @@ _SLACK = 1e-6
 
 
 def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
-    """A verdict on what is expected of an answer under uniform choices, with what is known of other schedulers.
+    """The verdict on an expectation of an answer under uniform choices, with what is known of other schedulers.
 
     Args:
-        choices: None if uniform choices are what is wanted.
+        choices: `None` if the question is about uniform choices.
     """
     if choices is None or choices.agreement:
         return verdict
@@ -58,7 +58,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
 
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:
-    """Where an extreme is found that does not meet what is expected."""
+    """Where an extreme violates an expectation."""
     if extreme is None or extreme.found == UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
@@ -67,17 +67,17 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
 
 
 def asks_for_minimum(question: Question) -> bool:
-    """Whether a property asks for the least value."""
+    """Whether a property asks for the minimum."""
     return question.operator.endswith("min")
 
 
 def may_differ(choices: Choices | None) -> bool:
-    """Whether it is open if other schedulers than the uniform one give another value."""
+    """Whether it is unknown if other schedulers than the uniform one have another value."""
     return choices is not None and not choices.agreement and not choices.differ
 
 
 def extreme_asked(question: Question) -> str:
-    """What a property asks for, in a word."""
+    """The extreme that a property asks for, in a word."""
     return "minimum" if asks_for_minimum(question) else "maximum"
 
 

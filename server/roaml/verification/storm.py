@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exact minimum and maximum over all schedulers, computed by Storm (https://www.stormchecker.org).
 
-The states are counted first; Storm is asked only if there are few.
+The states are counted first; Storm is used only if there are few.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _SLACK = 1e-6
 
 
 class ExactError(ValueError):
-    """There is no exact answer; the message says why."""
+    """There is no exact answer; the message contains the reason."""
 
 
 def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> Exact:
@@ -43,23 +43,23 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
     except ImportError:
         raise ExactError("--exact needs the package stormpy: pip install 'stormpy>=2'") from None
     if asked.goal.is_bounded:
-        raise ExactError("step bounds are not computed exactly; leave --exact out")
+        raise ExactError("step bounds cannot be computed exactly; omit --exact")
     reduced = checker.reduced(asked)
     if reduced is not checker:
         checker, asked = reduced, reduced.asked[0]
     try:
         states = len(Explorer(checker.compiled(asked)).reachable(limit))
     except TooManyStatesError:
-        message = f"there are more than {limit:,} states (--max-states); leave --exact out to estimate"
+        message = f"there are more than {limit:,} states (--max-states); omit --exact to estimate"
         raise ExactError(message) from None
     except TooManyChoicesError:
         raise ExactError(
-            f"in one state there are more than {MOST_CHOICES:,} combinations of edges; leave --exact out to estimate"
+            f"in one state there are more than {MOST_CHOICES:,} combinations of edges; omit --exact to estimate"
         ) from None
     except StateFaultError as error:
         raise checker.fault(error.problem) from None
     if asked.property not in checker.model.properties:
-        raise ExactError("this can be asked by traces only; leave --exact out")
+        raise ExactError("this can be decided only by traces; omit --exact")
     document = json.loads("".join(write(checker.model)))
     (property_,) = (row for row in document["properties"] if row["name"] == asked.question.name)
     extremes = []
@@ -92,11 +92,11 @@ def _value(stormpy: Any, document: dict[str, Any], expression: dict[str, Any]) -
             raise ExactError("Storm does not answer properties of this form")
         return float(result.get_value(built.initial_states[0]))
     except (RuntimeError, IndexError) as error:
-        raise ExactError(f"Storm cannot answer: {error}") from None
+        raise ExactError(f"Storm failed: {error}") from None
 
 
 def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
-    """Whether the value that a property asks for, the minimum or the maximum, meets an expectation."""
+    """Whether the value that a property asks for, the minimum or the maximum, satisfies an expectation."""
     threshold = expectation.threshold
     what, value = ("least", exact.least) if asks_for_minimum(question) else ("greatest", exact.greatest)
     if threshold.relation is BinaryOperator.EQUAL:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a system gets stuck: asked with every verification, by traces that run on whatever their properties say.
+"""Whether a system gets stuck, checked with every verification by traces that continue whatever the properties are.
 
-A trace is stuck where its automata wait for one another, so that the time of the model stands still for ever. What such
-a trace says about a property is chance. So it is told beside every number, with an example: who waits for whom.
+A trace is stuck if its automata wait for one another, so that the time of the model stands still for ever. The result
+of a stuck trace for a property is accidental. So it is reported beside every number, with an example: the chain of
+waiting automata.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from roaml.views.waiting import Wait, advice, rule, waits
 
 WARNING, ERROR = "warning", "error"
 LEVELS = (WARNING, ERROR)
-"""How a trace that gets stuck is reported."""
+"""The severities with which a stuck trace can be reported."""
 MAX_TRACES = 100
-"""The number of traces that are made to see whether a system gets stuck."""
+"""The number of traces that are generated to check whether a system gets stuck."""
 MAX_STEPS_PER_TRACE = 100_000
 MAX_STEPS = 1_000_000
-"""After this number of steps no more traces are made; they take a tenth of a second."""
+"""The number of steps after which no more traces are generated; they take a tenth of a second."""
 BATCH_SIZE = 10
 """The number of traces after which the steps are counted."""
 
@@ -53,23 +54,23 @@ class Stuck:
 
     @property
     def advice(self) -> str:
-        """What to do about it; "" where that is not known."""
+        """How to fix it; "" if unknown."""
         return advice(self.waits)
 
     @property
     def rule(self) -> str:
-        """The rule that finds the reason in the model; "" if there is none."""
+        """The rule that reports the cause in the model; "" if there is none."""
         return rule(self.waits)
 
     @property
     def warning(self) -> str:
-        """What it means for the value of the property whose traces these are."""
+        """What it means for the value of the property of these traces."""
         of = f"all {self.traces:,} traces" if self.count == self.traces else f"{self.count:,} of {self.traces:,} traces"
         return f"{of} got stuck and say nothing about the property, so its value is doubtful"
 
     @property
     def chain(self) -> Chain:
-        """Who waits for whom, whenever it is."""
+        """The chain of waiting automata, independent of the time."""
         return chain_of(self.waits)
 
 
@@ -77,19 +78,19 @@ Chain: TypeAlias = tuple[tuple[str, str, str], ...]
 
 
 def chain_of(waiting: Sequence[Wait]) -> Chain:
-    """Who waits for whom, whenever it is: automata, where they are, and for whom they wait."""
+    """The chain of waiting automata, independent of the time: automata, their locations, and for what they wait."""
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What is known of getting stuck.
+    """The result of the check for stuck traces.
 
     Attributes:
-        answer: that of the traces which were made for it; None if none were.
+        answer: the answer of the traces that were generated for it; `None` if there were none.
         stuck: the shortest example, from these traces or from those of a property.
         level: whether it is a warning or an error.
-        fault: what went wrong in one of these traces; then there is no answer.
+        fault: the undefined operation in one of these traces; then there is no answer.
     """
 
     answer: Answer | None
@@ -105,7 +106,7 @@ class Look:
 def look(
     target: VerificationTarget, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None
 ) -> Look:
-    """Make traces to see whether they get stuck."""
+    """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
     except FaultError as fault:
@@ -128,14 +129,14 @@ def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Ans
 
 
 def can_be_stuck(checker: ModelChecker) -> bool:
-    """Whether it is known what it means: that the model is a translated system."""
+    """Whether the meaning of a stuck trace is known, because the model is a translated system."""
     return any(checker.program.location_mark)
 
 
 def stuck_in(
     target: VerificationTarget, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
 ) -> Stuck | None:
-    """The traces of an answer that got stuck; None if none did."""
+    """The traces of an answer that got stuck; `None` if none did."""
     ended = answer.tally.ends.get(End.STUCK)
     if ended is None:
         return None
@@ -146,7 +147,7 @@ def stuck_in(
 
 
 def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
-    """The time of the model in the state that is reached, in s; None without a clock."""
+    """The time of the model in the current state, in s; `None` without a clock."""
     if target.clock is None:
         return None
     by_name = {storage.name: storage for storage in recorder.shared}
@@ -157,5 +158,5 @@ def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
 
 
 def shortest(examples: Iterable[Stuck | None]) -> Stuck | None:
-    """The one with the shortest trace; it is shown as the example."""
+    """The one with the shortest trace, which is shown as the example."""
     return min((stuck for stuck in examples if stuck is not None), key=lambda stuck: stuck.seen.steps, default=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is verified: a model, with the texts in which its places are."""
+"""The target of a verification: a model, with the texts that its positions refer to."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fie
 
 
 class LineColumn(NamedTuple):
-    """A place in a file; lines and columns begin at 1."""
+    """A position in a file; lines and columns begin at 1."""
 
     path: str
     line: int
@@ -25,12 +25,12 @@ class LineColumn(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class VerificationTarget:
-    """A model, and the texts in which its places are.
+    """A model, with the texts that its positions refer to.
 
     Attributes:
-        path: the file that was named; "" for a model that was not read from a file.
-        files: all files that were read, the one that was named first.
-        source_of: path -> the text of a file that an origin names; None if it is not known.
+        path: the named file; "" for a model that was not read from a file.
+        files: all files that were read, the named one first.
+        source_of: path -> the text of the file of an origin; `None` if it is unknown.
         clock: the variables for seconds and nanoseconds, if the model has them.
     """
 
@@ -41,7 +41,7 @@ class VerificationTarget:
     clock: tuple[str, str] | None
 
     def place(self, origin: Origin | None) -> LineColumn | None:
-        """Where an origin is; None if that is not known."""
+        """The position of an origin; `None` if it is unknown."""
         source = None if origin is None else self.source_of(origin.path)
         if origin is None or source is None:
             return None

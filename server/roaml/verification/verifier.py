@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers the properties of a target, and judges the answers by what is expected."""
+"""Decides the properties of a target, and compares the results with expectations."""
 
 from __future__ import annotations
 
@@ -27,20 +27,19 @@ from roaml.views.ends import marks, open_conditions
 
 
 class NoThresholdError(ValueError):
-    """A sequential test is to decide a property that is not compared with a number."""
+    """A sequential test requires a property that is compared with a number."""
 
 
 def checker_of(target: VerificationTarget, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
-        properties: their names; all if not given. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
-            which every translated system can be asked.
+        properties: their names; `None` for all. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
+            which is possible for every translated system.
 
     Raises:
-        PropertyError: the model has no property of a name.
-        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
-            are in `refused`.
+        PropertyError: the model has no property with one of the names.
+        FaultError: the model is of an unsupported kind; see `roaml.smc.fault`. Unsupported properties are in `refused`.
     """
     model, ends = target.model, marks(target.model)
     if properties is None:
@@ -61,15 +60,15 @@ def verifier_of(
     *,
     only_uniform: bool = False,
 ) -> Verifier:
-    """A target made ready to be verified.
+    """A target prepared for verification.
 
     Args:
-        properties: the names of those to verify; all if not given. Those of which something is expected are added.
-        only_uniform: whether only uniform choices are asked about, not the minimum or maximum over all schedulers.
+        properties: the names of those to verify; `None` for all. Those with expectations are added.
+        only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
 
     Raises:
-        PropertyError: there is no property of a name, or none of which something is expected.
-        RangeError: a probability is expected to be in relation to a number that is not between 0 and 1.
+        PropertyError: there is no property with one of the names, or with that of an expectation.
+        RangeError: the expectation of a probability has a number that is not between 0 and 1.
         FaultError: the model cannot be run.
     """
     expectations = tuple(expectations)
@@ -80,7 +79,7 @@ def verifier_of(
         names = [*known, STUCK_PROPERTY]
     for name in expected:
         if name not in (*known, STUCK_PROPERTY):
-            raise PropertyError(f"there is no property {name}, of which something is expected")
+            raise PropertyError(f"there is no property {name}, which has an expectation")
     checker = checker_of(target, names)
     for asked in checker.asked:
         for expectation in expectations:
@@ -91,7 +90,7 @@ def verifier_of(
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
-    """A target with compiled properties, and what is expected of them; see `verifier_of`."""
+    """A target with compiled properties, and their expectations; see `verifier_of`."""
 
     target: VerificationTarget
     checker: ModelChecker
@@ -105,10 +104,10 @@ class Verifier:
         return self.checker.names
 
     def question(self, name: str) -> CompiledProperty:
-        """A property, compared with the first number that is expected of it: a sequential test needs that.
+        """A property, compared with the first expected number, which a sequential test needs.
 
         Raises:
-            FaultError: it cannot be answered.
+            FaultError: it cannot be decided.
         """
         if name in self.checker.refused:
             raise self.checker.refused[name]
@@ -120,7 +119,7 @@ class Verifier:
         return asked
 
     def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
-        """What is expected of a property: by itself, and by `expectations`."""
+        """The expectations of a property: its own, and those in `expectations`."""
         name, threshold = asked.question.name, asked.question.threshold
         own = tuple(expectation for expectation in self.expectations if expectation.name == name)
         if threshold is None or any(expectation.threshold == threshold for expectation in own):
@@ -128,11 +127,11 @@ class Verifier:
         return (Expectation(name, threshold, is_own=True), *own)
 
     def verify(self, name: str, pool: Pool) -> Result:
-        """The result of a property; a refusal if it cannot be answered.
+        """The result of a property; a refusal if it cannot be decided.
 
         Raises:
             NoThresholdError: see `answer`.
-            WorkersLostError: processes die again and again.
+            WorkersLostError: processes end repeatedly.
         """
         try:
             return self.answer(self.question(name), pool)

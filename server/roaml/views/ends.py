@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What it means that a trace of a translated system ends where it ends (`roaml.smc.end`).
+"""The meaning of the final state of a trace of a translated system (`roaml.smc.end`).
 
-The clock is at its end: the time is over. The root of the tree is: the tree has finished. Else a clock that does not go
-on, or an event that nobody takes, means that automata wait for one another. In a system without clock, what is left is
-that nobody has anything to do.
+If the clock has ended, the time is over. If the root of the tree has ended, the tree has finished. Otherwise a clock
+that does not advance, or an event that is not received, means that automata wait for one another. In a system without a
+clock, the remaining case is that there is nothing left to do.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from roaml.smc.end import End
 
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
-    """(automaton, location) -> what it means that a trace ends there; empty for a model that is no translation."""
+    """(automaton, location) -> the meaning of a trace that ends there; empty for a model that is not a translation."""
     marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
     is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
     return marks if is_translated else {}
 
 
 def is_event(automaton: Automaton) -> bool:
-    """Whether it holds an event between being sent and being received, if somebody receives it."""
+    """Whether it holds an event between sending and receiving, if the event has a receiver."""
     locations = {location.name for location in automaton.locations}
     sends = on_send(named(automaton.name))
     return locations <= {WAITING, RECEIVED} and any(edge.action == sends for edge in automaton.edges)

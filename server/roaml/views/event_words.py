@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events of a translated system in the words of ROS and BehaviorTree.CPP (docs/spec/plain-scxml.md#events)."""
+"""Phrases of ROS and BehaviorTree.CPP for events of a translated system (docs/spec/plain-scxml.md#events)."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _COMPILED = tuple((re.compile(form), text) for form, text in _FORMS)
 
 
 def said(event: str, who: str, clients: Collection[str], taken: bool = False) -> str:
-    """An event as people call it.
+    """A phrase for an event.
 
     Args:
-        who: the one who waits for it, or takes it.
+        who: the automaton that waits for it, or receives it.
         clients: the automata of the system, of which one may be named at the end.
-        taken: whether `who` is to take the tick of a timer, where otherwise it waits for the timer.
+        taken: whether `who` receives the tick of a timer, instead of waiting for the timer.
     """
     if is_timer(event):
         timer = event.removeprefix(TIMER_PREFIX)

@@ -64,7 +64,7 @@ class EventReader:
         return name if client in self._automata else event
 
     def _is_of_event(self, name: str) -> bool:
-        """Whether a variable of the model carries an event; what is a parameter of it is noted."""
+        """Whether a variable of the model carries an event; its parameters are recorded."""
         if name.endswith(_VALID):
             return name.removesuffix(_VALID) in self._events
         at = name.rfind("__")

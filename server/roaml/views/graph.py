@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a diagram shows, whatever it is drawn with."""
+"""The content of a diagram, independent of its notation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Kind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class GraphNode:
-    """`lines` are its label; `minor` ones stay in the background."""
+    """`lines` are its label; `minor` nodes are in the background."""
 
     id: str
     lines: tuple[str, ...]
@@ -31,7 +31,7 @@ class GraphLink:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """`initial` is the node at which everything begins, "" if there is none."""
+    """`initial` is the node where everything begins; "" if there is none."""
 
     kind: Kind
     title: str

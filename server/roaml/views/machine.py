@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state machine as it is written: its states and what leads from one to another."""
+"""A state machine as it is written: its states and transitions."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _links(source: str, handler: Handler) -> Iterator[GraphLink]:
 
 
 def trigger_label(handler: Handler) -> tuple[str, ...]:
-    """What a transition waits for, and its condition: a line for each."""
+    """The trigger of a transition, and its condition: a line for each."""
     words = (
         [handler.element.name.removeprefix("ros_").removeprefix("bt_")]
         if handler.trigger is not ProtocolPart.EVENT
@@ -49,7 +49,7 @@ def trigger_label(handler: Handler) -> tuple[str, ...]:
 
 
 def chance_label(handler: Handler, target: Target) -> tuple[str, ...]:
-    """How likely one of several targets is; nothing if there is but one."""
+    """The probability of one of several targets; empty if there is only one."""
     if target.probability:
         return (f"p = {target.probability.value}",)
     return ("otherwise",) if handler.is_probabilistic else ()

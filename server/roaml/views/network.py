@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JANI network: which automata exchange which events. The buffers of events are drawn as links."""
+"""The JANI network: the automata and the events that they exchange. The buffers of events are drawn as links."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from roaml.views.graph import Graph, GraphNode, Kind
 
 @dataclass(frozen=True, slots=True)
 class Notation:
-    """A language of diagrams: its name for programs and for people, the extension of its files, how to write it."""
+    """A language of diagrams: its name for programs and for users, the extension of its files, its writer."""
 
     name: str
     title: str
@@ -117,7 +117,7 @@ def _plantuml_text(node: GraphNode) -> str:
 
 
 def _names(graph: Graph) -> dict[str, str]:
-    """Identifiers that every notation takes, for nodes of any name."""
+    """Identifiers that are valid in every notation, for nodes with any name."""
     return {node.id: f"n{i}" for i, node in enumerate(graph.nodes)}
 
 

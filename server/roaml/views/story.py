@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story of a trace for people: text, a Mermaid sequence diagram, a page that needs nothing else."""
+"""A story of a trace for readers: text, a Mermaid sequence diagram, a self-contained page."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from roaml.views.waiting import Wait, help_line, waits
 
 MAX_CHARACTERS = 60
 FIRST, LAST = 30, 50
-"""Turns of a story that are told; what stands between them is folded."""
+"""The maximum number of turns that are shown; those in between are folded."""
 
 PlaceOf = Callable[[Origin], str]
-"""File and line of an origin, as people read it."""
+"""File and line of an origin, for readers."""
 
 
 class StoryLine(NamedTuple):
-    """What one automaton did from one event to the next, and in `details` what has come of it.
+    """The turn of one automaton from one event to the next; `details` are its effects.
 
-    `place` in words and `origin` in the text are those of what it did; `location` is where it is then. `automaton` is
-    its name in the model, `who` the one for people; both are "" where turns are folded.
+    `place` and `origin` are the place of the turn, as a phrase and in the text; `location` is the location after it.
+    `automaton` is its name in the model, `who` the one for readers; both are "" for folded turns.
     """
 
     step: int
@@ -44,7 +44,7 @@ class StoryLine(NamedTuple):
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    """The story as a table; at its end who waits for whom, if it gets stuck."""
+    """The story as a table; if it gets stuck, with the waiting automata at its end."""
     return [*_told(story, place_of), *_waiting(story, place_of)]
 
 
@@ -68,7 +68,7 @@ def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 
 
 def waits_of(story: Story) -> tuple[Wait, ...]:
-    """Who waits for whom at the end, if it is stuck."""
+    """The waiting automata at the end, if it is stuck."""
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
@@ -87,10 +87,10 @@ def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
 
 
 def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
-    """For a terminal.
+    """The story for a terminal.
 
     Args:
-        shown: where it has been shown who waits for whom at the end; it is shown here if that is "".
+        shown: where the waiting automata have already been shown; "" to show them here.
     """
     waiting = waits_of(story)
     table = [*_told(story, place_of), *([] if shown else _waiting(story, place_of))]
@@ -101,12 +101,12 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
         text += "  " + "  ".join((*cells, row.what.ljust(widths[3]), row.place)).rstrip() + "\n"
         margin = " " * (widths[0] + widths[1] + widths[2] + 8)
         text += "".join(f"{margin}{detail}\n" for detail in row.details)
-    last = f"who waits for whom is shown {shown}" if waiting and shown else help_line(waiting)
+    last = f"the waiting automata are shown {shown}" if waiting and shown else help_line(waiting)
     return f"{text}  {last}\n" if last else text
 
 
 def heading(story: Story) -> str:
-    """What happens in one sentence."""
+    """A sentence for what happens."""
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"
@@ -121,7 +121,7 @@ def heading(story: Story) -> str:
 
 
 def as_mermaid(story: Story, place_of: PlaceOf) -> str:
-    """A sequence diagram. An event is an arrow from who sent it to who received it, drawn when it arrives."""
+    """A sequence diagram. An event is an arrow from its sender to its receiver, drawn when it arrives."""
     return "\n".join(_mermaid(story, place_of)) + "\n"
 
 
@@ -166,7 +166,7 @@ def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
 
 
 def as_html(stories: Sequence[Story], place_of: PlaceOf, title: str) -> str:
-    """A page that needs no network; each line tells its place."""
+    """A self-contained page; each line contains its place."""
     parts = [_section(story, place_of) for story in stories]
     return _PAGE.format(title=html.escape(title), body="\n".join(parts))
 
@@ -220,7 +220,7 @@ def _more(folded: range) -> str:
 
 def _what(turn: Turn) -> str:
     source, destination = turn.source, turn.destination
-    # In the end it may be between two states, which are of no use to anybody.
+    # At the end the automaton may be between two states, which has no name for readers.
     stays = source == destination or (turn.ends and turn.heard is not None)
     move = _short(source if stays else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
@@ -268,7 +268,7 @@ def _short(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Mermaid ends a line at `;` and takes `#` for the start of a character's number."""
+    """Mermaid ends a line at `;` and reads `#` as the start of a character's number."""
     return text.translate(_CODES)
 
 

@@ -24,12 +24,12 @@ def _node(instance: Instance) -> GraphNode:
 
 
 def title_of(instance: Instance) -> str:
-    """The node's name, if it has one of its own, and its plugin."""
+    """The node's name, if it has one, and its plugin."""
     return instance.plugin if instance.name == instance.plugin else f"{instance.name} : {instance.plugin}"
 
 
 def ports_of(instance: Instance) -> tuple[str, ...]:
-    """What each port holds, in one line for each."""
+    """The values of the ports, one line for each."""
     return tuple(
         f"{key} = {value.text if isinstance(value, PortConstant) else f'{{{value.variable}}}'}"
         for key, value in instance.ports

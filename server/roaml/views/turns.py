@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story in turns, as people think of it: an automaton hears an event, and does all that follows from it.
+"""A story in turns: in each turn an automaton receives an event, and executes everything that follows from it.
 
-A translated system takes many steps for that: each statement is one, each event waits in an automaton of its own
-between sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks
-down and answers up. A turn is told if one of its steps matters, or if it hears what such a turn says; what only passes
-things on is left out.
+A translated system takes many steps for a turn: each statement is one, each event waits in a separate automaton between
+sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks down and
+statuses up. A turn is included if one of its steps is relevant, or if it receives what a relevant turn sends; turns
+that only pass something on are left out.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _ENDS = ("SUCCESS", "FAILURE")
 
 @dataclass(slots=True)
 class Turn:
-    """What one automaton does from one event to the next.
+    """The steps of one automaton from one event to the next.
 
     Attributes:
-        heard: what it begins with; None if with nothing.
-        action: what it begins with together with others, where that is no event.
-        parts: of the automaton in its steps.
+        heard: the event with which it begins; `None` if there is none.
+        action: the action with which it begins together with others, if it is not an event.
+        parts: the parts of the automaton in its steps.
         changes: of its own variables, and of those of the model that carry no event.
-        messages: what it has sent.
+        messages: the events that it has sent.
         ends: whether the trace ends with it.
     """
 
@@ -71,12 +71,12 @@ class Turn:
 
     @property
     def who(self) -> str:
-        """The automaton as people call it: a node of a tree by its name and number."""
+        """The name of the automaton for readers: a node of a tree by its name and number."""
         return name_of(self.automaton)
 
     @property
     def protocol(self) -> str:
-        """What the tree says to and hears from this node begins with this; "" if it is none."""
+        """The prefix of the events between the tree and this node; "" if it is not a node."""
         node = _NODE.fullmatch(self.automaton)
         return f"bt_{node[1]}_" if node else ""
 
@@ -90,23 +90,23 @@ class Turn:
 
     @property
     def is_answered(self) -> bool:
-        """Whether it begins with what a child answers to an inner node."""
+        """Whether it begins with the answer of a child to an inner node."""
         return self.heard is not None and bool(_ANSWER.fullmatch(self.heard.event))
 
     @property
     def sent(self) -> Iterator[Message]:
-        """What it sends, but for its answers to the tree."""
+        """The events that it sends, except its answers to the tree."""
         return (message for message in self.messages if not self._answers(message))
 
     @property
     def status(self) -> str:
-        """The status that it answers to the tree with; "" if it does not."""
+        """The status that it returns to the tree; "" if it does not."""
         given = [message.values.get("status") for message in self.messages if self._answers(message)]
         return next((name for name, number in STATUSES.items() if number in given), "")
 
     @property
     def is_calm(self) -> bool:
-        """Whether nothing has come of what it has heard."""
+        """Whether the received event had no effect."""
         has_moved = self.source != self.destination or bool(self.changes)
         return self.heard is not None and not has_moved and not any(self.sent) and not self.status
 
@@ -122,8 +122,8 @@ class Message:
     """An event with the parameters that it was sent with, by their names.
 
     Attributes:
-        name: of the event, without that of the client whom a service or action serves with it.
-        sender: None if nobody has sent it.
+        name: the name of the event, without that of the client that a service or action serves with it.
+        sender: `None` if no automaton has sent it.
     """
 
     event: str
@@ -133,13 +133,13 @@ class Message:
 
 
 def name_of(automaton: str) -> str:
-    """An automaton as people call it: a node of a tree by its name and number."""
+    """The name of an automaton for readers: a node of a tree by its name and number."""
     node = _NODE.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
 
 def turns(story: Story) -> list[Turn]:
-    """The turns that are told, in the order in which they begin."""
+    """The turns that are included, in the order in which they begin."""
     reader = _Reader(story)
     for index in range(len(story.steps)):
         reader.read(index)
@@ -205,7 +205,7 @@ class _Reader:
         return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
-        """Those of its own variables, and of the model's that carry no event; the latter are told once."""
+        """The changes of its own variables, and of the model's that carry no event; the latter are included once."""
         for change in step.changes:
             instance, name = change.variable
             is_lasting = instance < 0 and is_last and not self._events.carries_event(name)
@@ -214,7 +214,7 @@ class _Reader:
 
 
 def is_inner(automaton: Automaton) -> bool:
-    """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or what ticks the root."""
+    """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
     node = _NODE.fullmatch(automaton.name)
     comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
     return comes_along and any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)

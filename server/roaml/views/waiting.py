@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who waits for whom in a translated system that is stuck.
+"""Which automata wait for each other in a translated system that is stuck.
 
-The search begins with the clock, or with an event that nobody takes. What an automaton waits for is the event that
-brings it, in the fewest events, to what the one before waits for; who sends this event comes next. Conditions count
-only where the automaton is. Handlers of services and actions and the inner nodes of a tree, which only pass things on,
+The search begins with the clock, or with an event that is not received. An automaton waits for the event that leads it,
+with the fewest events, to what the previous one waits for; the sender of this event is next. Conditions are evaluated
+only at the current location. Handlers of services and actions and the inner nodes of a tree, which only pass events on,
 are left out.
 """
 
@@ -41,14 +41,14 @@ THE_CLOCK, THE_TREE, THE_BLACKBOARD = "the clock", "the tree", "the blackboard"
 
 
 class Wait(NamedTuple):
-    """One who waits, and for what, in words.
+    """An automaton that waits, and what it waits for, in words.
 
     Attributes:
-        origin: the place in the text that says so.
-        automaton, location: what it is called in the model, and where it is.
-        whom: for whom it waits; "" if that is nobody.
-        unanswered: `TICK` or `HALT` if it waits for the answer to one; then `origin` is the place of the node that
-            must answer, in the tree.
+        origin: the corresponding place in the text.
+        automaton, location: its name in the model, and its location.
+        whom: the automaton for which it waits; "" if there is none.
+        unanswered: `TICK` or `HALT` if it waits for the answer to one; then `origin` is the place of the node that must
+            answer, in the tree.
         for_timer: whether it waits for a timer.
     """
 
@@ -81,7 +81,7 @@ class _Link:
 
 
 def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]:
-    """Who waits for whom, beginning with the clock where there is one; empty if nobody waits.
+    """The chain of waiting automata, beginning with the clock if there is one; empty if none waits.
 
     Args:
         time: of the model, in s.
@@ -90,29 +90,27 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
 
 
 NEEDS_TIME = "answer-needs-time"
-"""The rule that finds a tick or halt whose answer needs time to pass, before anything is run."""
+"""The rule that reports a tick or halt whose answer needs time, before anything is run."""
 
 
 def rule(waiting: Sequence[Wait]) -> str:
-    """The rule whose document says more: for a node that must answer the tree and waits for a timer; else ""."""
+    """The rule that documents the problem: for a node that must answer the tree and waits for a timer; otherwise ""."""
     is_late = any(wait.unanswered for wait in waiting) and any(wait.for_timer for wait in waiting)
     return NEEDS_TIME if is_late and any(wait.who == THE_CLOCK for wait in waiting) else ""
 
 
 def advice(waiting: Sequence[Wait]) -> str:
-    """What to do about it, where the reason is a node that does not answer the tree in time; else ""."""
+    """How to fix it, if the reason is a node that does not answer the tree in time; otherwise ""."""
     late = next((wait for wait in waiting if wait.unanswered), None)
     if late is None or not any(wait.who == THE_CLOCK for wait in waiting):
         return ""
     if late.unanswered == HALT:
-        return f"a halt must be answered before time goes on: let {late.whom} answer it at once"
-    return (
-        f"a tick must be answered before time goes on: let {late.whom} answer RUNNING, and the result at a later tick"
-    )
+        return f"a halt must be answered before time passes; let {late.whom} answer it at once"
+    return f"a tick must be answered before time passes; let {late.whom} return RUNNING, and the result at a later tick"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
-    """What to do about it, with the rule that says more; "" where that is not known."""
+    """How to fix it, with the rule that documents it; "" if unknown."""
     what, code = advice(waiting), rule(waiting)
     return f"help: {what}{f' [{code}]' if code else ''}" if what else ""
 
@@ -149,7 +147,7 @@ class _Chain:
                 yield from (self.words(link) for link in links)
 
     def follow(self, first: int, action: str) -> None:
-        """All links from an automaton on, each automaton once, those of one way after each other."""
+        """All links from an automaton on, each automaton once, depth first."""
         stack = [(first, action)]
         while stack:
             number, wanted = stack.pop()
@@ -165,12 +163,12 @@ class _Chain:
         return event in self.events and self.locations[self.events[event]] == RECEIVED
 
     def not_taking(self, event: str) -> list[int]:
-        """Who must take an event and cannot."""
+        """The automata that must receive an event and cannot."""
         action = on_receive(named(event))
         return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
 
     def blocked(self, number: int, wanted: str) -> Iterator[_Link]:
-        """What an automaton waits for that would send something, or let the time pass."""
+        """What an automaton waits for that would send something, or let time pass."""
         links: dict[tuple[str, int], _Link] = {}
         for edge in self.edges(number):
             if edge.action is None or received_by(edge.action) or (number, edge.action) not in self.ready:
@@ -210,7 +208,8 @@ class _Chain:
         return self.does.get(on_send(named(event)), []) if event else []
 
     def is_asleep(self, event: str, asker: int) -> bool:
-        """Whether all who could send an event wait for the one who waits for it: children that are not ticked."""
+        """Whether all possible senders of an event wait for the automaton that waits for it: children that are not
+        ticked."""
         senders = self.senders(event)
         return bool(senders) and all(
             not any(True for _ in self.blocked(sender, ""))
@@ -220,7 +219,7 @@ class _Chain:
         )
 
     def awaited(self, number: int, wanted: str) -> dict[str, Edge]:
-        """The events that bring an automaton in the fewest steps to what is wanted; "" for a condition."""
+        """The events that lead an automaton in the fewest steps to what is required; "" for a condition."""
         distances = self.distances(number, wanted)
         here = self.locations[number]
         ways: list[tuple[tuple[int, int], Edge]] = []
@@ -234,7 +233,8 @@ class _Chain:
         return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
 
     def distances(self, number: int, wanted: str) -> dict[str, int]:
-        """Location -> how many events bring the automaton from there to one where it can do what is wanted."""
+        """Location -> the number of events that lead the automaton from there to one where it can do what is
+        required."""
         edges = self.automata[number].edges
         distances: dict[str, int] = {}
         queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == wanted)]
@@ -253,7 +253,7 @@ class _Chain:
     # ------------------------------------------------------------------ in words
 
     def is_shown(self, number: int) -> bool:
-        """Not who only passes on what others do."""
+        """Whether to show an automaton; one that only passes events on is left out."""
         automaton = self.automata[number]
         if automaton.name.startswith(TREE_ROOT_PREFIX) or all(not link.others for link in self.links[number]):
             return True
@@ -271,7 +271,7 @@ class _Chain:
         return {CLOCK: THE_CLOCK, BLACKBOARD: THE_BLACKBOARD}.get(name, name_of(name))
 
     def shown_from(self, number: int, event: str) -> tuple[str, str]:
-        """Who does something in the end that an automaton passes on, and the event that is waited for there."""
+        """The automaton whose event another one passes on, and the event that is awaited there."""
         seen = set()
         while number not in seen and number in self.links and not self.is_shown(number):
             seen.add(number)
@@ -296,7 +296,7 @@ class _Chain:
             event = received_by(link.wanted) or sent_by(link.wanted)
             what = f"stays{where} and never {does} {said(event, who, self.clients())}"
         elif not link.event:
-            what = f"waits{where} for a condition that nothing can change any more"
+            what = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
             what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
         elif _is_answer(link.event):
@@ -312,7 +312,7 @@ class _Chain:
         return Wait(who, what, origin, self.automata[number].name, here, them, unanswered, for_timer)
 
     def place_in_tree(self, answer: str) -> Origin | None:
-        """The place in the tree of the node that sends an answer: what ticks it stands there."""
+        """The place in the tree of the node that sends an answer: the node that ticks it is there."""
         called = _ANSWER.sub(lambda answered: f"_{HALT if answered[1] else TICK}", answer)
         return self.automata[self.index[called]].origin if called in self.index else None
 

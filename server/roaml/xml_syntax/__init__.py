@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerant XML: any text gives a lossless tree in which every name and value knows its place.
+"""Tolerant XML: any text gives a lossless tree in which every name and value has a position.
 
-Knows XML 1.0 and namespaces only; what the elements mean is stated in `roaml.language`.
+Implements XML 1.0 and namespaces only; `roaml.language` defines the meaning of the elements.
 """
 
 from roaml.xml_syntax.parse import parse

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""References in XML text (`&lt;`, `&#10;`, ...): resolving them, writing them, and mapping places back.
+"""References in XML text (`&lt;`, `&#10;`, ...): resolve them, write them, and map positions back.
 
-Only the five predefined entities and character references are known (XML 1.0, sections 4.1 and 4.6); every other
-reference stays as it is written. Nothing is ever expanded from a document type declaration.
+Only the five predefined entities and character references are supported (XML 1.0, sections 4.1 and 4.6); every other
+reference is left unchanged. Declarations in a document type declaration are never expanded.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
 
 
 def resolve(match: re.Match[str]) -> str:
-    """What the matched reference stands for; the reference itself if it is not known."""
+    """The text of the matched reference; the reference itself if it is unknown."""
     decimal, hexadecimal, name = match.groups()
     if name:
         return PREDEFINED.get(name, match[0])
@@ -50,7 +50,7 @@ def escape(value: str, quote: str = '"') -> str:
 
 
 def decoded(text: str, span: Span) -> Decoded:
-    """The part of `text` in `span` with its references resolved, and the way back."""
+    """The part of `text` in `span` with its references resolved, and the mapping back to the source."""
     raw = text[span.start : span.end]
     if "&" not in raw:
         return Decoded(raw, span.start)

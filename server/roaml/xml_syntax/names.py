@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What XML calls a name and white space (XML 1.0, productions 3 to 5; Namespaces in XML 1.0, productions 4 and 7)."""
+"""Names and white space in XML (XML 1.0, productions 3 to 5; Namespaces in XML 1.0, productions 4 and 7)."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _LOCAL_NAME = f"[{_START}][{_START}.0-9\u00b7\u0300-\u036f\u203f\u2040-]*"
 
 _ASCII_LOCAL_NAME = r"[A-Za-z_][A-Za-z_.0-9-]*"
 ASCII_NAME = f"{_ASCII_LOCAL_NAME}(?::{_ASCII_LOCAL_NAME})?"
-"""A pattern: a name of ASCII characters, with or without a prefix. Unlike one for Unicode it is compiled at once."""
+"""A pattern: a name of ASCII characters, with or without a prefix. It compiles much faster than one for Unicode."""
 
 
 class _Pattern:
-    """Tries ASCII first. The pattern for all of Unicode is compiled when first needed: most models do without, and
-    every start of the tool would pay for it."""
+    """Tries ASCII first. The pattern for all of Unicode is compiled on first use: most models do not need it, and it
+    would slow down every start of the tool."""
 
     def __init__(self, form: str) -> None:
         self._ascii = re.compile(form.format(_ASCII_LOCAL_NAME))
@@ -48,6 +48,6 @@ def is_local_name(text: str) -> bool:
 
 
 def leading_local_name(text: str) -> str:
-    """The name without prefix, up to white space, that `text` begins with; "" if there is none."""
+    """The name without a prefix, up to white space, at the beginning of `text`; "" if there is none."""
     match = _LEADING.match(text)
     return match[0] if match else ""

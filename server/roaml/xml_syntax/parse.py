@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text -> tree, whatever the text.
+"""Text -> tree, for any text.
 
-- Never fails and takes time linear in the text: every mistake becomes a finding, the tree goes on behind it.
-- Recovers the way people type: an attribute whose quote is still open ends with its line or tag; a start tag without
-  `>` ends before the next `<`; a forgotten end tag ends with its parent; a misspelled end tag closes what it resembles.
-- Reads nothing but the text: document type declarations are stepped over, entities are never expanded.
-- Does not recurse, so nesting is bounded by memory alone (`MAX_DEPTH` is the depth up to which others may recurse).
+- Never fails and takes time linear in the text: every error becomes a finding, and parsing continues after it.
+- Recovers for texts that are being typed: an attribute whose quote is open ends with its line or tag; a start tag
+  without `>` ends before the next `<`; a missing end tag ends with its parent; a misspelled end tag closes the element
+  with the similar name.
+- Reads only the text: document type declarations are skipped, entities are never expanded.
+- Does not recurse, so nesting is limited only by memory (`MAX_DEPTH` is the depth up to which other functions may
+  recurse).
 """
 
 from __future__ import annotations
@@ -24,18 +26,18 @@ MAX_DEPTH = 100
 """Elements nested deeper than this are reported and left out of the tree."""
 
 MAX_FINDINGS = 100
-"""A text with more mistakes than this is hardly XML; it is not read further."""
+"""The maximum number of errors; a text with more is unlikely to be XML and not read further."""
 
 _MAX_SKIPPED_DEPTH = 10_000
 
-# A tag without mistakes, in ASCII names. (Others take the way of all other tags, which is slower.)
+# A tag without errors, in ASCII names. (Other tags are read by the general, slower patterns.)
 _SPACE = f"[{SPACE}]"
 _SOUND_TAG = re.compile(
     f"<({ASCII_NAME})((?:{_SPACE}+{ASCII_NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>"
 )
 _SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
-# Any other tag: what was meant for a name, for white space, for a value.
+# Any other tag: text that was meant as a name, as white space, as a value.
 _NAME = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
 _TAG_OPEN = re.compile(rf"<((?=[^\W\d]|:){_NAME})")
 _END_TAG = re.compile(rf"</(\s*)({_NAME})?\s*(>)?")
@@ -62,7 +64,7 @@ _XML_DECLARATION = re.compile(
 
 
 def parse(text: str) -> Document:
-    """The tree of `text` and all that is wrong with its form."""
+    """The tree of `text` and its syntax errors."""
     return _Parser(text).run()
 
 
@@ -72,13 +74,13 @@ class _Parser:
         self.findings: list[Finding] = []
         self.nodes: list[Node] = []
         self.stack: list[Element] = []
-        self.names: list[str] = []  # of the elements in `stack`, prefixes included
+        self.names: list[str] = []  # of the elements in `stack`, including prefixes
         self.open_names: dict[str, int] = {}
         self.declared: list[tuple[int, str]] = []  # prefixes, with the depth of the element that declares them
-        self.prefixes = {"xml": 1, "xmlns": 1}  # how often each is declared by elements in `stack`
+        self.prefixes = {"xml": 1, "xmlns": 1}  # the number of declarations of each by elements in `stack`
         self.skipped_depth = 0
-        self.instructions_end = True  # until a search for `?>` has failed
-        self.hopeless = False  # too many mistakes, or nested absurdly deep
+        self.instructions_end = True  # true until a search for `?>` has failed
+        self.hopeless = False  # too many errors, or nested too deeply
 
     def run(self) -> Document:
         text, length = self.text, len(self.text)
@@ -101,7 +103,7 @@ class _Parser:
     # ---------------------------------------------------------------- markup
 
     def markup(self, at: int) -> int:
-        """Read the markup that begins with the `<` at `at`; the offset behind it."""
+        """Read the markup that begins with the `<` at `at`; return the offset after it."""
         text = self.text
         following = text[at + 1 : at + 2]
         if following == "/":
@@ -120,13 +122,13 @@ class _Parser:
         match = _TAG_OPEN.match(text, at)
         if match is None:
             escape = Fix("Write `&lt;`", (TextEdit(Span(at, at + 1), "&lt;"),), safe=True)
-            self.report(Span(at, at + 1), "`<` begins no tag here; as text it is written `&lt;`", escape)
+            self.report(Span(at, at + 1), "`<` does not begin a tag here; write `&lt;` for the character", escape)
             self.add(Text("<", Span(at, at + 1)))
             return at + 1
         return self.start_tag(at, match)
 
     def sound_tag(self, match: re.Match[str]) -> int:
-        """A start tag without mistakes: the common case, read fast."""
+        """Read a start tag without errors: the common case, read fast."""
         attributes: list[Attribute] = []
         start, end = match.span(2)
         if start != end:
@@ -145,7 +147,7 @@ class _Parser:
         return self.open_element(match, attributes, match.end(), match[3] is not None, complete=True)
 
     def start_tag(self, at: int, match: re.Match[str]) -> int:
-        """A start tag with something wrong in it."""
+        """Read a start tag with errors."""
         text = self.text
         attributes: list[Attribute] = []
         first: dict[str, Attribute] = {}
@@ -178,7 +180,7 @@ class _Parser:
         return self.open_element(match, attributes, space.end() if space else position, False, complete=False)
 
     def attribute(self, match: re.Match[str], at: int) -> Attribute:
-        """The attribute found in what follows `at`."""
+        """Read the attribute in the text after `at`."""
         name, equals = match[1], match[2]
         name_span = Span(*match.span(1))
         self.check_name(name_span)
@@ -191,7 +193,7 @@ class _Parser:
             self.check_space(*match.span(2))
         else:
             insert = Fix('Add `=""`', (TextEdit(Span(name_span.end, name_span.end), '=""'),), preferred=False)
-            self.report(name_span, f"attribute `{shown(name)}` has no value", insert)
+            self.report(name_span, f"the attribute `{shown(name)}` has no value", insert)
             return Attribute(name, "", name_span, Span(name_span.end, name_span.end), name_span, has_value=False)
         group = 3 if match[3] is not None else 4
         raw = match[group]
@@ -205,7 +207,7 @@ class _Parser:
         return self.odd_value(name, name_span, match.end(2))
 
     def odd_value(self, name: str, name_span: Span, at: int) -> Attribute:
-        """A value with `<` in it, without its closing quote, or without quotes at all."""
+        """Read a value that contains `<`, has no closing quote, or has no quotes at all."""
         text = self.text
         quote = text[at : at + 1]
         if quote not in ('"', "'"):
@@ -216,11 +218,11 @@ class _Parser:
             value_span = Span(at, end)
             if end == at:
                 insert = Fix('Add `""`', (TextEdit(Span(at, at), '""'),), preferred=False)
-                message = f'attribute `{shown(name)}` has no value; write `{shown(name)}="…"`'
+                message = f'the attribute `{shown(name)}` has no value; write `{shown(name)}="…"`'
                 self.report(Span(name_span.start, at), message, insert)
                 return Attribute(name, "", name_span, value_span, Span(name_span.start, end), has_value=False)
             quoted = (TextEdit(Span(at, at), '"'), TextEdit(Span(end, end), '"'))
-            self.report(value_span, "an attribute value stands in quotes", Fix("Add quotes", quoted))
+            self.report(value_span, "an attribute value needs quotes", Fix("Add quotes", quoted))
             self.check_references(value_span)
             return Attribute(name, unescape(text[at:end]), name_span, value_span, Span(name_span.start, end))
         start = at + 1
@@ -232,7 +234,7 @@ class _Parser:
                     break
                 place = Span._make(less.span())
                 escape = Fix("Write `&lt;`", (TextEdit(place, "&lt;"),), safe=True)
-                self.report(place, "`<` in an attribute value is written `&lt;`", escape)
+                self.report(place, "`<` in an attribute value must be written `&lt;`", escape)
             self.check_references(value_span)
             raw = text[start:close]
             return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, close + 1))
@@ -246,7 +248,7 @@ class _Parser:
         return self.open_value(name, name_span, Span(start, end))
 
     def open_value(self, name: str, name_span: Span, value: Span) -> Attribute:
-        """A value without its closing quote."""
+        """Read a value without its closing quote."""
         start, end = value.start, self.trim(*value)
         quote = self.text[start - 1]
         self.report(
@@ -259,7 +261,7 @@ class _Parser:
         return Attribute(name, unescape(raw), name_span, Span(start, end), Span(name_span.start, end))
 
     def swallowing(self, value: Span) -> int | None:
-        """Where a value really ends, if its closing quote is the opening one of the next attribute."""
+        """The end of a value whose closing quote is the opening one of the next attribute."""
         text = self.text
         if text[value.end - 1] != "=" and not text[value.end - 1].isspace():
             return None
@@ -270,7 +272,7 @@ class _Parser:
         return next_attribute.start() if on_next_line or not _AFTER_VALUE.match(text, value.end + 1) else None
 
     def is_plausible_value(self, start: int, close: int) -> bool:
-        """Whether the quote at `close` ends the value begun at `start`, or already belongs to the next attribute."""
+        """Whether the quote at `close` ends the value that begins at `start`, or is part of the next attribute."""
         text = self.text
         if text[close - 1] == "=" and close - 1 >= start:
             return False
@@ -319,7 +321,7 @@ class _Parser:
         name_span = span_of(match.span(2))
         if match[1]:
             gap = Span(*match.span(1))
-            self.report(gap, "the name stands right behind `</`", Fix("Remove the space", (TextEdit(gap, ""),)))
+            self.report(gap, "the name must follow `</` directly", Fix("Remove the space", (TextEdit(gap, ""),)))
         if match[3]:
             self.check_space(name_span.end, match.end())
         end = match.end() if match[3] else self.end_tag_junk(Span(at, name_span.end))
@@ -342,7 +344,7 @@ class _Parser:
             self.close(tag, name_span)
         else:
             drop = Fix("Remove it", (TextEdit(tag, ""),), preferred=False)
-            message = f"`</{shown(name)}>` closes nothing; `<{shown(self.names[-1])}>` is open"
+            message = f"`</{shown(name)}>` closes nothing; the open element is `<{shown(self.names[-1])}>`"
             self.stray(tag, message, drop)
         return end
 
@@ -356,15 +358,15 @@ class _Parser:
             return tag.end
         wanted = self.names[-1]
         write = Fix(f"Write `</{shown(wanted)}>`", (TextEdit(tag, f"</{wanted}>"),))
-        self.report(tag, f"the end tag has no name; `<{shown(wanted)}>` is open", write)
+        self.report(tag, f"the end tag has no name; the open element is `<{shown(wanted)}>`", write)
         self.close(tag, Span(tag.start + 2, tag.start + 2))
         return tag.end
 
     def end_tag_junk(self, tag: Span) -> int:
-        """What follows the name in an end tag that does not end there; where the tag does end."""
+        """Report text after the name in an end tag; return where the tag ends."""
         if junk := _END_TAG_JUNK.match(self.text, tag.end):
             place = Span(junk.start(), junk.end() - 1)
-            self.report(place, "an end tag holds nothing but its name", Fix("Remove it", (TextEdit(place, ""),)))
+            self.report(place, "an end tag contains only its name", Fix("Remove it", (TextEdit(place, ""),)))
             return junk.end()
         insert = Fix("Insert `>`", (TextEdit(Span(tag.end, tag.end), ">"),))
         self.report(tag, "the end tag has no `>`", insert)
@@ -384,7 +386,7 @@ class _Parser:
         element = self.pop()
         was_complete, element.complete = element.complete, False
         if not was_complete:
-            # The start tag is still being typed: what follows it is its sibling, not its child.
+            # The start tag is still being typed: the text after it is its sibling, not its child.
             siblings = self.stack[-1] if self.stack else None
             nodes, elements = element.nodes, element.elements
             element.nodes, element.elements = [], []
@@ -409,7 +411,7 @@ class _Parser:
         return element
 
     def forget_prefixes(self) -> None:
-        """Those that no element in `stack` declares."""
+        """Remove the prefixes that no element in `stack` declares."""
         while self.declared and self.declared[-1][0] >= len(self.stack):
             self.prefixes[self.declared.pop()[1]] -= 1
 
@@ -453,9 +455,9 @@ class _Parser:
         self.add(Instruction(text[at + 2 : end], span))
         has_entities = "<!ENTITY" in text[at:end]
         if has_entities:
-            message = "entities are not expanded here: write out what they stand for"
+            message = "entities are not expanded; write out their text"
         else:
-            message = "a document type declaration has no effect here and is not read"
+            message = "a document type declaration has no effect and is not read"
         self.report(span, message, Fix("Remove it", (TextEdit(span, ""),), safe=not has_entities), code="document-type")
         return end
 
@@ -466,7 +468,9 @@ class _Parser:
         if (close := raw.find("]]>")) >= 0:
             place = Span(start + close, start + close + 3)
             escape = Fix("Write `]]&gt;`", (TextEdit(place, "]]&gt;"),))
-            self.report(place, "`]]>` stands only at the end of a CDATA section; as text write `]]&gt;`", escape)
+            self.report(
+                place, "`]]>` is only allowed at the end of a CDATA section; write `]]&gt;` for the text", escape
+            )
         self.add(Text(unescape(raw), span_of((start, end))))
 
     def add(self, node: Node) -> None:
@@ -491,24 +495,24 @@ class _Parser:
             reference = REFERENCE.match(self.text, match.start(), span.end)
             if reference is None:
                 escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), safe=True)
-                self.report(Span(*match.span()), "`&` as such is written `&amp;`", escape)
+                self.report(Span(*match.span()), "a literal `&` must be written `&amp;`", escape)
                 continue
             decimal, hexadecimal, name = reference.groups()
             place = Span(*reference.span())
             if name and name not in PREDEFINED:
                 escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), preferred=False)
-                message = f"the entity `&{name};` is not defined; entities are not expanded here"
+                message = f"the entity `&{name};` is not defined; entities are not expanded"
                 self.report(place, message, escape, code="undefined-entity")
             elif not name and not is_character(int(decimal) if decimal else int(hexadecimal, 16)):
-                self.report(place, f"`{reference[0]}` stands for no character that XML allows")
+                self.report(place, f"`{reference[0]}` is not a character that XML allows")
 
     def check_name(self, span: Span) -> None:
         name = self.text[span.start : span.end]
         if not is_name(name):
-            self.report(span, f"`{shown(name)}` is not a name that XML allows")
+            self.report(span, f"`{shown(name)}` is not a valid XML name")
 
     def check_space(self, start: int, end: int) -> None:
-        """Report characters that look like a space to a person but not to XML."""
+        """Report characters that look like a space but are not white space in XML."""
         if odd := _ODD_SPACE.search(self.text, start, end):
             place = Span(*odd.span())
             message = f"the character U+{ord(odd[0][0]):04X} only looks like a space"
@@ -532,16 +536,16 @@ class _Parser:
         content = self.text[span.start + 2 : span.end - 2]
         name = leading_local_name(content)
         if not name:
-            self.report(span, "a processing instruction begins with a name")
+            self.report(span, "a processing instruction must begin with a name")
         elif name == "xml" and span.start > 0:
-            self.report(span, "the XML declaration must be the very first thing in the file")
+            self.report(span, "the XML declaration must be at the very beginning of the file")
         elif name == "xml":
             self.check_declaration(content, span)
 
     def check_declaration(self, content: str, span: Span) -> None:
         declaration = _XML_DECLARATION.fullmatch(content)
         if declaration is None:
-            self.report(span, 'an XML declaration has the form `<?xml version="1.0" encoding="UTF-8"?>`')
+            self.report(span, 'an XML declaration must have the form `<?xml version="1.0" encoding="UTF-8"?>`')
         elif encoding := declaration["encoding"]:
             try:
                 codecs.lookup(encoding)
@@ -549,17 +553,17 @@ class _Parser:
                 start = span.start + 2 + declaration.start("encoding")
                 place = Span(start, start + len(encoding))
                 write = Fix("Write `UTF-8`", (TextEdit(place, "UTF-8"),))
-                self.report(place, f"there is no encoding `{shown(encoding)}`; the file was read as UTF-8", write)
+                self.report(place, f"unknown encoding `{shown(encoding)}`; the file was read as UTF-8", write)
 
     def check_roots(self) -> Element | None:
         roots = [node for node in self.nodes if isinstance(node, Element)]
         if not roots:
-            self.report(Span(0, min(1, len(self.text))), "the file has no element")
+            self.report(Span(0, min(1, len(self.text))), "the file contains no element")
             return None
         for extra in roots[1:]:
             self.report(
                 extra.name_span,
-                f"a document has one root; `<{shown(extra.name)}>` stands outside `<{shown(roots[0].name)}>`",
+                f"a document must have one root; `<{shown(extra.name)}>` is outside of `<{shown(roots[0].name)}>`",
                 related=(Related(roots[0].name_span, "the root"),),
             )
         for node in self.nodes:
@@ -567,20 +571,20 @@ class _Parser:
             is_data = isinstance(node, CData) or (isinstance(node, Text) and node.value)
             if is_data and (stripped := raw.strip(SPACE)):
                 start = node.span.start + raw.index(stripped)
-                self.report(Span(start, start + len(stripped)), "text outside the root element")
+                self.report(Span(start, start + len(stripped)), "text outside of the root element")
         return roots[0]
 
     def duplicate(self, attribute: Attribute, first: Attribute) -> None:
         self.report(
             attribute.name_span,
-            f"attribute `{shown(attribute.name)}` is given twice",
+            f"the attribute `{shown(attribute.name)}` is given twice",
             Fix("Remove this one", (TextEdit(attribute.span, ""),), preferred=False),
             code="duplicate-attribute",
             related=(Related(first.name_span, "given first here"),),
         )
 
     def too_deep(self, element: Element) -> None:
-        message = f"elements are nested more than {MAX_DEPTH} deep; what is inside is not analysed"
+        message = f"elements are nested more than {MAX_DEPTH} levels deep; their content is not analysed"
         self.report(element.name_span, message, code="nesting-too-deep")
 
     def report(
@@ -595,17 +599,17 @@ class _Parser:
             self.findings.append(Finding(code, span, message, fixes=fixes, related=related))
         elif not self.hopeless:
             self.hopeless = True
-            self.findings.append(Finding("xml-syntax", span, "too many mistakes: the file is not read from here on"))
+            self.findings.append(Finding("xml-syntax", span, "too many errors: the file is not read from here on"))
 
     def trim(self, start: int, end: int) -> int:
-        """`end` moved back over white space, not before `start`."""
+        """`end` moved back over white space, but not before `start`."""
         while end > start and self.text[end - 1] in SPACE:
             end -= 1
         return end
 
 
 def document_type_end(text: str, at: int) -> int:
-    """Where the document type declaration that begins at `at` ends; the end of the text if it never does."""
+    """The end of the document type declaration that begins at `at`; the end of the text if it is never closed."""
     inside, position = False, at
     while match := _DOCTYPE_MARK.search(text, position):
         mark, position = match[0], match.end()

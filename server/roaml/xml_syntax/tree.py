@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The XML tree.
 
-- Lossless: the spans of a node's children and tags cover the node's text, comments and white space included. (Only
-  elements nested too deep are left out.)
-- Written once by the parser and never changed afterwards.
-- No links to parents: whoever walks the tree carries what it needs (`Document.path_at` gives the ancestors of a place).
+- Lossless: the spans of a node's children and tags cover the node's text, including comments and white space. (Only
+  elements nested too deeply are left out.)
+- The parser creates it, and it is never changed afterwards.
+- No links to parents: functions that walk the tree keep what they need (`Document.path_at` returns the ancestors of a
+  position).
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from roaml.xml_syntax.escapes import decoded
 
 
 class Attribute(NamedTuple):
-    """`name` is as written, prefix included. `value` has its references resolved; it is empty if there is none.
+    """`name` is as written, including the prefix. `value` has its references resolved; it is empty if it is missing.
 
-    `value_span` lies between the quotes; `span` is the whole attribute. `has_value` is false in `<a name>`.
+    `value_span` is between the quotes; `span` is the whole attribute. `has_value` is false in `<a name>`.
     """
 
     name: str
@@ -65,12 +66,12 @@ class Element:
         name: local name, without prefix.
         prefix: namespace prefix, often empty.
         name_span: the whole name in the start tag.
-        attributes: in document order; of two with one name both are kept.
+        attributes: in document order; attributes with equal names are all kept.
         nodes: all children, in document order.
-        elements: the child elements alone.
-        span: from `<` to behind the end tag; without one, to behind the last of the children.
-        open_span: the start tag, from `<` to behind `>`; without one, to the next `<`.
-        close_span: the end tag, or None if the element is self-closing or was never closed.
+        elements: only the child elements.
+        span: from `<` to after the end tag; without one, to after the last child.
+        open_span: the start tag, from `<` to after `>`; without one, to the next `<`.
+        close_span: the end tag; `None` if the element is self-closing or was never closed.
         close_name_span: the name in the end tag.
         self_closing: written as `<a/>`.
         complete: the start tag has its `>` and, unless self-closing, an end tag of its own.
@@ -106,14 +107,14 @@ class Element:
         self.complete = True
 
     def get(self, name: str) -> Attribute | None:
-        """The first attribute called `name`."""
+        """The first attribute with this name."""
         for attribute in self.attributes:
             if attribute.name == name:
                 return attribute
         return None
 
     def find(self, name: str) -> Element | None:
-        """The first child element called `name`."""
+        """The first child element with this name."""
         for child in self.elements:
             if child.name == name:
                 return child
@@ -129,7 +130,7 @@ class Element:
 
     @property
     def content_span(self) -> Span:
-        """Where the children stand: between start tag and end tag."""
+        """The span of the children: between start tag and end tag."""
         return Span(self.open_span.end, self.close_span.start if self.close_span else self.span.end)
 
     def __repr__(self) -> str:
@@ -140,13 +141,14 @@ Node: TypeAlias = Element | Text | CData | Comment | Instruction
 
 
 def children_text(element: Element) -> str:
-    """The character data directly inside `element`, comments left out."""
+    """The character data directly inside `element`, without comments."""
     return "".join(node.value for node in element.nodes if isinstance(node, (Text, CData)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Document:
-    """A parsed text. `root` is the first element, None only if there is none; by mistake others may follow it."""
+    """A parsed text. `root` is the first element; `None` only if there is none. In an invalid file, others may follow
+    it."""
 
     text: str
     root: Element | None
@@ -155,7 +157,7 @@ class Document:
 
     @property
     def namespaces(self) -> Mapping[str, str]:
-        """Prefix -> namespace as declared on the root; the default namespace has the empty prefix."""
+        """Prefix -> namespace as declared on the root; the prefix of the default namespace is empty."""
         if self.root is None:
             return {}
         return {
@@ -165,12 +167,12 @@ class Document:
         }
 
     def decoded(self, span: Span) -> Decoded:
-        """The text in `span` with its references resolved, and the way back to the source."""
+        """The text in `span` with its references resolved, and the mapping back to the source."""
         return decoded(self.text, span)
 
     def content(self, element: Element) -> Decoded | None:
-        """The character data directly inside an element, without surrounding white space and comments, and the way
-        back to the source; None if there is none."""
+        """The character data directly inside an element, without surrounding white space and comments, and the mapping
+        back to the source; `None` if there is none."""
         pieces = []
         for node in element.nodes:
             match node:

@@ -131,8 +131,8 @@ async function migrateSystem({ server, documents }: Parts): Promise<void> {
         return;
     }
     const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
-    const question = vscode.l10n.t("Move {0} to the current dialect?", vscode.workspace.asRelativePath(system));
-    const detail = [...found.files, "", vscode.l10n.t("Comments and layout stay; Undo takes it back.")].join("\n");
+    const question = vscode.l10n.t("Migrate {0} to the current dialect?", vscode.workspace.asRelativePath(system));
+    const detail = [...found.files, "", vscode.l10n.t("Comments and layout are kept; Undo reverts the migration.")].join("\n");
     const answer = await vscode.window.showInformationMessage(question, { modal: true, detail }, apply, show);
     if (answer === show) await showChanges(server, system);
     if (answer === apply && (await vscode.workspace.applyEdit(edit, { isRefactoring: true }))) {
@@ -155,7 +155,7 @@ async function selectInterpreter(): Promise<void> {
     for await (const python of pythons(thisMachine, [], untrustedFolders())) {
         items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });
     }
-    const title = vscode.l10n.t("The Python that the language server is started with, or installed for");
+    const title = vscode.l10n.t("The Python interpreter that starts the language server, or for which it is installed");
     const picked = await vscode.window.showQuickPick(items, { title, matchOnDescription: true });
     if (!picked) return;
     let value = picked.path;

@@ -40,14 +40,14 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     async show(system: string, property: string): Promise<void> {
         const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property });
         if (!found) {
-            const text = vscode.l10n.t("No trace is known that speaks against {0}. Verify it first.", property);
+            const text = vscode.l10n.t("There is no counterexample for {0} yet. Verify it first.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }
         this.shown = found;
         this.view.description = found.property;
         this.view.message = found.stale
-            ? vscode.l10n.t("{0} The files have changed since.", `${found.heading}.`)
+            ? vscode.l10n.t("{0} The files have changed since then.", `${found.heading}.`)
             : `${found.heading}.`;
         await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
         this.changed.fire(undefined);

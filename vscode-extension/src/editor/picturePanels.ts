@@ -241,11 +241,11 @@ function titleOf(kind: PictureKind): string {
 function nothingOf(kind: PictureKind): string {
     switch (kind) {
         case "machine":
-            return vscode.l10n.t("There is no state machine here.");
+            return vscode.l10n.t("This file contains no state machine.");
         case "tree":
-            return vscode.l10n.t("There is no behavior tree here.");
+            return vscode.l10n.t("This file contains no behavior tree.");
         case "ros":
-            return vscode.l10n.t("There is no system here.");
+            return vscode.l10n.t("This file is not part of a system.");
     }
 }
 
@@ -257,9 +257,9 @@ function words(): Words {
         fit: vscode.l10n.t("Fit"),
         saveSvg: vscode.l10n.t("Save as SVG"),
         savePng: vscode.l10n.t("Save as PNG"),
-        nothing: vscode.l10n.t("Nothing found"),
-        help: vscode.l10n.t("Arrows move from node to node, Enter opens the source, + and - zoom, 0 fits, / searches."),
-        byChance: vscode.l10n.t("by chance"),
+        nothing: vscode.l10n.t("No results"),
+        help: vscode.l10n.t("Arrow keys move between nodes, Enter opens the source, + and - zoom, 0 fits the diagram, / searches."),
+        byChance: vscode.l10n.t("random"),
         kinds: {
             state: vscode.l10n.t("state"),
             thread: vscode.l10n.t("action thread"),

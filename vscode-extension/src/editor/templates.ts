@@ -37,7 +37,7 @@ export async function newMachine(context: vscode.ExtensionContext, kind: "node" 
     const file = vscode.Uri.joinPath(folder, kind === "node" ? "nodes" : "plugins", `${fileName(name)}.ascxml`);
     if (await exists(file)) {
         void vscode.window.showErrorMessage(
-            vscode.l10n.t("{0} exists already.", vscode.workspace.asRelativePath(file)),
+            vscode.l10n.t("{0} already exists.", vscode.workspace.asRelativePath(file)),
         );
         return;
     }
@@ -55,7 +55,7 @@ export async function addToCi(context: vscode.ExtensionContext): Promise<void> {
         { label: "GitHub", path: ".github/workflows/as2fm.yml", template: "github.yml" },
         { label: "GitLab", path: ".gitlab-ci.yml", template: "gitlab.yml" },
     ];
-    const picked = await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Where does CI run?") });
+    const picked = await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Select the CI provider") });
     if (!picked) return;
     const file = vscode.Uri.joinPath(folder, picked.path);
     const template = vscode.Uri.joinPath(context.extensionUri, "dist", "ci", picked.template);
@@ -70,7 +70,7 @@ export async function addToCi(context: vscode.ExtensionContext): Promise<void> {
 
 /** A copy of the sample system, with one mistake in it to be found. */
 export async function openSample(context: vscode.ExtensionContext): Promise<void> {
-    const folder = await newFolder(vscode.l10n.t("Where to put the sample"), "delivery_robot");
+    const folder = await newFolder(vscode.l10n.t("Folder for the sample"), "delivery_robot");
     if (!folder) return;
     if (await exists(folder)) {
         const files = await vscode.workspace.fs.readDirectory(folder);

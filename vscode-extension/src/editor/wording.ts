@@ -44,7 +44,7 @@ export function tellState(state: State): Told {
         case "stopped":
             return { severity: "quiet", short: l10n.t("stopped"), long: l10n.t("Stopped."), actions: [restart()] };
         case "searching":
-            return quiet(l10n.t("searching"), l10n.t("Looking for the language server."));
+            return quiet(l10n.t("searching"), l10n.t("Searching for the language server."));
         case "installing":
             return quiet(l10n.t("installing"), tellStep(state.step));
         case "starting":
@@ -62,7 +62,7 @@ export function tellState(state: State): Told {
 export function tellStep(step: Step): string {
     switch (step) {
         case "python":
-            return l10n.t("Looking for Python.");
+            return l10n.t("Searching for Python.");
         case "venv":
             return l10n.t("Creating a private Python environment.");
         case "packages":
@@ -91,7 +91,7 @@ function tellFailure(failure: Failure): Told {
                 severity: "warning",
                 short: l10n.t("not installed"),
                 long: l10n.t(
-                    "The language server for HL-SCXML is not installed yet. It can be put into a private Python environment that touches nothing else on this machine.",
+                    "The language server for HL-SCXML is not installed yet. It can be installed in a private Python environment, separate from everything else on this machine.",
                 ),
                 actions: [install(), select(), log()],
             };
@@ -99,7 +99,7 @@ function tellFailure(failure: Failure): Told {
             return error(
                 l10n.t("server not usable"),
                 l10n.t(
-                    "The setting as2fm.server.path names {0}, which is no language server that can be started. Correct the setting, or clear it to let the extension find one.",
+                    "The setting as2fm.server.path is {0}, which cannot be started as a language server. Correct the setting, or clear it to let the extension find one.",
                     failure.path,
                 ),
                 [setting(), tryAgain(), log()],
@@ -108,7 +108,7 @@ function tellFailure(failure: Failure): Told {
             return error(
                 l10n.t("no Python"),
                 l10n.t(
-                    "The language server needs Python {0} or newer, and there is none on PATH. Install it (on Debian and Ubuntu: apt install python3 python3-venv), or select an interpreter that is elsewhere.",
+                    "The language server needs Python {0} or newer, and there is none on PATH. Install it (on Debian and Ubuntu: apt install python3 python3-venv), or select another interpreter.",
                     oldest,
                 ),
                 [getPython(), select(), retryInstall()],
@@ -117,7 +117,7 @@ function tellFailure(failure: Failure): Told {
             return error(
                 l10n.t("no environment"),
                 l10n.t(
-                    "Python {0} could not create an environment. On Debian and Ubuntu its module venv is a package of its own: apt install python3-venv. Then try again.",
+                    "Python {0} could not create an environment. On Debian and Ubuntu, install its module venv with: apt install python3-venv. Then try again.",
                     failure.python,
                 ),
                 [retryInstall(), select(), log()],
@@ -126,7 +126,7 @@ function tellFailure(failure: Failure): Told {
             return error(
                 l10n.t("not installed"),
                 l10n.t(
-                    "pip could not get the packages that the language server needs. They come from the index that pip is configured for: check the network, the proxy and pip's index-url. Without an index, install as2fm-lsp where you can and name it in as2fm.server.path.",
+                    "pip could not download the packages that the language server needs. They come from the index in pip's configuration: check the network, the proxy and pip's index-url. Without an index, install as2fm-lsp in another way and set as2fm.server.path.",
                 ),
                 [retryInstall(), setting(), log()],
             );
@@ -140,7 +140,7 @@ function tellFailure(failure: Failure): Told {
             return error(
                 l10n.t("stopped"),
                 l10n.t(
-                    "The language server ended by itself {0} times within three minutes and was not started again. Its log tells more.",
+                    "The language server ended unexpectedly {0} times within three minutes and was not restarted. See its log for details.",
                     failure.count,
                 ),
                 [restart(), log()],

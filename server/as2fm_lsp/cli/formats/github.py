@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Workflow commands of GitHub Actions: they become annotations in the changed files."""
+"""Workflow commands of GitHub Actions, which become annotations in the changed files."""
 
 from __future__ import annotations
 

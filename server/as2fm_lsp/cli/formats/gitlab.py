@@ -23,7 +23,7 @@ def render(report: CheckReport) -> str:
                 "check_name": entry.code,
                 "description": entry.message,
                 "severity": _SEVERITIES[entry.severity],
-                # GitLab drops all but one of the entries with one fingerprint.
+                # GitLab keeps only one entry for each fingerprint.
                 "fingerprint": f"{entry.fingerprint}-{seen[entry.fingerprint]}",
                 "location": {
                     "path": slashed(entry.file),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diagnostics with the places as people count them: lines and columns from 1, in code points, the end exclusive."""
+"""Diagnostics with positions for readers: lines and columns from 1, in code points, the end exclusive."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.project.paths import slashed
 from roaml.text import SourceFile, Span
 
 _CONTEXT_CHARACTERS = 200
-"""Characters on both sides of a place: generated files may have everything on one line."""
+"""The maximum number of characters before and after a position: generated files may have everything on one line."""
 
 
 class LineRange(NamedTuple):
@@ -37,7 +37,7 @@ class RelatedEntry(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """A diagnostic as it is written: files as given or relative to the working directory."""
+    """A diagnostic in the output: files as given or relative to the working directory."""
 
     diagnostic: Diagnostic
     file: str
@@ -71,8 +71,8 @@ class Entry:
         return self.fingerprint_as(self.file)
 
     def fingerprint_as(self, file: str) -> str:
-        """Stays the same when lines are added or removed elsewhere: made of the file's name, code, message and what
-        stands on the line around the place."""
+        """Does not change when lines are added or removed elsewhere: computed from the file's name, code, message and
+        the text on the line around the position."""
         at = self.line.start + self.place.column - 1
         around = self.source.text[
             max(self.line.start, at - _CONTEXT_CHARACTERS) : min(self.line.end, at + _CONTEXT_CHARACTERS)
@@ -110,9 +110,9 @@ def place_of(source: SourceFile, span: Span) -> LineRange:
 
 
 def shown_path(path: str) -> str:
-    """`path` relative to the working directory, if it lies in it or near it."""
+    """`path` relative to the working directory, if it is in it or near it."""
     try:
         relative = os.path.relpath(path)
-    except ValueError:  # another drive
+    except ValueError:  # on another drive
         return path
     return path if relative.count(os.pardir + os.sep) > 2 else relative

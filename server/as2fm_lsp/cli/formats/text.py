@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For people: the place, the message, and the line with what is meant underlined."""
+"""For terminals: the position, the message, and the line with the range underlined."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def render(report: CheckReport) -> str:
 
 
 def summary(report: CheckReport) -> str:
-    """How many diagnostics of each severity in how many files."""
+    """The number of diagnostics of each severity, and of files."""
     counts = dict.fromkeys(sorted(Severity, reverse=True), 0)
     for entry in report.entries:
         counts[entry.diagnostic.severity] += 1
@@ -50,7 +50,7 @@ def _block(entry: Entry, paint) -> str:  # type: ignore[no-untyped-def]
 
 
 def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-untyped-def]
-    """The first line of the place with a caret below each character of it."""
+    """The first line of the range with a caret below each character of it."""
     place, line = entry.place, entry.line
     start = place.column - 1
     end = place.end_column - 1 if place.end_line == place.line else line.end - line.start
@@ -58,19 +58,19 @@ def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-u
     text = _visible(entry.source.text[line.start + cut : min(line.end, line.start + cut + _MAX_COLUMNS)])
     if cut:
         text, start, end = f"…{text[1:]}", start - cut, end - cut
-    # Tabs are kept in the line that points, so that it lines up with the one above.
+    # Tabs are kept in the line of carets, so that it is aligned with the one above.
     margin = "".join("\t" if character == "\t" else " " * _columns(character) for character in text[:start])
     carets = "^" * max(1, sum(map(_columns, text[start:end])))
     return [f"{place.line:5} | {text}", f"{'':5} | {margin}{paint(carets, color)}"]
 
 
 def _visible(text: str) -> str:
-    """Control characters would move the terminal's cursor."""
+    """Replace control characters, which would move the terminal's cursor."""
     return "".join(c if c == "\t" or c.isprintable() else "\ufffd" for c in text)
 
 
 def _columns(character: str) -> int:
-    """How many columns a terminal gives to a character."""
+    """The width of a character in a terminal, in columns."""
     if unicodedata.category(character) in ("Mn", "Me"):
         return 0
     return 2 if unicodedata.east_asian_width(character) in ("W", "F") else 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is offered at a place: quick fixes of what is wrong there, refactorings, and all fixes of a kind at once."""
+"""The code actions at a place: quick fixes of its diagnostics, refactorings, and all fixes of a kind at once."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from roaml.text import Span
 
 
 def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]) -> Iterator[CodeAction]:
-    """All that is offered at a place, of the kinds that are wanted.
+    """All code actions at a place, of the requested kinds.
 
     Args:
-        snapshot: what is known.
-        path: of the file.
+        snapshot: the state of the workspace.
+        path: the file.
         place: the selection, or the caret as an empty span.
-        is_wanted: whether a kind of action is asked for.
+        is_wanted: whether a kind of action is requested.
     """
     if is_wanted(QUICK_FIX):
         everything = snapshot.checker.diagnostics(path)
@@ -38,7 +38,7 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str
 
 
 def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """All that mends a diagnostic: first what its rule offers, then what reaches further."""
+    """All fixes of a diagnostic: first those of its rule, then those that change other files."""
     for fix in diagnostic.fixes:
         yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
     titles = {fix.title for fix in diagnostic.fixes}
@@ -52,7 +52,7 @@ def _made(path: str, fix: Fix) -> WorkspaceEdit:
 
 
 def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
-    """All that a rule finds in the file, if there is more than one thing with an obvious mend."""
+    """A fix of all findings of a rule in the file, if more than one has an obvious fix."""
     mendable = [diagnostic for diagnostic in found if diagnostic.code == code and preferred_fix(diagnostic)]
     if len(mendable) > 1:
 
@@ -70,7 +70,7 @@ def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code
 def _fix_file(snapshot: Snapshot, path: str) -> Iterator[CodeAction]:
     """All safe fixes of the file."""
     if any(safe_fix(diagnostic) for diagnostic in snapshot.checker.diagnostics(path)):
-        title = "Make all safe fixes in this file"
+        title = "Apply all safe fixes in this file"
         yield CodeAction(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a code action does to the files of a workspace, and what it is."""
+"""A code action, and its changes to the files of a workspace."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ EXTRACT = "refactor.extract"
 REWRITE = "refactor.rewrite"
 FIX_ALL = "source.fixAll.as2fm"
 KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
-"""The kinds of actions, in the words of LSP."""
+"""The kinds of actions, with their names in LSP."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +35,14 @@ class WorkspaceEdit:
 
 @dataclass(frozen=True, slots=True)
 class CodeAction:
-    """Something that is offered at a place.
+    """A code action at a place.
 
     Attributes:
-        title: in the imperative; of one kind and place no two are equal.
-        make: what it does, worked out when it is asked for.
+        title: in the imperative; unique among those of one kind and place.
+        make: computes the change when it is requested.
         mends: the diagnostic that a quick fix removes.
-        preferred: it is the one obvious thing to do.
-        resources: `create` or `rename`, if it makes new files or gives files other names.
+        preferred: whether it is the one obvious action.
+        resources: `create` or `rename`, if it creates or renames files.
     """
 
     title: str
@@ -59,7 +59,7 @@ def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
 
 
 def whole(before: str, after: str) -> tuple[TextEdit, ...]:
-    """One edit that makes `before` to `after` and leaves alone what they have in common at both ends."""
+    """One edit that changes `before` to `after` and keeps their common beginning and end."""
     if before == after:
         return ()
     least = min(len(before), len(after))

@@ -12,7 +12,8 @@ from roaml.text import TextEdit
 
 
 def add_input(analysis: Analysis, system: str, section: str, type_: str, path: str) -> tuple[TextEdit, ...]:
-    """The edits that list a file at the end of a section, which is made if there is none; none if it is there."""
+    """The edits that list a file at the end of a section, which is created if there is none; empty if the file is
+    listed."""
     file, document, source = analysis.system_file(system), analysis.document(system), analysis.source(system)
     if file is None or document is None or source is None:
         return ()
@@ -32,7 +33,7 @@ def add_input(analysis: Analysis, system: str, section: str, type_: str, path: s
 
 
 def move_input(analysis: Analysis, system: str, listed: ListedFile, section: str, type_: str) -> tuple[TextEdit, ...]:
-    """The edits that list a file in another section. Of a section that would be empty nothing is left."""
+    """The edits that list a file in another section. A section that would be empty is removed."""
     source, file = analysis.source(system), analysis.system_file(system)
     if source is None or file is None:
         return ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moving the systems of a file to the current dialect, as an action."""
+"""A code action that migrates the systems of a file to the current dialect."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TITLE = "Convert the system to the current dialect"
 
 
 def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """Offered at what only the older dialect has, in a file of a system of that dialect."""
+    """Offered at spellings of the older dialect, in a file of a system of that dialect."""
     analysis = snapshot.analysis
     systems = analysis.memberships.get(path, ())
     if not any((system := analysis.system(each)) is not None and system.older for each in systems):
@@ -25,7 +25,7 @@ def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
 
 
 def _convert(snapshot: Snapshot, path: str) -> WorkspaceEdit:
-    """Of all systems that share a file with those of `path`, for a file cannot be of two dialects."""
+    """Migrates all systems that share a file with those of `path`, because a file cannot be in two dialects."""
     analysis = snapshot.analysis
     systems = list(analysis.memberships.get(path, ()))
     for system in systems:

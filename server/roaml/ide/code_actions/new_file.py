@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What new files begin with, and where they are put."""
+"""The initial content of new files, and their paths."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def stem_of(path: str) -> str:
 
 
 def camel_case(stem: str) -> str:
-    """`battery_above` as the name of a machine: `BatteryAbove`."""
+    """The machine name for `battery_above`: `BatteryAbove`."""
     return "".join(part[:1].upper() + part[1:] for part in stem.split("_"))
 
 
 def file_name(machine: str) -> str:
-    """`BatteryAbove` as the name of a file: `battery_above.ascxml`."""
+    """The file name for `BatteryAbove`: `battery_above.ascxml`."""
     return _CAMEL.sub("_", machine).lower() + ".ascxml"
 
 
@@ -42,7 +42,7 @@ def free_path(analysis: Analysis, folder: str, name: str) -> str:
 
 
 def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
-    """A path as `src` of a system file names it: like the others there, with or without `./`."""
+    """A path as `src` of a system file writes it: like the others there, with or without `./`."""
     src = seen_from(path, system)
     others = [other for other in written if not other.startswith("..")]
     dotted = bool(others) and all(other.startswith("./") for other in others)
@@ -50,7 +50,7 @@ def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
 
 
 def node(name: str) -> str:
-    """A machine that does nothing yet."""
+    """A machine without behaviour."""
     return f"""{_DECLARATION}<ascxml name="{name}" version="1.0" initial="run">
     <state id="run" />
 </ascxml>
@@ -58,10 +58,10 @@ def node(name: str) -> str:
 
 
 def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool = False) -> str:
-    """A plugin that reads and sets its ports and succeeds at once or, with a child, does as the child does.
+    """A plugin that reads and sets its ports and returns SUCCESS at once or, with a child, the status of the child.
 
     Args:
-        name: of the plugin.
+        name: the name of the plugin.
         ports: direction, key and type of each.
         child: whether the node has a child.
     """
@@ -138,7 +138,7 @@ _WITH_CHILD = f"""\
 
 
 def tree() -> str:
-    """A tree of one node that succeeds."""
+    """A tree with one node that succeeds."""
     return f"""{_DECLARATION}<root BTCPP_format="4" main_tree_to_execute="MainTree">
     <BehaviorTree ID="MainTree">
         <AlwaysSuccess />

@@ -15,7 +15,7 @@ from roaml.project.paths import folder_of, name_of
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:
-    """The title and the change, if there can be such a plugin: none ticks several children."""
+    """The title and the change, if a new plugin is possible: a plugin cannot tick several children here."""
     systems = analysis.memberships.get(path, ())
     if (
         not systems
@@ -33,7 +33,7 @@ def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[s
 
 
 def free_path(analysis: Analysis, system: str, name: str) -> str:
-    """Beside the other plugins of the system, else beside the system file."""
+    """A path beside the other plugins of the system, or beside the system file."""
     plugins = [
         f.path for f in analysis.listed(system) if f.input.section == "behavior_tree" and f.path.endswith("cxml")
     ]
@@ -51,7 +51,8 @@ def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target
 
 
 def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
-    """Direction, key and type that a setting suggests: a variable that somebody else sets is read, another is set."""
+    """The direction, key and type that a setting suggests: a variable that another node sets is read, others are
+    set."""
     variable = setting.variable
     if variable is None:
         return "in", setting.key.value, _type_of(setting.value.value)

@@ -14,7 +14,7 @@ from roaml.text import Span, TextEdit, computed
 
 
 def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[CodeAction]:
-    """Write a node the other way."""
+    """Convert a node to the other form."""
     edits = _other_form(analysis, path, node)
     if edits:
         title = "Write the node in its explicit form" if node.compact else "Write the node in its compact form"
@@ -22,7 +22,7 @@ def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[CodeActi
 
 
 def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
-    """Write all nodes one way, offered at the start tags of the file and its trees."""
+    """Convert all nodes to one form, offered at the start tags of the file and its trees."""
     file = analysis.tree(path)
     if file is None:
         return
@@ -46,7 +46,7 @@ def _change(analysis: Analysis, path: str, edits: list[TextEdit]) -> WorkspaceEd
 
 
 def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]:
-    """The edits that write a node the other way; none where that would mean something else."""
+    """The edits that convert a node to the other form; empty if the result would have another meaning."""
     source, element = analysis.source(path), node.element
     if source is None or node.plugin is None or node.is_subtree or element.prefix or not element.complete:
         return []
@@ -67,7 +67,7 @@ def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]
 
 
 def _category(analysis: Analysis, path: str, node: TreeNode) -> str:
-    """What kind of node it is: as `<TreeNodesModel>` says, else by the number of its children."""
+    """The category of the node: as `<TreeNodesModel>` declares, otherwise by the number of its children."""
     name = node.plugin.value if node.plugin else ""
     for each in analysis.trees_from(path):
         file = analysis.tree(each)

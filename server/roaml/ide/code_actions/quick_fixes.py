@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quick fixes that a rule cannot offer, because they reach into other files or make new ones.
+"""Quick fixes that a rule cannot offer, because they change other files or create new ones.
 
-Each is a function from a diagnostic to actions; what it finds in other files is looked up when it is asked for, so it
-is never out of date.
+Each is a function from a diagnostic to actions; other files are read when the fix is requested, so it is always up to
+date.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ from roaml.rules.trees.blackboard_type_conflict import TypeConflict
 from roaml.text import SourceFile, Span, TextEdit
 
 _MAX_FILES = 3
-"""So many files are offered in place of one that is not there."""
+"""The maximum number of files that are offered instead of a missing one."""
 
 _Edits = dict[str, tuple[TextEdit, ...]]
 
 
 def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """What can be done about a diagnostic, apart from what its rule offers."""
+    """The fixes of a diagnostic, in addition to those of its rule."""
     repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
         yield from repair(snapshot, diagnostic)
@@ -65,7 +65,7 @@ def _action(
 
 
 def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """A file of a like name, or a new one."""
+    """Use a file with a similar name, or create a new one."""
     analysis, system = snapshot.analysis, diagnostic.path
     listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
     if listed is None:
@@ -110,7 +110,7 @@ def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Cod
 
 
 def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[CodeAction]:
-    """Files that may be meant in place of `path`: of the same name elsewhere, or of a like one."""
+    """Files that may be meant instead of `path`: with the same name elsewhere, or with a similar one."""
     written = _text_at(analysis, diagnostic)
     by_name: dict[str, list[str]] = {}
     for other in others:
@@ -129,7 +129,7 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
 
 
 def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """List the file that has the plugin, or make one."""
+    """List the file that contains the plugin, or create one."""
     analysis = snapshot.analysis
     node = _node_at(analysis, diagnostic)
     if node is None or node.plugin is None or (node.type is not None and not node.type.translated):
@@ -168,11 +168,11 @@ def _list(analysis: Analysis, systems: Iterable[str], path: str) -> WorkspaceEdi
 
 
 def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """What is listed as a node and is a plugin is listed in the wrong section."""
+    """Move a plugin that is listed as a node to the right section."""
     analysis = snapshot.analysis
     for system in analysis.memberships.get(diagnostic.path, ()):
         if not analysis.tree_paths(system):
-            continue  # it would have plugins and no tree
+            continue  # there would be plugins and no tree
         for listed in analysis.listed(system):
             if listed.path == diagnostic.path and listed.input.section == "node_models":
                 yield _move(analysis, diagnostic, system, listed)
@@ -195,7 +195,7 @@ def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """A system without properties, whose folder has a file of them."""
+    """List a property file from the folder in a system without properties."""
     facts = diagnostic.facts
     if isinstance(facts, MissingChild) and facts.parent in SYSTEM.roots and facts.name == "properties":
         yield from _list_file(snapshot, diagnostic, "properties", "jani", FileKind.PROPERTIES)
@@ -204,7 +204,7 @@ def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeActi
 def _list_file(
     snapshot: Snapshot, diagnostic: Diagnostic, section: str, type_: str, kind: FileKind
 ) -> Iterator[CodeAction]:
-    """List a file that lies in the folder of the system file, or below it."""
+    """List a file from the folder of the system file, or below it."""
     analysis, system = snapshot.analysis, diagnostic.path
     folder = folder_of(system)
     for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
@@ -220,7 +220,7 @@ def _list_file(
 
 
 def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Take a port away, and what the trees set it to."""
+    """Remove a port, and its settings in the trees."""
     if diagnostic.fixes:
         return
     machine = snapshot.analysis.machine(diagnostic.path)
@@ -251,7 +251,7 @@ def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
 
 
 def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:
-    """The edits that take away all settings of a port of a plugin."""
+    """The edits that remove all settings of a port of a plugin."""
     name = machine.name.value if machine.name else ""
     edits: _Edits = {}
     for tree_path in _trees(analysis, path):
@@ -313,7 +313,7 @@ def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAc
 
 
 def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Unless a tree that is not executed has it."""
+    """Remove an unused plugin, unless a tree that is not executed uses it."""
     analysis, system = snapshot.analysis, diagnostic.path
     source = analysis.source(system)
     listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
@@ -327,7 +327,7 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeA
 
 
 def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Declare a port with the type that the other port has at the same variable."""
+    """Declare a port with the type that the other port of the same variable has."""
     analysis = snapshot.analysis
     facts, node = diagnostic.facts, _node_at(analysis, diagnostic)
     if not isinstance(facts, TypeConflict) or node is None or node.plugin is None:
@@ -347,7 +347,7 @@ def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeA
 
 
 def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """A name that cannot be is changed wherever it stands."""
+    """Rename something with an invalid name, in all its places."""
     if diagnostic.fixes or not isinstance(diagnostic.facts, WrongName):
         return
     analysis = snapshot.analysis

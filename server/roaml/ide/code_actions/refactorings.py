@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Refactorings: changes that nothing asks for, offered where the caret makes them meant."""
+"""Refactorings: changes without a diagnostic, offered where the caret suggests them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.rece
 
 
 def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """What can be done with what stands at a place."""
+    """The refactorings at a place."""
     analysis = snapshot.analysis
     machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
     if machine is not None:
@@ -44,7 +44,7 @@ def _edited(analysis: Analysis, path: str, *edits: Edit) -> WorkspaceEdit:
 
 
 def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """A `<bt_halt>` for the state at the caret, and for all states."""
+    """Add a `<bt_halt>` to the state at the caret, or to all states."""
     document, root = analysis.document(path), machine.element
     state = _state_at(machine, place)
     if document is None or state is None:
@@ -54,12 +54,12 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
     if here:
         yield CodeAction("Add `<bt_halt>` to this state", REWRITE, known(_edited(analysis, path, *here)))
     if here and len(everywhere) > 1:
-        title = "Add `<bt_halt>` to every state that takes ticks"
+        title = "Add `<bt_halt>` to every state with `<bt_tick>`"
         yield CodeAction(title, REWRITE, known(_edited(analysis, path, *everywhere)))
 
 
 def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """Handlers for all results of an action, in the state at the caret."""
+    """Add handlers for all results of an action to the state at the caret."""
     document, state = analysis.document(path), _state_at(machine, place)
     if document is None or state is None or state.id is None or not state.element.complete:
         return
@@ -123,7 +123,7 @@ def _is_unknown(analysis: Analysis, path: str, node: TreeNode) -> bool:
 
 
 def _node_at(analysis: Analysis, path: str, place: Span) -> TreeNode | None:
-    """The node in whose start tag the caret stands."""
+    """The node whose start tag contains the caret."""
     file = analysis.tree(path)
     for tree in file.trees if file else ():
         for node in nodes(tree):

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be written at a caret.
+"""Completion at a caret.
 
-- Works on whatever is there: the place comes from the tree, or from the text where the tree cannot know it.
-- What the schemas say is said once: elements, attributes and values follow their roles, so a new element needs nothing
-  here.
-- Documentation is not made here but when somebody looks at one item (`roaml.ide.completion.document`).
+- Works on incomplete files: the place comes from the tree, or from the text where the tree has none.
+- The schemas are the source of elements, attributes and values, so a new element needs no change here.
+- Documentation is created only when an item is selected (`roaml.ide.completion.document`).
 """
 
 from __future__ import annotations
@@ -27,17 +26,17 @@ from roaml.text import Span
 __all__ = ["CompletionItem", "Completions", "ItemKind", "Rank", "complete", "document", "plain"]
 
 TRIGGERS = ("<", " ", '"', "'", "/", "=", ".", "{", "@", "_")
-"""Characters after which an editor asks by itself."""
+"""Characters after which an editor requests completion automatically."""
 
 MAX_ITEMS = 400
-"""More items than this are not sent: the list is to be asked for again when more has been typed."""
+"""The maximum number of items in one list; if there are more, the editor requests the list again after more typing."""
 
 
 def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> Completions | None:
-    """What can be written at a caret; None if nothing is known.
+    """The completions at a caret; `None` if there are none.
 
     Args:
-        trigger: the character after which the editor asks by itself, "" if a person did.
+        trigger: the character after which the editor asks automatically, "" if the user asked.
     """
     file = xml_file(snapshot.analysis, path)
     if file is None:
@@ -122,7 +121,7 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
 
 
 def _tags(request: Request, place: Content) -> list[CompletionItem]:
-    """Whole elements, where not even their `<` has been written."""
+    """Whole elements, where not even the `<` has been typed."""
     found = [
         CompletionItem(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
         for i in elements(request, place.parents, bare=True)
@@ -134,7 +133,7 @@ def _tags(request: Request, place: Content) -> list[CompletionItem]:
 
 
 def _tag(item: CompletionItem) -> str:
-    """Skeletons of several elements and of fields have their `<` themselves."""
+    """Skeletons of several elements and of fields, which include their `<`."""
     return item.snippet if item.snippet.startswith("<") else f"<{item.snippet}"
 
 
@@ -147,7 +146,7 @@ def _new_document(snapshot: Snapshot, path: str) -> Completions | None:
 
 
 def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionItem]) -> Completions:
-    """Those that what has been typed may become, the best first; no more than an editor can show at once."""
+    """The items that match the typed text, the best first; at most as many as an editor can show at once."""
     before, after = text[span.start : offset], text[offset : span.end]
     span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
     unique = {(item.label, item.insert): item for item in items}.values()
@@ -160,6 +159,6 @@ def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionIte
 
 
 def _may_become(typed: str, label: str) -> bool:
-    """Whether the characters that have been typed stand in the label in this order."""
+    """Whether the label contains the typed characters in this order."""
     rest = iter(label)
     return all(character in rest for character in typed)

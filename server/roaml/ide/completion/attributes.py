@@ -18,10 +18,10 @@ from roaml.roles import SymbolKind
 
 
 def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bare: bool) -> Iterator[CompletionItem]:
-    """What may be written between the attributes of an element.
+    """The attributes that may be inserted in a start tag.
 
     Args:
-        bare: the name comes with `=` and a value; else the name alone.
+        bare: insert the name with `=` and a value; otherwise only the name.
     """
     element, type_ = each
     is_node = request.file.grammar is BEHAVIOR_TREE and any(p.element.name == "BehaviorTree" for p in parents)
@@ -44,7 +44,7 @@ def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bar
 
 
 def _plugin_type() -> ElementType:
-    """What is known of a plugin in the compact form: the attributes that all nodes have."""
+    """The type of a plugin in the compact form: the attributes that all nodes have."""
     return BEHAVIOR_TREE.elements["Action"]
 
 
@@ -64,7 +64,7 @@ def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare:
 
 
 def _remappings(request: Request, subject: Subject, given: set[str]) -> Iterator[CompletionItem]:
-    """The variables of the tree that a subtree node stands for."""
+    """The variables of the tree of a subtree node."""
     id_ = subject.element.get("ID") if subject.element else None
     path, tree = request.trees.trees.get(id_.value if id_ else "", ("", None))
     if tree is None or id_ is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation of one suggestion, made when somebody looks at it."""
+"""The documentation of one completion item, created when it is selected."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Beginnings of new files."""
+"""The initial content of new files."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ _PROPERTIES = """\
 
 
 def documents(path: str) -> Iterator[CompletionItem]:
-    """What an empty file may become."""
+    """The documents that an empty file may become."""
     name = path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
     if path.lower().endswith(MACHINE_EXTENSIONS):
         yield _item("state machine", _MACHINE.format(name=name), Rank.BEST)

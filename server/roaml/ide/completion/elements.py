@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements that may stand at a caret, with their attributes ready to be filled in."""
+"""Elements that are allowed at a caret, with their attributes ready to be filled in."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _MAX_CHOICES = 20
 
 
 def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
-    """What may stand inside the last of `parents`.
+    """The elements that are allowed inside the last of `parents`.
 
     Args:
-        bare: the element is completed with attributes and end; else its name alone.
+        bare: complete the element with attributes and end; otherwise only its name.
     """
     if not parents:
         for name in request.file.grammar.roots:
@@ -61,7 +61,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
 
 
 def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool:
-    """Whether an element that the schema allows is not reported there at once (`tree-element-in-node`,
+    """Whether no rule reports the element immediately, although the schema allows it (`tree-element-in-node`,
     `thread-element-outside-thread`)."""
     if name.startswith("bt_"):
         sections = request.sections
@@ -72,7 +72,7 @@ def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool
 
 
 def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:
-    """A whole element: its name, the attributes that it is nothing without, and its end."""
+    """A whole element: its name, its essential attributes, and its end."""
     made = Snippet().text(type_.name)
     subject = Subject(None, type_, parents)
     for attribute in type_.attributes.values():
@@ -88,7 +88,7 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
 
 
 def likely(request: Request, subject: Subject, attribute: AttributeType) -> list[str]:
-    """What an attribute is filled with, if there are only a few choices."""
+    """The likely value of an attribute, if it has only a few choices."""
     if attribute.value == "ros-type":
         return []
     found = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
@@ -96,7 +96,7 @@ def likely(request: Request, subject: Subject, attribute: AttributeType) -> list
 
 
 def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
-    """Whether an element seldom goes without an attribute, though the schema may not require it."""
+    """Whether an element is seldom written without an attribute, although the schema may not require it."""
     if attribute.use or attribute.ignored is not None:
         return False
     if attribute.required:
@@ -108,7 +108,7 @@ def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
 
 
 def _close(made: Snippet, name: str, type_: ElementType | None) -> None:
-    """The end of a start tag, and the end tag if something usually stands in the element."""
+    """The end of a start tag, and the end tag if the element usually has content."""
     if type_ is not None and type_.text and not type_.attributes:
         made.text(">").end().text(f"</{name}>")
     elif type_ is not None and type_.node in ("action", "condition", "subtree"):
@@ -128,7 +128,7 @@ def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
 
 
 def _has_no_handle(request: Request, type_: ElementType) -> bool:
-    """Whether an element is about a ROS interface or timer of which the machine declares none."""
+    """Whether an element uses a ROS interface or timer and the machine declares none."""
     name = type_.attributes.get("name")
     wanted = set(name.refers) & HANDLES if name else set()
     declared = {declaration.kind for declaration in request.machine.declarations} if request.machine else set()
@@ -184,7 +184,7 @@ def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
 
 
 def _plugin(request: Request, name: str, grammar: Grammar, *, has_children: bool) -> str:
-    """A node in the compact form, with the ports that it needs."""
+    """A node in the compact form, with its required ports."""
     made = Snippet().text(name)
     for port in ports_of(request, name, grammar.elements.get(name)):
         if port.required:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an expression may go on with at a caret: names, members of what stands before a dot, functions.
+"""Completion in an expression: names, members of what precedes a dot, functions.
 
-What is before the caret is read as text, not as a tree: it is half-written more often than not.
+The text before the caret is read as text, not as a tree, because it is usually incomplete.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _CLOSERS = {"]": "[", ")": "("}
 
 
 class Beginning(NamedTuple):
-    """What has been written of a name: `object` is the text before the dot in front of it, None if there is none."""
+    """The typed beginning of a name: `object` is the text before the dot in front of it; `None` if there is no dot."""
 
     span: Span
     object: str | None
@@ -73,7 +73,7 @@ def _in_string(text: str) -> bool:
 
 
 def _object(text: str) -> str:
-    """The chain of names, indexes and calls that a text ends with."""
+    """The chain of names, indices and calls at the end of a text."""
     at, open_ = len(text), []
     while at > 0:
         character = text[at - 1]
@@ -90,13 +90,13 @@ def _object(text: str) -> str:
 def in_expression(
     request: Request, subject: Subject, part: str, start: int
 ) -> tuple[Span, list[CompletionItem]] | None:
-    """What may be written at the caret in an expression that begins at `start`.
+    """The completions at the caret in an expression that begins at `start`.
 
     Args:
-        part: the name of the attribute or element that holds the expression.
+        part: the name of the attribute or element that contains the expression.
 
     Returns:
-        The items and what they replace; None if nothing can be written there.
+        The items and what they replace; `None` if there are none.
     """
     begun = beginning(request.file.document.text, start, request.offset)
     if begun is None:
@@ -135,7 +135,7 @@ def in_expression(
 
 
 def initial_values(type_: Type) -> Iterator[CompletionItem]:
-    """Texts that a variable of a type may begin with."""
+    """Typical values of a type."""
     if type_ == UNKNOWN:
         return
     if type_ == BOOL:
@@ -186,7 +186,7 @@ def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> 
 
 
 def _fitting(type_: Type, wanted: Type | None) -> Rank:
-    """Values of the wanted type first; those with something of it inside, or to compare, are as usual."""
+    """Values of the required type first; those that contain it, or can be compared, keep their order."""
     if wanted is None or UNKNOWN in (wanted, type_):
         return Rank.USUAL
     return Rank.BEST if fits(type_, wanted) else Rank.USUAL
@@ -228,13 +228,13 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
 
 
 def _wanted(request: Request, subject: Subject, part: str) -> Type | None:
-    """The type that the value should have, if that is known."""
+    """The required type of the value, if it is known."""
     known = subject.type.attributes.get(part)
     if known is not None and known.value_type in ("bool", "int"):
         return BOOL if known.value_type == "bool" else INT
     around = [each.element for each in subject.parents]
     if known is not None and subject.element is not None:
-        around.append(subject.element)  # else it is the `<expr>` inside of the element that is meant
+        around.append(subject.element)  # otherwise the `<expr>` inside of the element is meant
     if not around:
         return None
     element = around[-1]

@@ -19,7 +19,7 @@ from roaml.xml_syntax import Element
 
 
 def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """For the name of a `<field>`: those not set yet first."""
+    """For the name of a `<field>`: the fields that are not set yet, first."""
     holder = subject.parents[-1].element if subject.parents else None
     statement = request.communicate(holder) if holder is not None else None
     if statement is None:
@@ -35,7 +35,7 @@ def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
 
 
 def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem]:
-    """Inside of a sending element: each field that is missing, and all of them at once."""
+    """Inside of a sending element: each missing field, and all of them at once."""
     statement = request.communicate(element)
     if statement is None:
         return
@@ -56,7 +56,7 @@ def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem
 
 
 def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
-    """For each handle that an element may send through: the element with all fields of the message."""
+    """For each handle that an element may use: the element with all fields of the message."""
     name = type_.attributes.get("name")
     if name is None or "field" not in type_.children:
         return
@@ -92,7 +92,7 @@ def _field(made: Snippet, path: str, type_: Type) -> Snippet:
 
 
 def _fields(request: Request, statement: RosSend) -> Mapping[str, tuple[Type, str]]:
-    """The dotted paths of all leaf fields, with their types and the message that they stand in."""
+    """The dotted paths of all leaf fields, with their types and the message that contains them."""
     declaration = find_handle(request.machine, statement) if request.machine else None
     part = _part(request, declaration, statement.type)
     found: dict[str, tuple[Type, str]] = {}
@@ -111,7 +111,7 @@ def _interface(request: Request, declaration: Declaration | None) -> InterfaceTy
 
 
 def _part(request: Request, declaration: Declaration | None, type_: ElementType) -> Struct | None:
-    """What an element of the type `type_` sends through a declared interface."""
+    """The part of a declared interface that an element of the type `type_` sends."""
     interface = _interface(request, declaration) if "field" in type_.children else None
     return dict(interface.parts).get(_section(type_)) if interface else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is offered at a caret, as plain data."""
+"""Completion items, as plain data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roaml.text import Span
 
 
 class ItemKind(enum.Enum):
-    """What an item stands for; editors show it as an icon."""
+    """The kind of an item; editors show it as an icon."""
 
     ELEMENT = "element"
     ATTRIBUTE = "attribute"
@@ -34,7 +34,7 @@ class ItemKind(enum.Enum):
 
 
 class Rank(enum.IntEnum):
-    """What comes first in the list; among equals the order of the list counts."""
+    """The order of the list; items of equal rank keep their order."""
 
     BEST = 0
     LIKELY = 1
@@ -45,13 +45,13 @@ class Rank(enum.IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class CompletionItem:
-    """One suggestion.
+    """One completion item.
 
     Attributes:
-        insert: what replaces the range, in the snippet syntax of LSP; "" if it is the label.
+        insert: the text that replaces the range, in the snippet syntax of LSP; "" if it is the label.
         detail: a few words beside the label, such as a type.
-        about: what documentation is about (`roaml.ide.completion.document`).
-        filter: what is compared with what has been typed; "" if it is the label.
+        about: the subject of the documentation (`roaml.ide.completion.document`).
+        filter: the text that is matched with the typed text; "" if it is the label.
     """
 
     label: str
@@ -65,13 +65,13 @@ class CompletionItem:
 
     @property
     def snippet(self) -> str:
-        """What is inserted, in snippet syntax."""
+        """The inserted text, in snippet syntax."""
         return self.insert or escaped(self.label)
 
 
 @dataclass(frozen=True, slots=True)
 class Completions:
-    """`span` is what the items replace. `incomplete` tells that there are more: ask again after more has been typed."""
+    """`span` is what the items replace. `incomplete` means that there are more: request again after more typing."""
 
     span: Span
     items: tuple[CompletionItem, ...]
@@ -87,7 +87,7 @@ _STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\
 
 
 def plain(snippet: str) -> str:
-    """The text that a snippet stands for where there are no snippets: the first choice, the default, or nothing."""
+    """The text of a snippet for editors without snippets: the first choice, the default, or nothing."""
     return _STOP.sub(lambda found: found[1] or _unescaped(found[2] or found[3] or ""), snippet)
 
 
@@ -96,7 +96,7 @@ def _unescaped(text: str) -> str:
 
 
 class Snippet:
-    """Text with places to fill in, one after the other."""
+    """Text with placeholders, in order."""
 
     def __init__(self) -> None:
         self._parts: list[str] = []
@@ -107,7 +107,7 @@ class Snippet:
         return self
 
     def stop(self, likely: Iterable[str] = ()) -> Snippet:
-        """A place to fill in; `likely` are the texts that it is probably filled with."""
+        """A placeholder; `likely` are its likely values."""
         self._stops += 1
         choices = [text for text in dict.fromkeys(likely) if text]
         if not choices:
@@ -120,7 +120,7 @@ class Snippet:
         return self
 
     def end(self) -> Snippet:
-        """Where the caret is left."""
+        """The final position of the caret."""
         self._parts.append("$0")
         return self
 

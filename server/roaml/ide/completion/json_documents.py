@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be written in property files and in struct declarations in JSON: keys, operators, names, whole formulas."""
+"""Completion in property files and in struct declarations in JSON: keys, operators, names, whole formulas."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCT
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[CompletionItem]] | None:
-    """What can be written at a caret, and what it replaces; None in files of other kinds, or where nothing is known."""
+    """The completions at a caret, and what they replace; `None` in other files, or if there are none."""
     kind = next(analysis.kind_in(path, system) for system in analysis.systems_of(path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
@@ -79,7 +79,7 @@ def _place(grammar: JsonGrammar, value: JsonValue, text: str, offset: int) -> _P
 
 
 def _end(member: Member, text: str) -> int:
-    """Where a member ends: one without a value reaches to the next line or bracket."""
+    """The end of a member; one without a value extends to the next line or bracket."""
     if member.value is not None and member.value.end > member.key_end:
         return member.value.end
     end = member.key_end
@@ -173,7 +173,7 @@ def _names(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
 
 
 def _operators(grammar: JsonGrammar, kind: str) -> Iterator[CompletionItem]:
-    """An object for each operator, with all that it needs."""
+    """An object for each operator, with all its required members."""
     for operator, described in grammar.operators(kind):
         if operator in _ALIASES:
             continue
@@ -225,7 +225,7 @@ _SELDOM = frozenset(
         *("call", "nondet", "der"),
     )
 )
-"""Operators that hardly any property has."""
+"""Operators that are rarely used in properties."""
 
 
 def _property(label: str, detail: str, path: Callable[[Snippet], Snippet]) -> CompletionItem:

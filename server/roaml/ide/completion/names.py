@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that an attribute may refer to, and names that are used before anyone defines them."""
+"""The names that an attribute may refer to, and names that are used but not defined."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SHOWN = 3
 
 
 def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
-    """The things of a kind of symbol that `subject` may name."""
+    """The symbols of a kind that `subject` may refer to."""
     if kind in HANDLES:
         yield from _handles(request, kind)
     elif kind in _PROVIDERS:
@@ -30,7 +30,7 @@ def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[C
 
 
 def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
-    """Names for a new thing: those that are used as if it were there already."""
+    """Names for a new definition: those that are used but not defined."""
     if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
     elif kind is SymbolKind.PARAMETER:
@@ -83,7 +83,7 @@ def _declared(declaration: Declaration) -> str:
 
 
 def _ports(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """Of a plugin, those that can be read or written there; in a tree file, those of the plugin that is described."""
+    """Ports of a plugin that can be read or written there; in a tree file, those of the plugin that is described."""
     if request.machine is None:
         id_ = subject.parents[-1].element.get("ID") if subject.parents else None
         path, outline = plugins(request).get(id_.value if id_ else "", ("", None))
@@ -117,7 +117,7 @@ def _unknown_plugins(system: System) -> Iterator[str]:
 
 
 def _missing_ports(request: Request) -> Iterator[CompletionItem]:
-    """Ports that trees set for this plugin and it does not declare."""
+    """Ports that trees set for this plugin and that it does not declare."""
     machine = request.machine
     if machine is None or machine.name is None:
         return
@@ -128,18 +128,18 @@ def _missing_ports(request: Request) -> Iterator[CompletionItem]:
                 for key, _ in instance.ports:
                     if key not in known:
                         yield CompletionItem(key, ItemKind.PORT, detail="set in the tree", rank=Rank.BEST)
-    yield CompletionItem(CHILDREN_COUNT, ItemKind.PORT, detail="how many children the node has", rank=Rank.LATE)
+    yield CompletionItem(CHILDREN_COUNT, ItemKind.PORT, detail="the number of children of the node", rank=Rank.LATE)
 
 
 # --------------------------------------------------------------------- events
 
 
 def _events_received(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """Events to wait for: those that someone sends."""
+    """Events to wait for: those that a machine sends."""
     for system in request.systems:
         for event in system.events.values():
             senders = dict.fromkeys(automaton.name for automaton, _ in event.senders)
-            detail = f"from {_some(senders)}" if senders else "nobody sends it"
+            detail = f"from {_some(senders)}" if senders else "never sent"
             yield _event(system.path, event.name, detail, sound=bool(senders))
     if not request.systems:
         sent = (s for chart in (request.machine.charts if request.machine else ()) for s in chart.statements)
@@ -148,11 +148,11 @@ def _events_received(request: Request, subject: Subject) -> Iterator[CompletionI
 
 
 def _events_to_send(request: Request) -> Iterator[CompletionItem]:
-    """Events that someone waits for go first."""
+    """Events to send: those that a machine waits for, first."""
     for system in request.systems:
         for event in system.events.values():
             receivers = dict.fromkeys(automaton.name for automaton, _ in event.receivers)
-            detail = f"to {_some(receivers)}" if receivers else "nobody waits for it"
+            detail = f"to {_some(receivers)}" if receivers else "never received"
             yield _event(system.path, event.name, detail, sound=bool(receivers))
     if not request.systems:
         states = (state for chart in (request.machine.charts if request.machine else ()) for state in chart.states)
@@ -197,7 +197,7 @@ def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[Completi
     def provide(request: Request, subject: Subject) -> Iterator[CompletionItem]:
         element = subject.element
         if subject.type.text and subject.parents:
-            element = subject.parents[-1].element  # `<topic>` stands in the declaration
+            element = subject.parents[-1].element  # `<topic>` is inside of the declaration
         type_ = element.get("type") if element else None
         yield from channels(request, kind, type_.value if type_ else "")
 
@@ -238,7 +238,7 @@ def _plugin_names(request: Request, subject: Subject) -> Iterator[CompletionItem
 
 
 def port_list(outline: MachineOutline) -> str:
-    """The ports of a plugin in a line."""
+    """The ports of a plugin in one line."""
     return ", ".join(
         f"{port.direction} {port.key}: {port.type}" for port in outline.ports if port.key != CHILDREN_COUNT
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters that an event can carry: those that receivers read or other senders send."""
+"""The parameters of an event: those that receivers read or other senders send."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from roaml.roles import SymbolKind
 
 
 def parameter_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """For the name of a `<param>`: what the `<send>` around the caret does not send yet."""
+    """For the name of a `<param>`: the parameters that the `<send>` around the caret does not send yet."""
     for statement in request.chart.statements if request.chart else ():
         if isinstance(statement, Send) and any(each.element is statement.element for each in subject.parents):
             yield from _missing(request, statement, subject)
 
 
 def parameters_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """Inside of a `<send>`: each parameter that is missing, and all of them at once."""
+    """Inside of a `<send>`: each missing parameter, and all of them at once."""
     for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
             continue

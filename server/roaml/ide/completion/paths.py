@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths of files in the workspace, as a file beside them writes them."""
+"""Paths of files in the workspace, relative to a file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BY_TYPE = {
 
 
 def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """The files that may be meant; those that nobody in this file names yet go first."""
+    """The files that may be meant; those that this file does not refer to yet, first."""
     analysis = request.analysis
     wanted, plugin = _wanted(subject)
     named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}
@@ -46,7 +46,7 @@ def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
 
 
 def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:
-    """What the file should be, and whether, if it is a machine, a plugin (None: either will do)."""
+    """The expected kind of the file, and whether a machine must be a plugin (`None`: either)."""
     if subject.type.name == "include":
         return (FileKind.TREE,), None
     section = subject.parents[-1].element.name if subject.parents else ""

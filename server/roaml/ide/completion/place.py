@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is being written at a caret in an XML document: a tag, an attribute, a value or content.
+"""The place of a caret in an XML document: a tag, an attribute, a value or content.
 
-The tree has the places; only what the parser cannot give a place, a lone `<` or `</`, is looked for in the text.
+The tree contains the places; only a lone `<` or `</`, to which the parser assigns no place, is searched for in the
+text.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StartTag:
-    """The name of a start tag, `span`, perhaps empty. `bare` tells that nothing of the tag stands behind the name."""
+    """The name of a start tag; `span` may be empty. `bare` means that nothing of the tag follows the name."""
 
     parents: tuple[Typed, ...]
     span: Span
@@ -31,7 +32,7 @@ class StartTag:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EndTag:
-    """The name of an end tag; `name` is the element that is open there, "" if none is."""
+    """The name of an end tag; `name` is the element that is open there, "" if there is none."""
 
     name: str
     span: Span
@@ -72,7 +73,7 @@ Place: TypeAlias = StartTag | EndTag | AttributeName | AttributeValue | Content
 
 
 def place_at(file: XmlFile, offset: int) -> Place | None:
-    """What is being written at a caret; None in comments, CDATA sections and instructions."""
+    """The place of a caret; `None` in comments, CDATA sections and instructions."""
     document = file.document
     path = tuple(path_at(file, offset))
     if _is_skipped(document, path, offset):
@@ -97,7 +98,7 @@ def _is_skipped(document: Document, path: tuple[Typed, ...], offset: int) -> boo
 
 
 def _in_start_tag(text: str, path: tuple[Typed, ...], offset: int) -> tuple[Place | None] | None:
-    """What stands in the start tag at the caret; None if the caret is not in it."""
+    """The place in the start tag at the caret; `None` if the caret is not in it."""
     each, parents = path[-1], path[:-1]
     element = each.element
     end = element.open_span.end

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ports of tree nodes: which there are, and what they may hold."""
+"""The ports of tree nodes, and their possible values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class SettablePort:
-    """A port that a node may set. `about` leads to its documentation."""
+    """A port that a node may set. `about` refers to its documentation."""
 
     key: str
     type: str
@@ -40,7 +40,7 @@ class SettablePort:
 
 
 def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[SettablePort, ...]:
-    """The ports of the plugin called `name`, or of the node of BehaviorTree.CPP that `type_` describes."""
+    """The ports of the plugin with this name, or of the node of BehaviorTree.CPP that `type_` describes."""
     known = request.forest.node(name) if request.forest else None
     if known is not None:
         return tuple(_of_library(known))
@@ -79,7 +79,7 @@ def _of_library(known: Node) -> Iterator[SettablePort]:
 
 
 def node_name(element: Element) -> str:
-    """What a node is an instance of."""
+    """The plugin of a node."""
     if element.name in (*EXPLICIT, *SUBTREES):
         id_ = element.get("ID")
         return id_.value if id_ else ""
@@ -91,7 +91,8 @@ def _type_of(request: Request, name: str) -> ElementType | None:
 
 
 def port_values(request: Request, subject: Subject, key: str) -> list[CompletionItem]:
-    """What the port `key` of a node may hold: blackboard variables, and constants where its type tells them."""
+    """The possible values of the port `key` of a node: blackboard variables, and constants if its type determines
+    them."""
     element = subject.element
     if element is None or not _in_tree(subject):
         return []
@@ -161,7 +162,7 @@ def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> I
 
 
 def ports_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """As attributes: each port that is not set, and all that must be set at once."""
+    """As attributes: each port that is not set, and all required ones at once."""
     element = subject.element
     assert element is not None
     given = {attribute.name for attribute in element.attributes}
@@ -183,5 +184,5 @@ def ports_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]
 
 
 def add_port(snippet: Snippet, port: SettablePort) -> None:
-    """`key="…"`; an output goes to a variable of its own name unless told otherwise."""
+    """`key="…"`; the default of an output is a variable with its own name."""
     snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction == "out" else [port.default]).text('"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a completion is asked about: a caret in an XML file, and what the file is part of."""
+"""The context of a completion: a caret in an XML file, and the systems of the file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from roaml.xml_syntax import Element
 
 
 class Subject(NamedTuple):
-    """The element whose attribute or content is written; `element` is None while it is only being proposed."""
+    """The element whose attribute or content is completed; `element` is `None` while it is only being proposed."""
 
     element: Element | None
     type: ElementType
@@ -29,7 +29,7 @@ class Subject(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Which element of the grammar it is, as `roaml.ide.completion.document` reads it."""
+        """The element of the grammar, as `roaml.ide.completion.document` reads it."""
         return f"{self.parents[-1].element.name if self.parents else ''}/{self.type.name}"
 
 
@@ -46,19 +46,19 @@ class Request:
 
     @cached_property
     def system_path(self) -> str | None:
-        """The system that types are looked up in: of several the first."""
+        """The system in which types are resolved; if there are several, the first."""
         return self.analysis.systems_of(self.path)[0]
 
     @cached_property
     def systems(self) -> tuple[System, ...]:
-        """The systems that the file belongs to; a system file to its own."""
+        """The systems of the file; for a system file, itself."""
         paths = (self.path, *self.analysis.systems_of(self.path))
         found = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
         return tuple(system for system in found if system is not None)
 
     @cached_property
     def sections(self) -> frozenset[str]:
-        """The sections of system files in which the file is listed."""
+        """The sections of system files that list the file."""
         listed = (each for system in self.systems for each in self.analysis.listed(system.path))
         return frozenset(each.input.section for each in listed if each.path == self.path)
 

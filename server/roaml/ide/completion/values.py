@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an attribute's value, or the text of an element, may be: as its roles in the schema say."""
+"""The possible values of an attribute, or of the text of an element, according to their roles in the schema."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _EXPRESSIONS = ("expression", "location")
 
 
 def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """What the value of the attribute `name` may be, and what of `span`, the value, is replaced."""
+    """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
     known = subject.type.attributes.get(name)
     if known is not None and known.value in _EXPRESSIONS:
         return in_expression(request, subject, name, span.start)
@@ -41,7 +41,7 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
 
 
 def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[CompletionItem]:
-    """What the whole value of an attribute may be."""
+    """The possible whole values of an attribute."""
     for choice in attribute.simple.choices:
         about = Symbol(
             f"{subject.key}/{attribute.name}", SymbolKind.ENUMERATION_VALUE, choice.value, request.file.grammar.schema
@@ -58,7 +58,7 @@ def candidates(request: Request, subject: Subject, attribute: AttributeType) -> 
 
 
 def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """What the text of an element may be."""
+    """The possible texts of an element."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
         return in_expression(request, subject, type_.name, span.start)
@@ -106,7 +106,7 @@ def types(request: Request) -> Iterator[CompletionItem]:
 
 
 def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
-    """All ROS types of a kind that can be found; those that the file's systems use go first."""
+    """All ROS types of a kind that can be found; those that the file's systems use, first."""
     if kind not in ("msg", "srv", "action"):
         return
     ros_kind: Kind = kind  # type: ignore[assignment]
@@ -120,22 +120,22 @@ def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
 
 
 def _constants(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """What a variable may begin with."""
+    """Typical initial values of a variable."""
     yield from initial_values(_data_type(request, subject))
 
 
 def _bounds(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """The least and the greatest value of an integer type."""
+    """The smallest and the greatest value of an integer type."""
     inner, _ = unwrap(_data_type(request, subject))
     for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
         yield CompletionItem(str(number), ItemKind.VALUE, detail=str(inner))
 
 
 def _data_type(request: Request, subject: Subject) -> Type:
-    """The declared type of the variable that a value is for."""
+    """The declared type of the variable of a value."""
     element = subject.element
     if subject.type.name != "data" and subject.parents:
-        element = subject.parents[-1].element  # `<expr>` stands in the variable
+        element = subject.parents[-1].element  # `<expr>` is inside of the variable
     type_ = type_of(element.get("type")) if element is not None else None
     if type_ is None or type_.name is None:
         return UNKNOWN
@@ -146,7 +146,7 @@ def _data_type(request: Request, subject: Subject) -> Type:
 
 
 def _children(request: Request) -> Iterator[CompletionItem]:
-    """The indexes of the children that the plugin's nodes have, and int variables."""
+    """The indices of the children of the plugin's nodes, and integer variables."""
     machine = request.machine
     if machine is None:
         return
@@ -164,7 +164,7 @@ def _children(request: Request) -> Iterator[CompletionItem]:
 
 
 def _remaining_probability(subject: Subject) -> Iterator[CompletionItem]:
-    """What is missing to 1."""
+    """The remaining probability to 1."""
     if not subject.parents:
         return
     others = [child for child in subject.parents[-1].element.elements if child is not subject.element]
@@ -177,4 +177,4 @@ def _remaining_probability(subject: Subject) -> Iterator[CompletionItem]:
             return
     rest = round(1 - given, 9)
     if 0 < rest <= 1:
-        yield CompletionItem(f"{rest:g}", ItemKind.VALUE, detail="what is missing to 1", rank=Rank.BEST)
+        yield CompletionItem(f"{rest:g}", ItemKind.VALUE, detail="the remaining probability", rank=Rank.BEST)

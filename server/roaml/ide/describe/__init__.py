@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a named thing, as Markdown: the one text that hover, completion and hints show of it.
+"""The description of a symbol, as Markdown, which hover, completion and hints share.
 
-What the languages say by themselves (elements, attributes, functions) is in `describe_language`, ROS definitions are in
-`describe_ros`.
+`describe_language` describes parts of the languages (elements, attributes, functions), `describe_ros` ROS definitions.
 """
 
 from __future__ import annotations
@@ -16,11 +15,11 @@ from roaml.roles import SymbolKind
 
 
 def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
-    """What is known of a symbol; "" if nothing is.
+    """The description of a symbol; "" if there is none.
 
     Args:
-        symbol: as occurrences have it (`roaml.ide.names.occurrence`).
-        written: how it is spelled where it is asked about, if that matters (a topic may begin with a slash).
+        symbol: as in occurrences (`roaml.ide.names.occurrence`).
+        written: its spelling at the requested place, if that matters (a topic may begin with a slash).
     """
     match symbol.kind:
         case SymbolKind.VARIABLE:

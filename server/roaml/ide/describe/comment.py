@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an author wrote about an element: the comment before it or, in the same line, behind it."""
+"""The comment of an author about an element, before it or after it on the same line."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _LICENCE = re.compile(r"SPDX-|Copyright|Licen[cs]ed under", re.IGNORECASE)
 
 
 def remark(document: Document, element: Element) -> str:
-    """The text of the comment that belongs to `element`; "" if it has none.
+    """The text of the comment about `element`; "" if it has none.
 
-    A comment belongs to what stands behind it, without an empty line in between, unless something else stands before it
-    in its line. The types in comments (`TYPE level:int16`) and licences are no remarks.
+    A comment is about the element that follows it, without an empty line in between, unless something else precedes it
+    on its line. The types in comments (`TYPE level:int16`) and licences are not included.
     """
     around = document.path_at(element.span.start + 1)
     siblings: Sequence[Node] = around[-2].nodes if len(around) > 1 else document.nodes

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the languages themselves say, as Markdown: elements, attributes, values, functions, operators.
+"""Descriptions of parts of the languages, as Markdown: elements, attributes, values, functions, operators.
 
-Everything is a pure function of an entry of a grammar or of a table, so completion, hover and signature help say the
-same.
+All are pure functions of an entry of a grammar or of a table, so completion, hover and signature help show the same
+text.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from roaml.language import AttributeType, ElementType, PortType, ValueChoice
 _WANTED = {
     "expression": "an expression",
     "constant": "a constant expression",
-    "location": "what is written to",
+    "location": "the target that is written",
 }
 _ROS = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 
 
 def element(type_: ElementType) -> str:
-    """An element: how it begins, what it does, which event variables are known in it."""
+    """An element: its syntax, its meaning, the event variables in it."""
     if type_.node and type_.node != "subtree":
         return builtin_node(type_)
     required = "".join(f' {a.name}="…"' for a in type_.attributes.values() if a.required)
@@ -31,12 +31,12 @@ def element(type_: ElementType) -> str:
     return paragraphs(
         code(f"<{type_.name}{required}>", "xml"),
         type_.documentation,
-        lines(_successor(type_.use), f"Known in it: {known}" if known else ""),
+        lines(_successor(type_.use), f"Available in it: {known}" if known else ""),
     )
 
 
 def builtin_node(type_: ElementType) -> str:
-    """A node that BehaviorTree.CPP brings along: its ports and what it does."""
+    """A node of BehaviorTree.CPP: its ports and its behaviour."""
     ports = "".join(f"\n  {port(each.name, each.port)}" for each in type_.ports if each.port)
     cannot = "" if type_.translated else "It cannot be translated."
     kind = "node" if type_.node == "subtree" else f"{type_.node} node".strip()
@@ -49,13 +49,13 @@ def builtin_node(type_: ElementType) -> str:
 
 
 def port(key: str, type_: PortType) -> str:
-    """A port of such a node, in one line of code."""
+    """A port of a node of BehaviorTree.CPP, in one line of code."""
     default = f" = {type_.default}" if type_.default else ""
     return f"{type_.direction} {key} : {type_.type}{default}"
 
 
 def attribute(type_: AttributeType) -> str:
-    """An attribute: what its value is, what it means, which values there are if there are few."""
+    """An attribute: the kind of its value, its meaning, its values if there are few."""
     if type_.port:
         must = "must be set" if type_.port.required else ""
         constant = "must be a constant" if type_.port.constant else ""
@@ -78,7 +78,7 @@ def attribute(type_: AttributeType) -> str:
 
 
 def _wanted(type_: AttributeType) -> str:
-    """What the value of an attribute is, in words."""
+    """A phrase for the value of an attribute."""
     if type_.value == "ros-type":
         return _ROS.get(type_.value_type, "")
     wanted = _WANTED.get(type_.value, "")
@@ -110,7 +110,7 @@ def function(found: Function) -> str:
 
 
 def signature(found: Function) -> str:
-    """A function of `Math` with its parameters, those that may be left out with `?`, and its result."""
+    """A function of `Math` with its parameters, `?` after the optional ones, and its result."""
     needed = len(found.parameters) - found.optional
     parameters = (f"{each}{'?' if i >= needed else ''}" for i, each in enumerate(found.parameters))
     result = {"same": "int or float", "real": "float"}.get(found.result, found.result)
@@ -123,34 +123,40 @@ def math() -> str:
 
 
 _OPERATORS: Mapping[Operator | UnaryOperator, tuple[str, str]] = {
-    Operator.OR: ("bool || bool : bool", "True if one of both is."),
-    Operator.AND: ("bool && bool : bool", "True if both are."),
-    Operator.EQUAL: ("x == y : bool", "Whether both are equal."),
-    Operator.NOT_EQUAL: ("x != y : bool", "Whether both differ."),
-    Operator.LESS: ("number < number : bool", "Whether the left one is less."),
-    Operator.LESS_EQUAL: ("number <= number : bool", "Whether the left one is less or equal."),
-    Operator.GREATER: ("number > number : bool", "Whether the left one is greater."),
-    Operator.GREATER_EQUAL: ("number >= number : bool", "Whether the left one is greater or equal."),
-    Operator.ADD: ("number + number : int or float", "The sum: an int if both are."),
-    Operator.SUBTRACT: ("number - number : int or float", "The difference: an int if both are."),
-    Operator.MULTIPLY: ("number * number : int or float", "The product: an int if both are."),
+    Operator.OR: ("bool || bool : bool", "True if at least one operand is true."),
+    Operator.AND: ("bool && bool : bool", "True if both operands are true."),
+    Operator.EQUAL: ("x == y : bool", "Whether both operands are equal."),
+    Operator.NOT_EQUAL: ("x != y : bool", "Whether the operands differ."),
+    Operator.LESS: ("number < number : bool", "Whether the left operand is less than the right one."),
+    Operator.LESS_EQUAL: (
+        "number <= number : bool",
+        "Whether the left operand is less than or equal to the right one.",
+    ),
+    Operator.GREATER: ("number > number : bool", "Whether the left operand is greater than the right one."),
+    Operator.GREATER_EQUAL: (
+        "number >= number : bool",
+        "Whether the left operand is greater than or equal to the right one.",
+    ),
+    Operator.ADD: ("number + number : int or float", "The sum: an int if both operands are ints."),
+    Operator.SUBTRACT: ("number - number : int or float", "The difference: an int if both operands are ints."),
+    Operator.MULTIPLY: ("number * number : int or float", "The product: an int if both operands are ints."),
     Operator.DIVIDE: ("number / number : float", "The quotient, never rounded: `1 / 2` is `0.5`."),
     Operator.REMAINDER: ("number % number : int or float", "The remainder of the division."),
     UnaryOperator.NEGATE: ("-number : int or float", "The negative."),
     UnaryOperator.PLUS: ("+number : int or float", "The number itself."),
-    UnaryOperator.NOT: ("!bool : bool", "True if the operand is not."),
+    UnaryOperator.NOT: ("!bool : bool", "True if the operand is false."),
 }
 
 
 def operator(found: Operator | UnaryOperator) -> str:
-    """An operator of expressions: what it takes and gives."""
+    """An operator of expressions: its operands and its result."""
     head, text = _OPERATORS[found]
     return paragraphs(code(head), text)
 
 
 def conditional() -> str:
     """`? :`"""
-    return paragraphs(code("bool ? x : y"), "The first of both where the condition holds, else the second.")
+    return paragraphs(code("bool ? x : y"), "The first value if the condition holds, otherwise the second.")
 
 
 EVENT_VARIABLES = {
@@ -160,14 +166,14 @@ EVENT_VARIABLES = {
     "_goal": "The goal that has arrived.",
     "_feedback": "The feedback that has arrived.",
     "_wrapped_result": "The result that has arrived, with its code.",
-    "_action": "The goal that this is about.",
+    "_action": "The goal of this event.",
     "_event": "The event that has arrived.",
-    "_bt": "The answer of the child.",
+    "_bt": "The status that the child has returned.",
 }
 
 
 def event_variable(called: str, type_: Type) -> str:
-    """An event variable, `_msg` for example, with what is in it where it is used."""
+    """An event variable, such as `_msg`, with its content at the place of its use."""
     inner, _ = unwrap(type_)
     of = f" : {inner.name}" if isinstance(inner, Struct) and inner.name else ""
     rows = _rows(inner) if isinstance(inner, Struct) else []
@@ -180,15 +186,15 @@ def event_data(found: Struct) -> str:
 
 
 def status(called: str, value: int) -> str:
-    """An answer of a tree node, where it stands for a number."""
-    return paragraphs(code(f"{called} = {value}"), "An answer of a node of the tree.")
+    """A status of a tree node, where it represents a number."""
+    return paragraphs(code(f"{called} = {value}"), "The status of a tree node.")
 
 
 def length(of: str) -> str:
     """`.length`"""
     return paragraphs(
         code("length : int"),
-        f"How many elements {name(of)} has now. Assigning a smaller number shortens it, 0 empties it.",
+        f"The current number of elements of {name(of)}. Assigning a smaller number shortens it, 0 empties it.",
     )
 
 
@@ -196,7 +202,7 @@ def length(of: str) -> str:
 
 
 def value_range(type_: Type) -> str:
-    """The least and greatest value of the numbers in a type, as a clause; "" if it has no such."""
+    """The smallest and greatest value of the numbers in a type, as a clause; "" if it has none."""
     inner, _ = unwrap(type_)
     if not isinstance(inner, Scalar) or inner.name not in INTEGER_RANGES:
         return ""
@@ -205,7 +211,7 @@ def value_range(type_: Type) -> str:
 
 
 def number(value: int) -> str:
-    """With a thin gap between groups of three digits, as physicists write it."""
+    """With a thin space between groups of three digits."""
     return f"{value:,}".replace(",", "\u202f").replace("-", "−") if abs(value) >= 10000 else str(value)
 
 
@@ -220,15 +226,15 @@ def type_(type_: Type) -> str:
 
 
 def array_size(bounds: tuple[int | None, ...]) -> str:
-    """How many elements an array has, as a clause; "" of no array."""
+    """The number of elements of an array, as a clause; "" if it is not an array."""
     if not bounds:
         return ""
     size = " times ".join("`max_array_size`" if bound is None else str(bound) for bound in bounds)
-    return f"up to {size} elements"
+    return f"at most {size} elements"
 
 
 def members(struct: Struct, most: int = 24) -> str:
-    """The members of a struct, message or event, each in a line."""
+    """The members of a struct, message or event, one per line."""
     head = " ".join(filter(None, (struct.what, struct.name if struct.name not in struct.what else "")))
     return "\n".join([head, *_rows(struct, most)])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that belong to one state machine, as Markdown: variables, states, handles, ports, the machine itself."""
+"""Names that are local to one state machine, as Markdown: variables, states, handles, ports, the machine itself."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _KINDS = {
 
 
 def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
-    """The automata that a machine, or one of its threads, becomes in all its systems."""
+    """The automata of a machine, or of one of its threads, in all its systems."""
     machine = analysis.machine(path)
     threads = [thread for thread in machine.threads if thread.chart.scope == scope] if machine and scope else []
     found: dict[str, None] = {}
@@ -95,7 +95,7 @@ def _sentence(text: str) -> str:
 
 
 def variable(analysis: Analysis, symbol: Symbol) -> str:
-    """A variable: type, range, initial value, what it gets, how often it is used, what it becomes."""
+    """A variable: type, range, initial value, assigned values, number of uses, names in the translation."""
     machine = analysis.machine(symbol.path)
     found = {(c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id}
     data = found.get((symbol.scope, symbol.name))
@@ -126,7 +126,7 @@ def _variable(analysis: Analysis, symbol: Symbol, data: Data | None, typed: Type
 
 
 def inferred_type(typed: TypedMachine, scope: str, name: str) -> Type:
-    """The type that the values assigned to a variable have; unknown if there are none or they do not agree."""
+    """The type that the values assigned to a variable have; unknown if there are none or they differ."""
     found: Type = UNKNOWN
     for value in typed.values:
         if value.use is ValueUse.ASSIGNED and value.place.chart.scope == scope and value.target == name:
@@ -153,12 +153,12 @@ def _bounds(data: Data | None) -> str:
         (each.text if isinstance(each, Expression) else "" for each in (data.lower, data.upper)) if data else ("", "")
     )
     if lower and upper:
-        return f"meant from {name(lower)} to {name(upper)}"
-    return f"meant from {name(lower)} up" if lower else f"meant up to {name(upper)}" if upper else ""
+        return f"intended range {name(lower)} to {name(upper)}"
+    return f"intended minimum {name(lower)}" if lower else f"intended maximum {name(upper)}" if upper else ""
 
 
 def _gets(typed: TypedMachine, symbol: Symbol) -> str:
-    """What is assigned to a variable or to a part of it."""
+    """The values that are assigned to a variable or to a part of it."""
     found: dict[str, None] = {}
     target: Expression | None = None
     for value in typed.values:
@@ -207,7 +207,7 @@ def _becomes(analysis: Analysis, symbol: Symbol, type_: Type) -> str:
 
 
 def state(analysis: Analysis, symbol: Symbol) -> str:
-    """A state: where its machine is when it comes here, and where it goes, on which occasions."""
+    """A state: the transitions to it and from it, with their triggers."""
     machine = analysis.machine(symbol.path)
     chart = next((each for each in machine.charts if each.scope == symbol.scope), None) if machine else None
     if machine is None or chart is None:
@@ -220,15 +220,15 @@ def state(analysis: Analysis, symbol: Symbol) -> str:
         code(f"{'initial ' if initial else ''}state {symbol.name}"),
         _remark(analysis, symbol.path, found.element) if found else "Not defined",
         lines(
-            f"**From** {incoming}" if incoming else "" if initial else "Nothing leads here",
-            f"**To** {outgoing}" if outgoing else "Nothing leads away",
+            f"**From** {incoming}" if incoming else "" if initial else "No transition leads here",
+            f"**To** {outgoing}" if outgoing else "No transition leads away",
             f"In JANI location {name(symbol.name)} of {names(owners, 3)}" if owners and found else "",
         ),
     )
 
 
 def _edges(chart: Chart, of: str, *, into: bool) -> str:
-    """The other ends of a state's transitions, each with the occasions."""
+    """The other ends of a state's transitions, each with the triggers."""
     ends: dict[str, dict[str, None]] = {}
     for each in chart.states:
         source = each.id.value if each.id else ""
@@ -239,7 +239,7 @@ def _edges(chart: Chart, of: str, *, into: bool) -> str:
                     share = f" ({target.probability.value})" if target.probability else _rest(handler)
                     ends.setdefault(source if into else to, {})[f"{occasion(handler)}{share}"] = None
     return " · ".join(f"{name(end)} on {_any(found)}" for end, found in ends.items()).replace(
-        " on by itself", " by itself"
+        " without an event", " by itself"
     )
 
 
@@ -253,7 +253,7 @@ def _any(occasions: Iterable[str]) -> str:
 
 
 def occasion(handler: Handler) -> str:
-    """What a transition waits for, in words."""
+    """A phrase for the trigger of a transition."""
     if handler.event is not None:
         return name(handler.event.value)
     words = _OCCASIONS[handler.trigger]
@@ -269,7 +269,7 @@ _PROTOCOL = {
     ProtocolPart.BT_STATUS: "response",
     ProtocolPart.BT_HALTED: "halt_response",
 }
-"""What a plugin receives from its parent, and answers -> the end of the event's name."""
+"""The events between a plugin and its parent -> the end of the event's name."""
 
 
 def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
@@ -285,7 +285,7 @@ def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
 
 
 def handle(analysis: Analysis, symbol: Symbol) -> str:
-    """A declared ROS interface or timer: what it is connected with in the systems of its machine."""
+    """A declared ROS interface or timer, and its connections in the systems of its machine."""
     found = declaration(analysis, symbol)
     if found is None:
         return ""
@@ -295,7 +295,7 @@ def handle(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def declaration(analysis: Analysis, symbol: Symbol) -> Declaration | None:
-    """The declaration that a handle stands for."""
+    """The declaration of a handle."""
     machine = analysis.machine(symbol.path)
     wanted = (each for each in machine.declarations if each.kind == symbol.kind) if machine else iter(())
     return next((each for each in wanted if each.handle and each.handle.value == symbol.name), None)
@@ -327,7 +327,7 @@ def _from_port(value: Name | PortRead | None, what: str) -> str:
 
 
 def rate(text: str) -> str:
-    """How often a timer ticks, from its rate in Hz as written."""
+    """The period of a timer, from its rate in Hz as written."""
     try:
         hertz = float(text)
     except ValueError:
@@ -338,7 +338,7 @@ def rate(text: str) -> str:
 
 
 def duration(seconds: float) -> str:
-    """A time with the unit that makes it readable."""
+    """A duration with a readable unit."""
     for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
         if seconds * factor >= 1:
             return f"{seconds * factor:.4g} {unit}"
@@ -346,7 +346,7 @@ def duration(seconds: float) -> str:
 
 
 def port(analysis: Analysis, symbol: Symbol) -> str:
-    """A port of a plugin: type, default, and what the nodes of the tree put there."""
+    """A port of a plugin: type, default, and its values in the nodes of the tree."""
     machine = analysis.machine(symbol.path)
     declared = next((p for p in machine.ports if p.key and p.key.value == symbol.name), None) if machine else None
     if declared is None:
@@ -377,13 +377,13 @@ _MAX_VALUES = 5
 
 
 def node_id(automaton: SystemAutomaton) -> str:
-    """A node of the executed tree as its events call it, with its name."""
+    """A node of the executed tree as its events name it, with its name."""
     assert automaton.instance is not None
     return f"bt_{automaton.instance.number}"
 
 
 def machine(analysis: Analysis, symbol: Symbol) -> str:
-    """A machine: its ports and interfaces, who it is in its systems, its file."""
+    """A machine: its ports and interfaces, its automata in its systems, its file."""
     found = analysis.machine(symbol.path)
     if found is None:
         return ""

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pieces of Markdown, and Markdown for those who cannot show it.
+"""Building blocks of Markdown, and Markdown as plain text.
 
-Names and comments may hold anything that somebody typed: they are always put so that they cannot change what is around
-them. There are editors that show HTML in Markdown, load its pictures and follow its links; so no text of a file becomes
-a tag, a picture or a link.
+Names and comments may contain any text, so they are escaped and cannot change what is around them. Some editors show
+HTML in Markdown, load images and follow links; no text of a file becomes a tag, an image or a link.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import re
 from collections.abc import Iterable
 
 _MAX_NAMES = 6
-"""More names than this are counted, not listed."""
+"""The maximum number of names in a list; further names are counted."""
 
 _TICKS = re.compile(r"`+")
 _FENCE = re.compile(r"^(`{3,})[^`\n]*\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
@@ -47,7 +46,8 @@ def name(text: str) -> str:
 
 
 def names(found: Iterable[str], most: int = _MAX_NAMES) -> str:
-    """Names with commas, each once; the last of very many are only counted. "" if there are none."""
+    """Names with commas, without duplicates; at the end of a long list the rest is only counted. "" if there are
+    none."""
     different = list(dict.fromkeys(found))
     shown = different[:most] if len(different) > most + 1 else different
     rest = len(different) - len(shown)
@@ -61,13 +61,13 @@ def file(path: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, a picture or a link."""
+    """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, an image or a link."""
     paragraphs = re.split(r"\n\s*\n", text.strip())
     return "\n\n".join(_tame(" ".join(each.split())) for each in paragraphs)
 
 
 def _tame(paragraph: str) -> str:
-    """A paragraph of a user. Escapes would be seen in code, so code that needs them is shown as text."""
+    """A paragraph of a user. Escapes would be visible in code, so code that needs them is shown as text."""
     parts: list[str] = []
     text = ""
     done = 0
@@ -88,22 +88,22 @@ def _without_marks_of_users(text: str) -> str:
 
 
 def _without_tags(text: str) -> str:
-    """As an entity: a backslash before `<` is not known to all readers of Markdown."""
+    """`<` as an entity: not all readers of Markdown support a backslash before it."""
     return _ENTITY.sub("&amp;", text).replace("<", "&lt;")
 
 
 def lines(*parts: str) -> str:
-    """One below the other; empty ones are left out."""
+    """One below the other; empty ones are omitted."""
     return "  \n".join(filter(None, parts))
 
 
 def paragraphs(*parts: str) -> str:
-    """With an empty line between; empty ones are left out."""
+    """With an empty line between; empty ones are omitted."""
     return "\n\n".join(filter(None, parts))
 
 
 def plain(markdown: str) -> str:
-    """The same as text without markup, for clients that show no Markdown."""
+    """The same as text without markup, for clients without Markdown."""
     found: list[str] = []
     done = 0
     for block in _FENCE.finditer(markdown):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Property files as Markdown: operators, members, formulas in the usual notation, global variables."""
+"""Descriptions for property files, as Markdown: operators, members, formulas in the usual notation, global
+variables."""
 
 from __future__ import annotations
 
@@ -18,47 +19,47 @@ _DEPTH = 12
 _LENGTH = 400
 
 _SAYS: Mapping[str, str] = {
-    "∨": "At least one of both holds.",
+    "∨": "At least one operand holds.",
     "∧": "Both hold.",
-    "⇒": "If the left one holds, the right one does.",
+    "⇒": "If the left operand holds, the right one does as well.",
     "¬": "The operand does not hold.",
-    "=": "Both are equal.",
+    "=": "Both operands are equal.",
     "≠": "Both differ.",
-    "<": "The left one is less.",
-    "≤": "The left one is less or equal.",
-    ">": "The left one is greater.",
-    "≥": "The left one is greater or equal.",
+    "<": "The left operand is less than the right one.",
+    "≤": "The left operand is less than or equal to the right one.",
+    ">": "The left operand is greater than the right one.",
+    "≥": "The left operand is greater than or equal to the right one.",
     "+": "The sum.",
     "-": "The difference.",
     "*": "The product.",
-    "min": "The lesser of both.",
-    "max": "The greater of both.",
-    "abs": "The number without its sign.",
-    "floor": "The greatest integer that is not greater.",
-    "ceil": "The smallest integer that is not less.",
+    "min": "The smaller of the operands.",
+    "max": "The greater of the operands.",
+    "abs": "The absolute value.",
+    "floor": "The greatest integer that is not greater than the operand.",
+    "ceil": "The smallest integer that is not less than the operand.",
     "%": "The remainder, never negative.",
     "/": "The quotient, a real number.",
     "pow": "`left` to the power of `right`.",
     "log": "The logarithm of `left` to the base `right`.",
-    "sgn": "−1, 0 or 1, as the number is below, at or above 0.",
-    "trc": "The number without what stands behind its point.",
+    "sgn": "−1, 0 or 1 for a negative number, 0 or a positive number.",
+    "trc": "The number without its fractional part.",
     "F": "`exp` holds at some time.",
     "G": "`exp` holds always.",
     "X": "`exp` holds after the next step.",
     "U": "`right` holds at some time and `left` until then.",
     "W": "`right` holds at some time and `left` until then, or `left` holds for ever.",
     "R": "`right` holds up to and including the time at which `left` does, or for ever.",
-    "Pmin": "The least probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
-    "Pmax": "The greatest probability of the paths that `exp` describes, over all ways to resolve nondeterminism.",
+    "Pmin": "The minimum probability of the paths that `exp` describes, over all schedulers.",
+    "Pmax": "The maximum probability of the paths that `exp` describes, over all schedulers.",
     "initial": "Holds in the initial states.",
-    "deadlock": "Holds where nothing can happen any more.",
-    "timelock": "Holds where time cannot pass any more.",
+    "deadlock": "Holds where no step is possible.",
+    "timelock": "Holds where time cannot pass.",
 }
-"""Where one object of the schema stands for several operators: what each of them says."""
+"""The descriptions of operators that share one object of the schema."""
 
 
 def operator(symbol: str) -> str:
-    """An operator as it is written behind `op`; "" if there is none such."""
+    """An operator as it is written after `op`; "" if it is unknown."""
     described = dict(PROPERTIES.operators("formula")).get(symbol)
     if described is None:
         return ""
@@ -85,13 +86,13 @@ def member(key: Key) -> str:
 _STATUS = re.compile(r"bt_\d+_response__status")
 _CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
 _CODES: Mapping[str, str] = {"4": "STATUS_SUCCEEDED", "5": "STATUS_CANCELED", "6": "STATUS_ABORTED"}
-"""`action_msgs/GoalStatus` of ROS 2, as far as results have it."""
+"""`action_msgs/GoalStatus` of ROS 2, the values that results can have."""
 
 _COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
 
 
 def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
-    """What a number stands for that is compared with the status of a node or the code of a result; "" if nothing.
+    """The meaning of a number that is compared with the status of a node or the code of a result; "" if it has none.
 
     Args:
         around: the members of the comparison.
@@ -105,7 +106,7 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
     if _STATUS.fullmatch(variable):
         called = next((name for name, value in STATUSES.items() if str(value) == written.text), "")
         every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
-        return paragraphs(code(f"{written.text} = {called}") if called else "", f"Answers of tree nodes: {every}")
+        return paragraphs(code(f"{written.text} = {called}") if called else "", f"Statuses of tree nodes: {every}")
     if _CODE.fullmatch(variable):
         every = ", ".join(f"{value} = {name}" for value, name in _CODES.items())
         called = _CODES.get(written.text, "")
@@ -117,11 +118,11 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
 def global_variable(variable: GlobalVariable) -> str:
     """A global variable of the translated system, as properties name it."""
     if variable.parameter == "valid" and variable.name.endswith(".valid"):
-        what = f"Whether event {name(variable.event)} was ever sent"
+        what = f"Whether event {name(variable.event)} has been sent"
     elif variable.name.endswith("_len"):
-        what = f"How many elements {name(variable.name.rpartition('.')[0])} has"
+        what = f"The number of elements of {name(variable.name.rpartition('.')[0])}"
     else:
-        what = f"What event {name(variable.event)} carried last"
+        what = f"The value in the last event {name(variable.event)}"
     return paragraphs(code(f"{variable.name} : {variable.type}"), what)
 
 
@@ -153,7 +154,7 @@ def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
         return _formula(parts.get(key), depth + 1)
 
     def inner(key: str) -> str:
-        """In parentheses if something binds looser there."""
+        """In parentheses if an inner operator binds less tightly."""
         value = parts.get(key)
         has_two = isinstance(value, JsonObject) and value.get("left") is not None
         text = part(key)

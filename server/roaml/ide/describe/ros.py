@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS 2 definitions as Markdown: the definition with its comments, as its file would say it."""
+"""ROS 2 definitions as Markdown: the definition with its comments, as in its file."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _section(section: Section) -> Iterator[str]:
 
 
 def _is_short(comment: str) -> bool:
-    """Whether a comment has room beside its field."""
+    """Whether a comment fits beside its field."""
     return "\n" not in comment and len(comment) < _WIDTH // 2
 
 
@@ -66,9 +66,9 @@ def field(registry: Registry, struct: str, field_name: str) -> str:
     """A field of a message or of a part of a service or action.
 
     Args:
-        registry: where definitions are looked up.
-        struct: as `roaml.model.ros` calls it: `package/Name`, or `package/Name request`.
-        field_name: its name. A dotted path is followed.
+        registry: resolves definitions.
+        struct: the name in `roaml.model.ros`: `package/Name`, or `package/Name request`.
+        field_name: its name or dotted path.
     """
     head, _, rest = field_name.partition(".")
     found, section = section_of(registry, struct)
@@ -85,7 +85,7 @@ def field(registry: Registry, struct: str, field_name: str) -> str:
 
 
 def section_of(registry: Registry, struct: str) -> tuple[Definition | None, str]:
-    """The definition and the section that a struct of `roaml.model.ros` is made of; see `field`."""
+    """The definition and section of a struct of `roaml.model.ros`; see `field`."""
     type_name, _, section = struct.partition(" ")
     section = section or "message"
     kind: Kind = next((kind for kind, sections in SECTION_NAMES.items() if section in sections), "msg")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that several files share, as Markdown: events, topics, services, actions, blackboard, trees, structs."""
+"""Names that several files share, as Markdown: events, topics, services, actions, blackboard, trees, structs."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _NODE = re.compile(r"bt_(\d{1,9})_")
 
 
 def node_of(system: System, variable: str) -> SystemAutomaton | None:
-    """The node of the tree that a global variable is about."""
+    """The node of the tree of a global variable."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:
-    """The system that a symbol belongs to; None if it is looked at alone."""
+    """The system of a symbol; `None` if its file is analysed alone."""
     return analysis.system(symbol.path) if symbol.path in analysis.system_paths else None
 
 
@@ -56,7 +56,7 @@ def _in_properties(variables: Iterable[GlobalVariable]) -> str:
 
 
 def event(analysis: Analysis, symbol: Symbol) -> str:
-    """A plain event: its parameters, who sends and who receives it, what properties can look at."""
+    """A plain event: its parameters, its senders and receivers, the variables for properties."""
     system = _system(analysis, symbol)
     found = system.events.get(symbol.name) if system else None
     if found is None:
@@ -73,7 +73,7 @@ def event(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _in_files(analysis: Analysis, symbol: Symbol) -> str:
-    """What the file itself does with an event."""
+    """The uses of an event in the file itself."""
     found = thing(analysis, (symbol,)).uses
     counts = [
         f"{verb} {count} times" if count != 1 else f"{verb} once"
@@ -112,7 +112,7 @@ _VERBS = {
 
 
 def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
-    """A topic, service or action, called as it is `written`: its type, both sides, what it becomes."""
+    """A topic, service or action, with the name as `written`: its type, both sides, its names in the translation."""
     system = _system(analysis, symbol)
     found = find_channel(system, symbol) if system else None
     shown = written or symbol.name
@@ -123,7 +123,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
-    """The same in fewer words, for those who take part."""
+    """The same in fewer words, for the automata that take part."""
     found = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if found is None else lines(head, _sides(analysis, symbol, found, system))
@@ -191,7 +191,7 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _full_name(variable: GlobalVariable) -> str:
-    """The name on the whole blackboard, from that of a global variable."""
+    """The name on the whole blackboard, extracted from that of a global variable."""
     return (
         variable.event.removeprefix(BLACKBOARD_WRITE_PREFIX)
         if variable.event != BLACKBOARD_ANSWER
@@ -216,7 +216,7 @@ def plugin(symbol: Symbol) -> str:
 
 
 def tree(analysis: Analysis, symbol: Symbol) -> str:
-    """A behavior tree: how large it is, where it stands in others."""
+    """A behavior tree: its size, the trees that use it."""
     for place in thing(analysis, (symbol,)).definitions:
         trees = analysis.tree(place.path)
         for each in trees.trees if trees else ():
@@ -246,13 +246,13 @@ def is_main(analysis: Analysis, symbol: Symbol) -> bool:
 
 
 def tree_node(analysis: Analysis, symbol: Symbol) -> str:
-    """A named node of a tree: what it becomes."""
+    """A named node of a tree: its names in the translation."""
     inside, _, position = symbol.scope.rpartition(":")
     return paragraphs(code(f"node {symbol.name}"), becomes(analysis, symbol.path, inside, int(position or 0)))
 
 
 def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
-    """What a node of a file becomes where its tree is executed."""
+    """The names in the translation of a node of a file, where its tree is executed."""
     told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
     rest = f"… and {len(told) - _MAX_USES} more times" if len(told) > _MAX_USES else ""
     return paragraphs(*told[:_MAX_USES], rest)
@@ -262,7 +262,7 @@ _MAX_USES = 3
 
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, SystemAutomaton]]:
-    """The nodes of executed trees that a node of a file becomes, in all systems of the file."""
+    """The nodes of executed trees for a node of a file, in all systems of the file."""
     for each in analysis.systems_of(path):
         system = analysis.system(each) if each else None
         for automaton in system.automata if system else ():
@@ -272,7 +272,7 @@ def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterat
 
 
 def node(system: System, automaton: SystemAutomaton) -> str:
-    """A node of the executed tree: what it is called, what its ports are bound to."""
+    """A node of the executed tree: its names, the bindings of its ports."""
     instance = automaton.instance
     assert instance is not None
     ports = [(key, value) for key, value in instance.ports if automaton.outline.port(key) is not None]
@@ -307,7 +307,7 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _struct(analysis: Analysis, symbol: Symbol, wanted: str) -> Struct | None:
-    """From the system that a symbol belongs to, or from the file itself."""
+    """The struct in the system of a symbol, or in the file itself."""
     if symbol.path in analysis.system_paths:
         found = analysis.structs(symbol.path).types.get(wanted)
         return found if isinstance(found, Struct) else None

@@ -11,7 +11,7 @@ from roaml.xml_syntax import Attribute, Element
 
 
 def parameter(element: Element, attribute: Attribute) -> str:
-    """What a parameter of the translation amounts to; "" if that says nothing new."""
+    """The meaning of a parameter of the translation; "" if it is obvious."""
     if attribute.name not in ("value", "unit"):
         return ""
     written = element.get("value")
@@ -24,5 +24,5 @@ def parameter(element: Element, attribute: Attribute) -> str:
         case "bt_tick_rate":
             return rate(text)
         case "max_array_size" if text:
-            return f"Arrays without a bound hold up to {name(text)} elements"
+            return f"Arrays without a bound have at most {name(text)} elements"
     return ""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of models with the places that their parts stand for: to be drawn by an editor and clicked.
+"""Interactive diagrams of models, whose parts have positions in the files: an editor draws them.
 
-`roaml.views` has diagrams for documents, which know no places.
+`roaml.views` contains diagrams for documents, without positions.
 """
 
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture

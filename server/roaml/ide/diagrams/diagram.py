@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a picture shows, whoever draws it.
+"""The content of a diagram, independent of its rendering.
 
-- The ids of nodes are unique; the ends of every edge, and every parent, are nodes of the picture.
-- The values of the enumerations are names for programs: the contract with what draws the picture.
+- The ids of nodes are unique; the ends of every edge, and every parent, are nodes of the diagram.
+- The values of the enumerations are part of the interface to the renderer.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class DiagramNodeKind(enum.Enum):
 
 
 class EdgeKind(enum.Enum):
-    """What a transition waits for; how things in a tree or a system hang together."""
+    """The trigger of a transition, or the relation of things in a tree or a system."""
 
     EVENTLESS = "eventless"
     EVENT = "event"
@@ -65,7 +65,7 @@ class DiagramNode:
 
 @dataclass(frozen=True, slots=True)
 class DiagramEdge:
-    """`probabilistic` tells that it is one of several ways that chance decides between."""
+    """`probabilistic` means that it is one of several randomly chosen edges."""
 
     source: str
     target: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes to highlight in diagrams when an automaton of the translation has done something."""
+"""The nodes to highlight in diagrams after a step of an automaton of the translation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class DiagramHighlight:
-    """A node of a picture: `picture` is "machine" or "tree", `path` the file that it shows, `node` its id there."""
+    """A node of a diagram: `picture` is "machine" or "tree", `path` the file that it shows, `node` its id there."""
 
     picture: str
     path: str
@@ -33,7 +33,7 @@ def highlights(
 
 
 def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[DiagramHighlight]:
-    """The state that the machine is in; between two states, the one that it leaves."""
+    """The state of the machine; between two states, the one that it leaves."""
     machine = analysis.machine(origin.path)
     for chart in machine.charts if machine else ():
         named = [state for state in chart.states if state.id]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state machine: its states and what leads from one to another; each action thread in a frame of its own."""
+"""The diagram of a state machine: its states and transitions; each action thread in a frame of its own."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BT = ("bt-", "child-")
 
 
 def machine_picture(analysis: Analysis, path: str) -> Picture | None:
-    """None if the file is no machine."""
+    """The diagram; `None` if the file is not a machine."""
     machine = analysis.machine(path)
     if machine is None:
         return None
@@ -27,7 +27,7 @@ def machine_picture(analysis: Analysis, path: str) -> Picture | None:
         frame = frames[chart].id if chart in frames else ""
         if frame:
             nodes.append(frames[chart])
-        # Of states that share a name, the first is the one that transitions lead to.
+        # If states have the same name, transitions lead to the first.
         states = {state.id.value: state for state in reversed(chart.states) if state.id}
         shown = [state for state in chart.states if state.id and states[state.id.value] is state]
         nodes += [_node(chart, state, frame, path) for state in shown]
@@ -44,7 +44,7 @@ def _frame(thread: Thread, path: str) -> DiagramNode:
 
 
 def state_id(chart: Chart, name: str) -> str:
-    """The id of a state in the picture."""
+    """The id of a state in the diagram."""
     return f"{chart.scope}/{name}"
 
 

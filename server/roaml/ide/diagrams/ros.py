@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS graph of a system: its nodes and plugins, and who publishes, serves, calls and sends what.
+"""The ROS graph of a system: its nodes and plugins, and what they publish, serve, call and send.
 
-A plugin is drawn once, however often the tree has it.
+A plugin is drawn once, however often the tree uses it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _TO_CHANNEL = (EdgeKind.PUBLISHES, EdgeKind.CALLS)
 
 
 def ros_picture(analysis: Analysis, path: str) -> Picture | None:
-    """None if `path` is no system file."""
+    """The diagram; `None` if `path` is not a system file."""
     system = analysis.system(path)
     if system is None:
         return None
@@ -83,7 +83,7 @@ def _declared(analysis: Analysis, end: ChannelEndpoint) -> Location | None:
 
 
 def _events(system: System, nodes: Mapping[str, DiagramNode]) -> Iterator[DiagramEdge]:
-    """Plain events that go from one machine to another; all of one pair are one edge."""
+    """Plain events from one machine to another; all of one pair are one edge."""
     between: dict[tuple[str, str], dict[str, None]] = {}
     for event in system.events.values():
         for sender, _ in event.senders:

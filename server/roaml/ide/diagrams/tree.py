@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed behavior tree with its ports, and the variables of the blackboard that tie them together.
+"""The executed behavior tree with its ports, and the variables of the blackboard that connect them.
 
-A tree file is drawn by itself while no system names it; only a system knows which ports are written.
+A tree file that no system lists is drawn alone; only a system determines which ports are written.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 
 def tree_picture(analysis: Analysis, path: str) -> Picture | None:
-    """The tree of a system, given by its system file or any other of its files; None if there is none."""
+    """The tree of a system, given by its system file or any other of its files; `None` if there is none."""
     system = next((found for s in analysis.systems_of(path) if s and (found := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances = system.tree_paths, system.instances
@@ -88,13 +88,13 @@ class _Tree:
                     yield instance, key, value.variable
 
     def place(self, instance: Instance, key: str) -> Location | None:
-        """Where a port is set; a default stands elsewhere."""
+        """The place where a port is set; `None` for a default, which is written elsewhere."""
         node = self.written[instance.number]
         setting = next((port for port in node.ports if port.key.value == key), None) if node else None
         return Location(instance.source.path, setting.attribute.span) if setting else None
 
     def direction(self, instance: Instance, key: str) -> str:
-        """Which way a port works: "in", "out" or "inout"; where that is not known, in."""
+        """The direction of a port: "in", "out" or "inout"; if it is unknown, "in"."""
         outline = self.system.plugin(instance.plugin)[1] if self.system else builtin_plugins().get(instance.plugin)
         port = outline.port(key) if outline else None
         return port.direction if port else "in"

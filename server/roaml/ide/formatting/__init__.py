@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The layout of a file of ours, as edits.
+"""The formatter of supported files, which returns edits.
 
-- Changes white space between tokens and nothing else, so never the model; the result is formatted already.
-- A file whose form is not sound is left alone.
+- Changes only white space between tokens, so never the model; formatting the result again changes nothing.
+- A file with syntax errors is not changed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
 
 
 def can_format(analysis: Analysis, path: str) -> bool:
-    """Whether a file is of a kind that is formatted, and its form is sound."""
+    """Whether a file is of a kind that is formatted, and has no syntax errors."""
     return next(_gaps(analysis, path, DEFAULT), None) is not None
 
 
@@ -35,13 +35,13 @@ def is_ours(analysis: Analysis, path: str) -> bool:
 def format_edits(
     analysis: Analysis, path: str, layout: FileLayout = DEFAULT, within: Span | None = None
 ) -> tuple[TextEdit, ...]:
-    """The edits that lay a file out, in the order of the text.
+    """The edits that format a file, in the order of the text.
 
     Args:
-        analysis: what is known.
+        analysis: the state of the workspace.
         path: the file.
-        layout: how; a property file keeps its width of two or four columns.
-        within: only edits inside of the lines that this touches.
+        layout: the layout; a property file keeps its width of two or four columns.
+        within: only edits inside of the lines that this span touches.
     """
     source = analysis.source(path)
     if source is None:
@@ -49,7 +49,7 @@ def format_edits(
     found = sorted(edits(source.text, _gaps(analysis, path, layout)))
     if within is not None:
         start, end = _lines_around(source, within)
-        last = end if end == len(source.text) else end - 1  # an insertion behind the line end is one in the next line
+        last = end if end == len(source.text) else end - 1  # an insertion after the line end is in the next line
         found = [edit for edit in found if start <= edit.span.start <= last and edit.span.end <= end]
     return tuple(found)
 
@@ -65,7 +65,7 @@ def _gaps(analysis: Analysis, path: str, layout: FileLayout) -> Iterator[Spacing
 
 
 def _lines_around(source: SourceFile, span: Span) -> Span:
-    """The whole lines that a span touches; one that ends where a line begins does not touch it."""
+    """The whole lines that a span touches; a span that ends where a line begins does not touch it."""
     lines = source.lines
     end = max(span.start, span.end - 1)
     return Span(lines.line_start(lines.position(span.start).line), lines.line_end(lines.position(end).line))

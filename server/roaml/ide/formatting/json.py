@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How JSON is laid out: one member or item a line, two or four columns a level, as the file has it.
+"""The layout of JSON: one member or item per line, two or four columns per level, as the file has it.
 
-- An object or list that is written on one line stays on one line if it fits. Of blank lines one is kept.
-- Works on tokens, not on the tree: JSON may nest deeper than functions can.
+- An object or list on one line stays on one line if it fits. Several blank lines become one.
+- Works on tokens, not on the tree: JSON may nest more deeply than functions can recurse.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _WIDTHS = (2, 4)
 
 
 def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
-    """What the white space of a text that is sound JSON is to be."""
+    """The white space of a text without syntax errors."""
     spans = [Span(*match.span()) for match in _TOKEN.finditer(text)]
     if not spans:
         return
@@ -37,7 +37,7 @@ def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
     for i, (token, space) in enumerate(zip(tokens, spaces, strict=False)):
         if token in ("{", "["):
             end = closers[i]
-            # What follows the bracket that closes, a comma at most, must fit, too.
+            # A comma after the closing bracket must fit as well.
             length = flat[end] - flat[i] + 1 + (tokens[end + 1 : end + 2] == [","])
             fits = lines[end] == lines[i] and column + length <= layout.line_length
             open_flat.append(end == i + 1 or fits or (bool(open_flat) and open_flat[-1]))
@@ -58,7 +58,7 @@ def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
 
 
 def _like(text: str, layout: FileLayout) -> FileLayout:
-    """The layout with the width that the first indented line has, if that is one of the usual ones."""
+    """The layout with the width of the first indented line, if that is one of the usual ones."""
     found = _FIRST_INDENT.search(text)
     if found is None or len(found[1]) not in _WIDTHS or found[1][0] == "\t":
         return layout
@@ -66,7 +66,7 @@ def _like(text: str, layout: FileLayout) -> FileLayout:
 
 
 def _closers(tokens: list[str]) -> dict[int, int]:
-    """Index of each opening bracket -> index of the one that closes it."""
+    """Index of each opening bracket -> index of the matching closing one."""
     found: dict[int, int] = {}
     opened: list[int] = []
     for i, token in enumerate(tokens):
@@ -78,7 +78,7 @@ def _closers(tokens: list[str]) -> dict[int, int]:
 
 
 def _flat_gap(tokens: list[str], i: int) -> str:
-    """What stands behind token `i` if all is on one line."""
+    """The text after token `i` if all is on one line."""
     return " " * _flat_space(tokens, i)
 
 

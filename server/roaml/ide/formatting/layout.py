@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a formatter wants: a layout, and the white space between the parts of a text.
+"""The result of a formatter: a layout, and the white space between the parts of a text.
 
-A formatter says nothing but what each *gap* between two tokens is to hold, so whatever it thinks, it changes white
-space only. Gaps are written with `\\n`; `edits` gives them the line ends that the file has.
+A formatter only returns the content of each *gap* between two tokens, so it cannot change anything but white space.
+Gaps are written with `\\n`; `edits` converts them to the line ends of the file.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 @dataclass(frozen=True, slots=True)
 class FileLayout:
-    """How a file is laid out.
+    """The layout of a file.
 
     Attributes:
         width: columns of one level.
         tabs: whether a level is a tab character.
-        line_length: lines longer than this many columns are broken where they can be.
+        line_length: longer lines are wrapped where possible, in columns.
     """
 
     width: int = 4
@@ -40,19 +40,19 @@ class FileLayout:
 
 
 class Spacing(NamedTuple):
-    """Between two tokens, where white space stands or none, `text` is to stand."""
+    """White space, possibly empty, between two tokens, to be replaced by `text`."""
 
     span: Span
     text: str
 
 
 def breaks(text: str) -> int:
-    """How many line ends there are in a text."""
+    """The number of line ends in a text."""
     return len(_LINE_END.findall(text))
 
 
 def new_line(before: str, indent: str) -> str:
-    """A line break to `indent` in place of the white space `before`, of whose blank lines one is kept."""
+    """A line break to `indent` instead of the white space `before`; several blank lines become one."""
     return f"\n\n{indent}" if breaks(before) > 1 else f"\n{indent}"
 
 
@@ -66,7 +66,7 @@ def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
     for span, wanted in gaps:
         new = wanted.replace("\n", line_end)
         old = text[span.start : span.end]
-        # Apart from the line breaks, so that the indentation of a line can be mended without the line before it.
+        # Separate from the line breaks, so that the indentation of a line can be changed without the line before it.
         old_breaks, new_breaks = _indent_start(old), _indent_start(new)
         if old_breaks and new_breaks:
             yield from _difference(span.start, old[:old_breaks], new[:new_breaks])
@@ -76,12 +76,12 @@ def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
 
 
 def _indent_start(text: str) -> int:
-    """Where the last line of white space begins; 0 if there is only one."""
+    """The beginning of the last line of white space; 0 if there is only one line."""
     return max(text.rfind("\n"), text.rfind("\r")) + 1
 
 
 def _difference(at: int, old: str, new: str) -> Iterator[TextEdit]:
-    """What differs between two texts, the first of which stands at `at`. No line end is cut in two."""
+    """The difference of two texts, the first of which is at `at`. Line ends are never split."""
     if old == new:
         return
     least = min(len(old), len(new))

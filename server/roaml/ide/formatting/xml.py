@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How XML is laid out.
+"""The layout of XML.
 
-- Comments, instructions, CDATA sections, character data and the elements around it stay as they are, and so does all
-  below `xml:space="preserve"`. Only the tags of such elements are laid out.
-- Each child has a line of its own, except that an element written on one line with one child in it stays on one line,
-  and a comment behind something stays there. Of blank lines one is kept.
-- Attributes that are on several lines get one line each, below the first one or one level deeper, as they were begun. A
-  tag that is too long is wrapped one level deeper.
-- `<else />` and `<elseif />` stand below their `<if>`, or below its other children if they were written so.
+- Comments, instructions, CDATA sections, character data and the elements around it are not changed, nor is anything
+  below `xml:space="preserve"`. Only the tags of these elements are formatted.
+- Each child has a line of its own, except that an element on one line with one child stays on one line, and a comment
+  at the end of a line stays there. Several blank lines become one.
+- Attributes on several lines get one line each, below the first one or one level deeper, as in the file. A tag that is
+  too long is wrapped one level deeper.
+- `<else />` and `<elseif />` are aligned with their `<if>`, or with its other children if they were written so.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _MARKERS = {"else", "elseif"}
 
 
 def gaps(document: Document, layout: FileLayout) -> Iterator[Spacing]:
-    """What the white space of a document is to be; nothing if its form is not sound."""
+    """The white space of a document; empty if it has syntax errors."""
     if document.root is not None and all(finding.code in _HARMLESS for finding in document.findings):
         yield from _Formatter(document.text, layout).document(document)
 
@@ -87,7 +87,7 @@ class _Formatter:
         yield Spacing(end, new_line(self.raw(end), indent))
 
     def is_verbatim(self, element: Element) -> bool:
-        """Whether white space inside an element means something."""
+        """Whether white space inside an element is significant."""
         space = element.get("xml:space")
         if space is not None and space.value == "preserve":
             return True
@@ -97,7 +97,7 @@ class _Formatter:
         )
 
     def is_level(self, element: Element) -> bool:
-        """Whether the markers of an `<if>` are to begin where it begins; the first one tells."""
+        """Whether the markers of an `<if>` are aligned with it; the first marker decides."""
         marker = next((child for child in element.elements if _is_marker(child)), None)
         if marker is None:
             return False
@@ -105,7 +105,7 @@ class _Formatter:
         return bool(before.strip()) or indent <= self.line_before(element.span.start)[1]
 
     def line_before(self, offset: int) -> tuple[str, int]:
-        """What stands on a line before an offset, and in which column the line's text begins."""
+        """The text on a line before an offset, and the column where the line's text begins."""
         start = max(self.text.rfind("\n", 0, offset), self.text.rfind("\r", 0, offset)) + 1
         before = self.text[start:offset].expandtabs(self.layout.width)
         return before, len(before) - len(before.lstrip(SPACE))
@@ -157,7 +157,7 @@ class _Formatter:
     # ----------------------------------------------------------- on one line
 
     def flat(self, element: Element) -> Iterator[Spacing]:
-        """The gaps of an element that is to stand on one line."""
+        """The gaps of an element on one line."""
         yield from self.flat_tag(element)
         yield from self.end_tag(element)
         if element.close_span is None or self.is_verbatim(element):
@@ -171,7 +171,7 @@ class _Formatter:
         yield Spacing(Span(at, element.close_span.start), "")
 
     def flat_length(self, element: Element) -> int | None:
-        """How many columns an element takes on one line; None if it is not written on one or has several children."""
+        """The length of an element on one line, in columns; `None` if it is not on one line or has several children."""
         if any(end in self.raw(element.span) for end in "\r\n"):
             return None
         length = self.tag_length(element)
@@ -192,7 +192,7 @@ class _Formatter:
         return length
 
     def tag_length(self, element: Element) -> int:
-        """How many columns a start tag takes if all of its attributes are on one line."""
+        """The length of a start tag with all its attributes on one line, in columns."""
         length = element.name_span.end - element.open_span.start + (3 if element.self_closing else 1)
         for attribute in element.attributes:
             name, value = attribute.name_span, attribute.value_span
@@ -204,7 +204,7 @@ class _Formatter:
 
 
 def _items(nodes: Sequence[Node]) -> list[Element | CData | Comment | Instruction]:
-    """All but the text."""
+    """All nodes except text."""
     return [node for node in nodes if not isinstance(node, Text)]
 
 

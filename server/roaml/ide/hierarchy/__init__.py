@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hierarchies of LSP: calls (who sends what to whom) and types (which message contains which)."""
+"""The hierarchies of LSP: calls (senders and receivers) and types (messages and their fields)."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who talks to whom, as a graph that an editor can walk.
+"""The call hierarchy: which machines communicate, as a graph.
 
 Machines call what they send: events, topics, services, actions; these call the machines that receive them. A client
-calls a service, and that its server. Trees call the machines of their nodes, and other trees.
+calls a service, and the service its server. Trees call the machines of their nodes, and other trees.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class HierarchyCall:
 
 
 def items_at(analysis: Analysis, path: str, offset: int) -> tuple[CallHierarchyItem, ...]:
-    """What can be asked about at a caret. A handle stands for its topic, service or action."""
+    """The items at a caret. A handle is resolved to its topic, service or action."""
     symbols: dict[Symbol, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
         symbol = occurrence.symbol
@@ -59,7 +59,7 @@ def items_at(analysis: Analysis, path: str, offset: int) -> tuple[CallHierarchyI
 
 
 def incoming(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
-    """What calls a thing."""
+    """The callers of an item."""
     calls = _calls(analysis, _edges(analysis, symbol, into=True))
     return tuple(
         replace(call, places=(call.item.name_span,)) if _is_message(call.item.symbol) else call for call in calls
@@ -67,14 +67,14 @@ def incoming(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
 
 
 def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
-    """What a thing calls."""
+    """The items that an item calls."""
     calls = _calls(analysis, _edges(analysis, symbol, into=False))
     item = _item(analysis, symbol) if _is_message(symbol) else None
     return tuple(replace(call, places=(item.name_span,)) for call in calls) if item else calls
 
 
 def _is_message(symbol: Symbol) -> bool:
-    """Whether what is called goes on to call by itself: its places are those of its name."""
+    """Whether the called item itself calls others: its places are those of its name."""
     return symbol.kind is SymbolKind.EVENT or symbol.kind in _INTERFACES
 
 
@@ -100,7 +100,7 @@ def _item(analysis: Analysis, symbol: Symbol) -> CallHierarchyItem | None:
 
 
 def _whole(analysis: Analysis, use: SymbolUse) -> Span:
-    """The element that a name stands in."""
+    """The element that contains a name."""
     document = analysis.document(use.path) if analysis.kind(use.path).name in ("MACHINE", "TREE") else None
     around = document.path_at(use.occurrence.span.start) if document else []
     return around[-1].span if around else use.occurrence.span
@@ -155,7 +155,7 @@ def _interface(system: System, automaton: SystemAutomaton, use: InterfaceUse) ->
 
 
 def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
-    """The topics, services or actions that a handle stands for."""
+    """The topics, services or actions of a handle."""
     for system in _systems(analysis, handle.path):
         for automaton in system.automata_of(handle.path):
             for use in automaton.outline.interfaces:
@@ -166,7 +166,7 @@ def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
 
 
 def _places(analysis: Analysis, system: str, automaton: SystemAutomaton, use: InterfaceUse) -> tuple[Span, ...]:
-    """Where a machine makes use of a declaration; the declaration itself if nowhere."""
+    """The places where a machine uses a declaration; the declaration itself if there are none."""
     known = uses(analysis, automaton.path, system).by_symbol
     found = list(known.get(automaton.symbol(use), ()))
     if use.name and not found:  # the interface itself is the handle
@@ -197,7 +197,7 @@ def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_
 
 
 def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
-    """The trees that have nodes of a plugin, or in which a tree stands."""
+    """The trees that contain nodes of a plugin, or use a tree."""
     for use in thing(analysis, (symbol,)).uses:
         tree = _tree_around(analysis, symbol, use)
         if tree is not None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What types are made of: the hierarchy of messages and structs.
+"""The type hierarchy: messages and structs.
 
-The types of a type's fields or members are below it, those that hold it above. ROS types are looked for among those
-that the machines of the workspace use and what is in them: the thousands that nobody uses would only be in the way.
+The types of a type's fields or members are its subtypes, those that contain it its supertypes. ROS types are limited to
+those that the machines of the workspace use, and the types inside them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class TypeItem:
-    """A message, service, action or struct; `detail` says which, and in which fields it is."""
+    """A message, service, action or struct; `detail` is its kind, and the fields that contain it."""
 
     symbol: Symbol
     detail: str
@@ -32,7 +32,7 @@ class TypeItem:
 
 
 def types_at(analysis: Analysis, path: str, offset: int) -> tuple[TypeItem, ...]:
-    """The types at a caret: written there, or of the variable, field or member that is."""
+    """The types at a caret: written there, or those of the variable, field or member."""
     found: dict[Symbol, None] = {}
     for each in occurrences_at(analysis, path, offset):
         found.update(dict.fromkeys(_types_of(analysis, path, each.symbol)))
@@ -41,7 +41,7 @@ def types_at(analysis: Analysis, path: str, offset: int) -> tuple[TypeItem, ...]
 
 
 def members_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
-    """The types that a type is made of."""
+    """The types of the fields or members of a type."""
     return _items(analysis, ((inner, name) for name, inner in _inside(analysis, symbol)))
 
 
@@ -122,7 +122,7 @@ def _structs(analysis: Analysis, system: str) -> list[Symbol]:
 
 
 def _used(analysis: Analysis) -> list[Symbol]:
-    """The ROS types that machines declare, and all that is in them."""
+    """The ROS types that machines declare, and the types inside them."""
     found: dict[Symbol, None] = {}
     for path in dict.fromkeys(p for system in analysis.system_paths for p in analysis.files_of(system)):
         machine = analysis.machine(path)

@@ -39,7 +39,7 @@ class Hover:
 
 
 def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
-    """What to tell about a place; None if nothing is known of it."""
+    """The hover at a place; `None` if there is none."""
     place = place_at(analysis, path, offset)
     if place is None:
         return None

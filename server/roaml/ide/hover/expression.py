@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the parts of an expression that are no names: functions, operators, event variables."""
+"""Hover texts for the parts of an expression that are not names: functions, operators, event variables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.text import Span
 
 
 def in_expression(place: Place) -> tuple[Span, str] | None:
-    """What the language says of a part of an expression; None outside of expressions and where it says nothing."""
+    """The description of a part of an expression; `None` outside of expressions and if there is none."""
     if place.expression is None:
         return None
     for node in reversed(walk(place.expression.tree)):
@@ -62,7 +62,7 @@ def _name(place: Place, name: str) -> str:
 
 
 def _known(place: Place) -> dict[str, Type]:
-    """The event variables at a place."""
+    """The event variables available at a place."""
     machine = place.analysis.machine(place.path)
     handler = handler_at(machine, place.offset) if machine else None
     if machine is None or handler is None:

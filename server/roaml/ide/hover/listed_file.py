@@ -31,7 +31,7 @@ def listed_file(place: Place) -> tuple[Span, str] | None:
 
 
 def content(analysis: Analysis, system: str, path: str) -> str:
-    """What a file of a system is, and what is in it; "" if it cannot be read."""
+    """The kind and the content of a file of a system; "" if it cannot be read."""
     if analysis.source(path) is None:
         return ""
     machine, tree = analysis.machine(path), analysis.tree(path)

@@ -33,7 +33,7 @@ def in_markup(place: Place) -> tuple[Span, str] | None:
 
 
 def _value(place: Place, element: Element, attribute: Attribute, known: AttributeType) -> str:
-    """What is known of a value; of its attribute, if nothing is."""
+    """The description of a value; if there is none, that of its attribute."""
     chosen = next((choice for choice in known.simple.choices if choice.value == attribute.value.strip()), None)
     said = ""
     if place.kind is FileKind.SYSTEM:

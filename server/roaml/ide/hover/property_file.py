@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a place in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
+"""Hover texts in a property file or JANI model: operators, keys, formulas, numbers, global variables."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def global_variable(place: Place) -> tuple[Span, str] | None:
 
 
 def in_json(place: Place) -> tuple[Span, str] | None:
-    """What the syntax of properties says of a key or an operator; the formula of a property."""
+    """The description of a key or an operator in the syntax of properties; the formula of a property."""
     value, offset = place.analysis.json(place.path), place.offset
     if value is None:
         return None
@@ -84,7 +84,7 @@ def value_at(value: JsonValue, offset: int) -> JsonValue | None:
 
 
 def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObject, Member]]:
-    """The members around an offset, innermost first, with their objects and what the schema says of these."""
+    """The members around an offset, innermost first, with their objects and their declarations in the schema."""
     found: list[tuple[Schema, JsonObject, Member]] = []
     schema, inner = PROPERTIES.root, value
     while True:
@@ -110,4 +110,4 @@ def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObj
 
 
 _OF_FORMULAS = ("op", "constant", "distribution")
-"""What has one of these is a formula wherever it stands, also in the parts of a model that are no properties."""
+"""Keys that only formulas have, also in the parts of a model that are not properties."""

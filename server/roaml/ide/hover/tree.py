@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node of a tree becomes where its tree is executed."""
+"""Hover texts for nodes of a tree: their names in the translation, where the tree is executed."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ def tree_node(place: Place) -> tuple[Span, str] | None:
 
 
 def name_at(node: TreeNode, offset: int) -> Span | None:
-    """The tag, the plugin or the name of a node, if it stands at a place."""
+    """The tag, the plugin or the name of a node at a place."""
     spans = [node.element.name_span, *(each.span for each in (node.plugin, node.name) if each)]
     return next((span for span in spans if span.contains(offset)), None)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names: where each is used in a file, what it denotes, and all uses of the same thing in a workspace."""
+"""Names: their uses in a file, their symbols, and all uses of the same symbol in a workspace."""

@@ -78,7 +78,7 @@ class Frame:
         return self.expanded.autoremap
 
     def is_shared(self, name: str) -> bool:
-        """Whether `name` is the same variable as the one called so outside."""
+        """Whether `name` is the same variable as the one with this name outside."""
         if name in self.settings:
             return self.settings[name].value.value.strip() == "{=}"
         if self.outer is None or name.startswith("@"):
@@ -221,7 +221,7 @@ class Trees:
     # ------------------------------------------------------------- variables
 
     def variable(self, path: str, tree: str, name: str) -> Symbol:
-        """The blackboard variable that `{name}` means in a tree. Variables that always share their name are one."""
+        """The blackboard variable of `{name}` in a tree. Variables that always share their name are one."""
         if name.startswith("@"):
             name = name[1:]
             if self.main is not None:
@@ -236,7 +236,7 @@ class Trees:
 
     @cached_property
     def _shared(self) -> Mapping[tuple[str, str, str], tuple[str, str, str]]:
-        """Union-find: a variable -> one that it is the same as, by `{=}` or automatic remapping."""
+        """Union-find: a variable -> an equal one, by `{=}` or automatic remapping."""
         above: dict[tuple[str, str, str], tuple[str, str, str]] = {}
 
         def root(key: tuple[str, str, str]) -> tuple[str, str, str]:
@@ -254,7 +254,7 @@ class Trees:
         return above
 
     def is_taken(self, symbol: Symbol, new: str) -> bool:
-        """Whether a variable, if it were called `new`, would be taken for another that is called so."""
+        """Whether a variable named `new` would be the same as another one."""
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
@@ -274,7 +274,7 @@ class Trees:
 
     @cached_property
     def full_names(self) -> Mapping[str, tuple[Piece, ...]]:
-        """The full name of each variable in the translation -> what it is made of."""
+        """The full name of each variable in the translation -> its parts."""
         found: dict[str, tuple[Piece, ...]] = {}
         for frame in self.frames:
             for name in frame.names:
@@ -312,7 +312,7 @@ class Trees:
 
 
 def names_in(tree: Tree) -> Iterator[str]:
-    """The variables that the nodes of a tree refer to."""
+    """The variables that the nodes of a tree use."""
     for node in nodes(tree):
         for attribute in node.element.attributes:
             variable = blackboard_variable(attribute.value)

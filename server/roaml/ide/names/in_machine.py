@@ -54,14 +54,14 @@ from roaml.model.value_types import (
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Span
 
-"""Kind of ROS type -> what a declaration of such a type names."""
+"""Kind of ROS type -> the kind of symbol that a declaration of this type names."""
 
 _EVENT_VARIABLES = frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
 _WORD = re.compile(r"\S+")
 
 
 def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
-    """The topic, service or action that a declaration of `kind` calls `name`. Topics are known by sanitised name."""
+    """The topic, service or action `name` of a declaration of `kind`. Topics are identified by their sanitised name."""
     what = CHANNEL_KINDS[kind]
     return Symbol(owner, what, sanitise(name) if what is SymbolKind.TOPIC else name)
 
@@ -90,7 +90,7 @@ def in_machine(
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """What `in_machine` is asked about."""
+    """The arguments of `in_machine`."""
 
     text: str
     machine: Machine
@@ -140,7 +140,7 @@ class _Machine:
     def handle(
         self, name: Name | None, declaration: Declaration | None, access: Access = Access.TEXT
     ) -> Iterator[Occurrence]:
-        """A use of a handle. Where the interface itself is the handle, it is that which is named."""
+        """A use of a handle. If the interface itself is the handle, the interface is used."""
         if name is None or declaration is None:
             return
         if is_implicit(declaration):
@@ -177,7 +177,7 @@ class _Machine:
             symbol = variable(self.path, data.id.value, chart.scope)
             yield Occurrence(data.id.span, symbol, defines=True, access=Access.WRITE)
             if data.comment_type and data.type is not None:
-                # `TYPE id:type` in a comment: the id stands just before the type.
+                # `TYPE id:type` in a comment: the id directly precedes the type.
                 start = self.text.rfind(data.id.value, 0, data.type.span.start)
                 yield Occurrence(Span(start, start + len(data.id.value)), symbol)
         yield from type_use(self.owner, data.type)
@@ -298,7 +298,7 @@ class _Machine:
 
 
 class _Scope:
-    """Where an expression stands: what the names in it mean. `known` are the event variables with their types."""
+    """The scope of an expression: the meaning of its names. `known` are the event variables with their types."""
 
     def __init__(self, machine: _Machine, chart: Chart, handler: Handler | None, known: Mapping[str, Type]) -> None:
         self.machine = machine
@@ -340,7 +340,7 @@ class _Scope:
             yield Occurrence(node.name_span, Symbol("", SymbolKind.FIELD, node.name, inner.name), access=Access.READ)
 
     def type_of(self, expr: Expr) -> Type:
-        """The type of a chain of members and indexes; unknown for anything else."""
+        """The type of a chain of members and indices; unknown for other expressions."""
         match expr:
             case NameExpr():
                 return self.known.get(expr.name) or self.variables.get(expr.name) or UNKNOWN
@@ -361,7 +361,7 @@ def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:
 
 
 def _base(expr: Expr) -> Expr:
-    """The name that a location begins with."""
+    """The name at the beginning of a location."""
     while isinstance(expr, (Member, Index)):
         expr = expr.object
     return expr

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in property files: what the parts of a global variable's name come from.
+"""The names in property files: the sources of the parts of a global variable's name.
 
-`EVENT.valid`, `EVENT__parameter__member`, `EVENT__parameter.d1_len`: the event may be a user's own or made of a topic,
-service, action, automaton or blackboard variable. The names themselves are those of `roaml.model.globals`.
+`EVENT.valid`, `EVENT__parameter__member`, `EVENT__parameter.d1_len`: the event may be written by the user or generated
+from a topic, service, action, automaton or blackboard variable. The names themselves are those of
+`roaml.model.globals`.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ _ACTION_CLIENT = {
 def in_properties(
     text: str, properties: Iterable[Property], table: Mapping[str, tuple[Piece, ...]]
 ) -> Iterator[Occurrence]:
-    """`table` is that of `names`."""
+    """`table` is the result of `names`."""
     for each in properties:
         for identifier, span in identifiers(each.expression):
             if text[span.start : span.end] == identifier:
@@ -63,7 +64,7 @@ def _occurrences(pieces: tuple[Piece, ...], at: int) -> Iterator[Occurrence]:
 def names(
     system: System, variables: Mapping[str, GlobalVariable], trees: Trees, interface: FindInterface
 ) -> Mapping[str, tuple[Piece, ...]]:
-    """The name of each global variable of the translation -> what it is made of."""
+    """The name of each global variable of the translation -> its parts."""
     events = {_text(pieces): (pieces, part) for pieces, part in _events(system, trees, interface)}
     found = {}
     for name, variable in variables.items():
@@ -143,7 +144,7 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
 
 
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
-    """What stands behind the event. `part` is what the event carries."""
+    """The part after the event. `part` is what the event carries."""
     if rest == ".valid":
         yield _plain(rest)
     elif variable.event in system.events:

@@ -28,7 +28,7 @@ def in_xml(declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Oc
 
 
 def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Occurrence]:
-    """A property that is an object names a member and a struct with one word (docs/spec/types.md#json-structs)."""
+    """A property that is an object names both a member and a struct (docs/spec/types.md#json-structs)."""
     found: dict[Occurrence, None] = {}
     names = set()
     for struct in declarations:
@@ -54,7 +54,7 @@ def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaratio
 
 
 def _span(text: str, name: Name | None) -> Span | None:
-    """The name itself, without the quotes or the path around it; None if it is written with escapes."""
+    """The name itself, without the quotes or the path around it; `None` if it is written with escapes."""
     if name is None:
         return None
     start = text.rfind(name.value, name.span.start, name.span.end)
@@ -62,7 +62,7 @@ def _span(text: str, name: Name | None) -> Span | None:
 
 
 def _refers(text: str, type_: object) -> bool:
-    """Whether the type of a member is a `$ref` and not written out in its place."""
+    """Whether the type of a member is a `$ref` and not an inline definition."""
     span = getattr(type_, "span", None)
     return isinstance(span, Span) and '"$ref"' in text[span.start : span.end]
 

@@ -92,7 +92,7 @@ class _Tree:
         return self.system.plugin(name.value) if self.system and name else ("", None)
 
     def plugin_symbol(self, name: str) -> Symbol:
-        """The machine of that name; of a plugin that nobody declares, the name alone."""
+        """The machine with this name; for an undeclared plugin, only the name."""
         path, outline = self.system.plugin(name) if self.system else ("", None)
         if path:
             return Symbol(path, SymbolKind.MACHINE, name)
@@ -107,7 +107,7 @@ class _Tree:
             yield Occurrence(span, symbol, access is Access.WRITE, access)
 
     def inner(self, value: Name, variable: str) -> Span | None:
-        """Where the variable in a value stands, without its `@`; None if it is no name."""
+        """The position of the variable in a value, without its `@`; `None` if the value is not a valid name."""
         name = variable.removeprefix("@")
         if not name or name == "=":
             return None
@@ -159,7 +159,7 @@ class _Tree:
                 yield Occurrence(port.name.span, Symbol(path, SymbolKind.PORT, port.name.value))
 
     def defaults(self) -> Iterator[Occurrence]:
-        """Variables in the defaults of ports: each is one of every tree that leaves the port unset."""
+        """Variables in the defaults of ports: each is one of every tree that does not set the port."""
         for plugin, settings in self.trees.defaults.items():
             own = {key: setting for key, setting in settings.items() if setting.path == self.path}
             users = [
@@ -180,7 +180,7 @@ class _Tree:
     # ------------------------------------------------------------- constants
 
     def constants(self) -> Iterator[Occurrence]:
-        """Topics, services and actions that ports hold."""
+        """Topics, services and actions in the values of ports."""
         if self.system is None:
             return
         found: dict[Occurrence, None] = {}

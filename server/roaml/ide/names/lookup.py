@@ -20,7 +20,7 @@ from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
-"""Kinds of symbols that only their own file can name."""
+"""Kinds of symbols that only their own file can use."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,8 @@ class SymbolGroup:
 
 
 def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
-    """What stands at a caret, in each system; a name that begins there goes before one that ends there."""
+    """The occurrences at a caret, in each system; a name that begins there takes precedence over one that ends
+    there."""
     found = dict.fromkeys(
         each
         for system in analysis.systems_of(path)
@@ -82,7 +83,7 @@ def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
         for path, uses_ in where(analysis, symbol):
             for occurrence in uses_.by_symbol.get(symbol, ()):
                 place = (path, occurrence.span)
-                # Of several at one place the definition says most, then that of what was asked about.
+                # Of several at one place, the definition is the most specific, then the requested one.
                 if place not in found or (occurrence.defines and not found[place].occurrence.defines):
                     found[place] = SymbolUse(path, occurrence)
                 for other in _sharing(analysis, path, occurrence.span):
@@ -99,7 +100,7 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
 
 
 def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
-    """The files that can name a symbol, as they are in the systems that matter."""
+    """The files that can use a symbol, as they are in the relevant systems."""
     if symbol.kind in _IN_ONE_FILE:
         for system in analysis.systems_of(symbol.path):
             yield symbol.path, uses(analysis, symbol.path, system)

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One use of a name, and what it denotes.
+"""One use of a name, and its symbol.
 
-A `Symbol` is the identity of a named thing. Its `path` tells how far the name reaches:
+A `Symbol` is the identity of a named thing. Its `path` determines its scope:
+- a state, variable, handle, port or machine is local to its file, whichever systems list it;
+- a blackboard variable and a named tree node are local to the tree (`scope`) in the file that contains them;
+- events, parameters, topics, services, actions, trees, structs and members are part of a system: `path` is its file, or
+  the file itself if it is analysed alone;
+- definitions of ROS or BehaviorTree.CPP are part of no file: `path` is "".
 
-- a state, variable, handle, port or machine belongs to its file, whichever systems list it;
-- a blackboard variable and a named tree node belong to the tree (`scope`) in the file that they stand in;
-- events, parameters, topics, services, actions, trees, structs and members belong to a system: `path` is its file, or
-  the file itself if it is looked at alone;
-- what ROS or BehaviorTree.CPP bring along belongs to nobody: `path` is "".
-
-The same characters may denote different things in different systems, and even two things in one (a JSON property names
-a member and a struct). Whoever asks for all that must change together follows both (`roaml.ide.names.lookup`).
+The same text may denote different things in different systems, and even two things in one (a JSON property names a
+member and a struct). `roaml.ide.names.lookup` follows both to find everything that must change together.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ NOT_OURS = frozenset((SymbolKind.FIELD, SymbolKind.ROS_TYPE))
 
 
 class Access(enum.Enum):
-    """What a use does with the thing: names it, takes from it (reads, receives) or gives to it (writes, sends)."""
+    """What a use does with the symbol: names it, reads or receives it, or writes or sends it."""
 
     TEXT = "names it"
     READ = "reads it"
@@ -45,17 +44,17 @@ class Access(enum.Enum):
 
 
 class Form(enum.Enum):
-    """How a name is spelled in a place."""
+    """The spelling of a name at a place."""
 
     AS_IS = "as it is"
     SANITISED = "an interface name in an event name: `/` becomes `__`"
-    SAFE = "an automaton name in an event name: odd characters become `_`"
-    WORD = "a subtree in a variable name: what is no letter or digit becomes `_`"
+    SAFE = "an automaton name in an event name: other characters become `_`"
+    WORD = "a subtree in a variable name: other characters than letters and digits become `_`"
     FLAT = "a parameter in a variable name: `.` becomes `__`"
 
 
 class Occurrence(NamedTuple):
-    """`span` is exactly the name; `form` tells how it is spelled there."""
+    """`span` is exactly the name; `form` is its spelling there."""
 
     span: Span
     symbol: Symbol
@@ -83,5 +82,5 @@ def base_span(span: Span, base: str) -> Span:
 
 
 def without_slash(name: Name) -> Span:
-    """A topic as written, without the slash that does not count."""
+    """A topic as written, without the leading slash, which makes no difference."""
     return Span(name.span.start + 1, name.span.end) if name.value.startswith("/") else name.span

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All uses of names in a file, as it is in one system or alone."""
+"""All uses of names in a file, as part of one system or alone."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Uses:
 
 
 def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
-    """The uses of names in the file `path`, as part of a system or (None) alone. Remembered by what they depend on."""
+    """The uses of names in the file `path`, as part of a system or (`None`) alone. Cached by their dependencies."""
     source = analysis.source(path)
     if source is None:
         return _index(())
     key: tuple[object, ...] = (source.digest, analysis.structs(system))
     if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
-        key = (*key, analysis.typed_in(path, system))  # all that it sees of its system
+        key = (*key, analysis.typed_in(path, system))  # everything that it uses of its system
     else:
         key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
     return analysis.memo.get("uses", (path, system), key, lambda: _index(_of(analysis, path, system)))
@@ -47,7 +47,7 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
 
 
 def _index(found: Iterable[Occurrence]) -> Uses:
-    """Each occurrence once."""
+    """Each occurrence, without duplicates."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
     ordered: list[Occurrence] = []
@@ -89,7 +89,7 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
 
 
 def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, ...]]:
-    """The names of the global variables of a translated system -> what they are made of."""
+    """The names of the global variables of a translated system -> their parts."""
     linked = analysis.system(system)
     if linked is None:
         return {}

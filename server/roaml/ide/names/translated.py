@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a name in a model becomes in the translation: events of the plain SCXML, global variables of the JANI model."""
+"""The names of a symbol in the translation: events of the plain SCXML, global variables of the JANI model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roaml.project.analysis import Analysis
 
 
 def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable, ...]:
-    """The global variables in whose names a symbol stands, in all its systems, flags (`.valid`) first."""
+    """The global variables whose names contain a symbol, in all its systems, flags (`.valid`) first."""
     found: dict[str, GlobalVariable] = {}
     if symbol.path:
         systems = (symbol.path,) if symbol.path in analysis.system_paths else analysis.systems_of(symbol.path)

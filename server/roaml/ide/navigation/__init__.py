@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a name to where it is defined, declared, typed, implemented and used."""
+"""From a name to its definition, declaration, type, implementation and uses."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 @dataclass(frozen=True, slots=True)
 class DocumentHighlight:
-    """A use in the same file. `access` tells what it does; a definition counts as writing."""
+    """A use in the same file. `access` is its kind; a definition is a write access."""
 
     span: Span
     access: Access
 
 
 def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """Where what stands at a caret is defined: senders for events, publishers for topics, servers for services."""
+    """The definition of the symbol at a caret: senders for events, publishers for topics, servers for services."""
     file = _file_at(analysis, path, offset)
     if file is not None:
         return (Location(file, Span(0, 0)),)
@@ -40,14 +40,14 @@ def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ..
 
 
 def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """Where a thing is defined first; if it is not, where it is named first. None if it is nowhere."""
+    """The first definition; if there is none, the first use; `None` if there is neither."""
     tied = thing(analysis, (symbol,))
     uses = (use.location for use in tied.uses)
     return next(iter((*_ros(analysis, (symbol,)), *_builtin((symbol,)), *tied.definitions, *uses)), None)
 
 
 def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """Like `definition`; for topics, services and actions the declarations of all who take part."""
+    """Like `definition`; for topics, services and actions the declarations of all participants."""
     found = thing_at(analysis, path, offset)
     if found is None or not found.kinds & set(INTERFACES):
         return definition(analysis, path, offset)
@@ -55,7 +55,7 @@ def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, .
 
 
 def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """The file of a tree node's plugin, the handlers of an event; else the definition."""
+    """The file of a tree node's plugin, the handlers of an event; otherwise the definition."""
     found = thing_at(analysis, path, offset)
     if found is not None and SymbolKind.EVENT in found.kinds:
         return tuple(
@@ -67,7 +67,7 @@ def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location
 
 
 def references(analysis: Analysis, path: str, offset: int, *, with_declaration: bool = True) -> tuple[Location, ...]:
-    """All uses of what stands at a caret, in all files, sorted."""
+    """All uses of the symbol at a caret, in all files, sorted."""
     found = thing_at(analysis, path, offset)
     if found is None:
         return ()
@@ -76,7 +76,7 @@ def references(analysis: Analysis, path: str, offset: int, *, with_declaration: 
 
 
 def highlights(analysis: Analysis, path: str, offset: int) -> tuple[DocumentHighlight, ...]:
-    """All uses of what stands at a caret, in this file."""
+    """All uses of the symbol at a caret, in this file."""
     found = thing_at(analysis, path, offset)
     uses: Iterable[SymbolUse] = found.uses if found else ()
     return tuple(_highlight(use) for use in uses if use.path == path)
@@ -93,7 +93,7 @@ def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
 
 
 def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
-    """The machines that nodes of BehaviorTree.CPP are translated as: they say exactly what these do."""
+    """The machines for nodes of BehaviorTree.CPP, which define their behaviour in the model."""
     for symbol in symbols:
         file = node_file(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
         if file is not None:
@@ -101,7 +101,7 @@ def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
 
 
 def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
-    """The file that a path at a caret names."""
+    """The file of a path at a caret."""
     system, tree = analysis.system_file(path), analysis.tree(path)
     names = [entry.src for entry in system.inputs] if system else []
     names += [include.path for include in tree.includes] if tree else []
@@ -114,7 +114,7 @@ def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
 
 
 def type_definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """Where the type of what stands at a caret is defined: a struct, or a ROS definition file."""
+    """The definition of the type of the symbol at a caret: a struct, or a ROS definition file."""
     found: dict[Location, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
         for system in analysis.systems_of(path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths in a file that lead to another file: `src` in a system file, `path` of an `<include>` in a tree."""
+"""Paths in a file that refer to another file: `src` in a system file, `path` of an `<include>` in a tree."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roaml.text import Span
 
 
 class DocumentLink(NamedTuple):
-    """The path at `span` means the file `target`, which is there."""
+    """The path at `span` refers to the existing file `target`."""
 
     span: Span
     target: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One entry of an outline, and the kinds of what it stands for."""
+"""One entry of an outline, and its kinds."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class DocumentSymbolKind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class DocumentSymbol:
-    """`detail` stands behind the name; `name_span`, a part of `span`, is what is shown when it is chosen."""
+    """`detail` follows the name; `name_span`, a part of `span`, is shown when the symbol is selected."""
 
     name: str
     detail: str

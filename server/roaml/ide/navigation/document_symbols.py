@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The outline of a file: what is named in it, nested as it is written.
+"""The outline of a file: its named parts, nested as in the file.
 
-What has no name yet is called as its element is, so that a half-typed file has an outline, too.
+A part without a name has the name of its element, so that an incomplete file has an outline as well.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _state(state: State) -> DocumentSymbol:
 
 
 def _handler(handler: Handler) -> DocumentSymbol:
-    """Called by its event: that of a plain transition, or the element with what it refers to."""
+    """Named by its event: that of a plain transition, or the element with what it refers to."""
     element = handler.element
     words = [each.value for each in (handler.handle, handler.child) if each]
     if element.name != "transition":
@@ -131,7 +131,7 @@ def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
 
 
 def _node(node: TreeNode) -> DocumentSymbol:
-    """Called by its name; what it is an instance of stands behind that."""
+    """Named by its name; its plugin follows."""
     plugin = node.plugin.value if node.plugin else node.element.name
     name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
     kind = DocumentSymbolKind.CONTROL if node.children else DocumentSymbolKind.LEAF
@@ -169,7 +169,7 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
 
 
 def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
-    """From the text, not from the model: that has only the properties without mistakes."""
+    """From the text, not from the model, which contains only the properties without errors."""
     json = analysis.json(path)
     found = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
     for each in found.items if isinstance(found, JsonArray) else ():

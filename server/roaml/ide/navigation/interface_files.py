@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Into the definition files of ROS interfaces."""
+"""Navigation into the definition files of ROS interfaces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roaml.text import Location, Span
 
 
 def locate_ros(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """Where a type or a field is defined; None if its file is not found."""
+    """The definition of a type or a field; `None` if its file is not found."""
     if symbol.kind is SymbolKind.ROS_TYPE:
         return locate_type(analysis, symbol.scope, symbol.name)
     definition, section = section_of(analysis.registry, symbol.scope)
@@ -27,7 +27,7 @@ def locate_type(analysis: Analysis, kind: str, name: str) -> Location | None:
 
 
 def type_of_field(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The message that a field holds; None if it is no message."""
+    """The message type of a field; `None` if it is not a message."""
     definition, section = section_of(analysis.registry, symbol.scope)
     field = definition.section(section).field(symbol.name) if definition else None
     return None if field is None or field.type.is_primitive else locate_type(analysis, "msg", field.type.name)

@@ -14,7 +14,7 @@ _MAX_CHARACTERS = 80
 
 
 def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
-    """The sections of a model that have something in them, in the order of the text."""
+    """The sections of a model that are not empty, in the order of the text."""
     if not isinstance(value, JsonObject):
         return
     for section in value.members:
@@ -76,7 +76,7 @@ def _automaton(item: JsonValue) -> DocumentSymbol | None:
 
 
 def _edge(item: JsonValue) -> DocumentSymbol | None:
-    """Called by its action; what it leads from and to, and its guard, stand behind that."""
+    """Named by its action; its source, its destinations and its guard follow."""
     parts = members(item)
     location, action = parts.get("location"), parts.get("action")
     if not isinstance(location, JsonString):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Named things of a workspace, looked up by a part of their name."""
+"""Search for symbols of a workspace by a part of their name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A definition. `container` is what it is a part of: a machine, a struct, an event, ..."""
+    """A definition. `container` is what contains it: a machine, a struct, an event, ..."""
 
     symbol: Symbol
     path: str
@@ -24,7 +24,7 @@ class Found:
 
 
 def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found, ...]:
-    """The definitions in some files whose names hold the letters of `query` in that order, whatever their case."""
+    """The definitions in some files whose names contain the letters of `query` in that order, ignoring case."""
     wanted = query.casefold()
     found: dict[tuple[str, Span, SymbolKind], Found] = {}
     for path in paths:

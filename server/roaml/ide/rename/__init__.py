@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rename what stands at a caret, in all files of all systems that it reaches.
+"""Rename the symbol at a caret, in all files of all systems in which it is used.
 
-A rename to a name that is not taken changes nothing but the name: the findings stay, the translation stays, and
-renaming back restores the files byte by byte. What cannot keep that promise is refused, with a reason for the user.
+A rename to an unused name changes only the name: the findings and the translation stay the same, and renaming back
+restores the files byte by byte. A rename that cannot keep this property is rejected, with a reason for the user.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _NEED_A_DEFINITION = frozenset(
     )
 )
 _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
-"""Ports that the tree fills by itself if they are called so."""
+"""Names of ports that the tree sets automatically."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class RenameRefusal:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """What is about to be renamed: where it stands, and its name as it stands there."""
+    """The place and the current name of what is renamed."""
 
     span: Span
     name: str
@@ -59,10 +59,10 @@ class Renaming:
 
 
 def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefusal:
-    """Whether what stands at a caret can be renamed."""
+    """Whether the symbol at a caret can be renamed."""
     found, source = thing_at(analysis, path, offset), analysis.source(path)
     if found is None or source is None:
-        return RenameRefusal("no name stands here")
+        return RenameRefusal("there is no name here")
     reason = _fixed(found)
     if reason:
         return RenameRefusal(reason)
@@ -71,10 +71,10 @@ def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefu
 
 
 def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | RenameRefusal:
-    """The edits that give what stands at a caret a new name."""
+    """The edits that rename the symbol at a caret."""
     found = thing_at(analysis, path, offset)
     if found is None:
-        return RenameRefusal("no name stands here")
+        return RenameRefusal("there is no name here")
     new = new.strip()
     if SymbolKind.TOPIC in found.kinds:
         new = new.removeprefix("/")
@@ -102,7 +102,7 @@ def _spelled(new: str, use: SymbolUse) -> str:
 
 
 def _fixed(found: SymbolGroup) -> str:
-    """Why a thing cannot be renamed, whatever to; "" if it can."""
+    """Why a symbol cannot be renamed at all; "" if it can."""
     for symbol in found.symbols:
         name = symbol.name
         if symbol.kind in NOT_OURS:
@@ -110,9 +110,9 @@ def _fixed(found: SymbolGroup) -> str:
         if symbol.kind is SymbolKind.PLUGIN and not symbol.path:
             return f"`{name}` is a node of BehaviorTree.CPP"
         if symbol.kind is SymbolKind.PORT and name in _OF_THE_NODE:
-            return f"the port `{name}` has a meaning of its own in a tree"
+            return f"the port `{name}` has a special meaning in a tree"
         if symbol.kind is SymbolKind.TOPIC and name == CLOCK_TOPIC:
-            return f"the topic `{name}` is that of the time of ROS"
+            return f"the topic `{name}` is the time of ROS"
         in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in found.uses)
         if in_prefix and not (name[:1].isalpha() or name[:1] == "_"):
             return f"`{name}` is spelled differently in properties"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a thing may have a new name: the name has the right form, and nothing else has it where the thing is known.
+"""Whether a symbol may have a new name: the name is valid, and no other symbol in its scope has it.
 
-Stricter than the rules: a name that is legal but would change what another name means, here or in the translation, is
-refused as well.
+Stricter than the rules: a valid name that would change the meaning of another name, here or in the translation, is
+rejected as well.
 """
 
 from __future__ import annotations
@@ -29,35 +29,35 @@ from roaml.scxml.names import is_synchronising
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
 _MADE = re.compile(r"(topic_|srv_|action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
-"""How names begin that the translation makes by itself."""
+"""The beginnings of names that the translation generates."""
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)
-"""Kinds whose names the translation joins to others with `__`."""
+"""Kinds of symbols whose names the translation joins with others by `__`."""
 
 
 def problem(analysis: Analysis, found: SymbolGroup, new: str) -> str:
-    """Why a thing cannot be called `new`, as a clause; "" if it can."""
+    """Why a symbol cannot be named `new`, as a clause; "" if it can."""
     for symbol in found.symbols:
         if symbol.name == new:
-            return f"it is called `{new}` already"
+            return f"its name is already `{new}`"
     for kind in sorted(found.kinds):
         if reason := _form(kind, new, found):
             return reason
     for symbol in found.symbols:
         for other in _neighbours(analysis, symbol):
             if other not in found.symbols and _clashes(symbol, other, new):
-                return f"there is {_article(other.kind)} `{other.name}` already"
+                return f"{_article(other.kind)} `{other.name}` already exists"
         if symbol.kind is SymbolKind.BLACKBOARD:
             trees = (trees_of(analysis, symbol.path, system) for system in analysis.systems_of(symbol.path))
             if any(each.is_taken(symbol, new) for each in trees):
-                return f"there is a blackboard variable `{new}` already"
+                return f"a blackboard variable `{new}` already exists"
         if handle := _handle_called(analysis, found, symbol, new):
-            return f"there is {_article(handle.kind)} `{new}` already in a machine that knows it by its name"
+            return f"{_article(handle.kind)} `{new}` already exists in a machine that uses it by its name"
     return ""
 
 
 def _handle_called(analysis: Analysis, found: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
-    """The declaration that a handle, or an interface that is its own handle, would be taken for."""
+    """The declaration for which a handle, or an interface that is its own handle, would be mistaken."""
     if symbol.kind in HANDLES:
         machine = analysis.machine(symbol.path)
         return next((d for d in _declared(machine, new) if is_implicit(d)), None)
@@ -71,26 +71,26 @@ def _handle_called(analysis: Analysis, found: SymbolGroup, symbol: Symbol, new: 
 
 
 def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
-    """The declarations that a machine knows by a name."""
+    """The declarations with a name in a machine."""
     return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
 
 
 def _form(kind: SymbolKind, new: str, found: SymbolGroup) -> str:
-    """Why `new` cannot name any thing of a kind."""
+    """Why `new` is not a valid name of a kind."""
     what = _article(kind)
     cannot = f"`{new}` cannot name {what}"
     if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in found.symbols):
-        return f"{cannot}: `__` divides the parts of names in the translation"
+        return f"{cannot}: `__` separates the parts of names in the translation"
     right: object
     match kind:
         case SymbolKind.VARIABLE:
             if new in EVENT_VARIABLES:
-                return f"`{new}` is what received data are called"
+                return f"`{new}` is the name of received data"
             return variable_problem(new)
         case SymbolKind.EVENT:
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
             if right and (is_synchronising(new) or _MADE.match(new)):
-                return f"{cannot}: the translation calls its own events so"
+                return f"{cannot}: the translation uses it for its own events"
         case SymbolKind.PARAMETER:
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
         case SymbolKind.MEMBER:
@@ -114,13 +114,13 @@ def _form(kind: SymbolKind, new: str, found: SymbolGroup) -> str:
 
 
 def _neighbours(analysis: Analysis, symbol: Symbol) -> Iterator[Symbol]:
-    """The symbols of all files in which one is known."""
+    """The symbols of all files in which one is available."""
     for _, uses in where(analysis, symbol):
         yield from uses.by_symbol
 
 
 def _clashes(symbol: Symbol, other: Symbol, new: str) -> bool:
-    """Whether `symbol` could be taken for `other` if it were called `new`."""
+    """Whether `symbol` would be mistaken for `other` if its name were `new`."""
     if symbol.kind in _INTERFACES:
         is_topic = symbol.kind is SymbolKind.TOPIC
         return (
@@ -138,7 +138,7 @@ def _clashes(symbol: Symbol, other: Symbol, new: str) -> bool:
         case SymbolKind.MACHINE | SymbolKind.PLUGIN:
             return other.kind in (SymbolKind.MACHINE, SymbolKind.PLUGIN)
         case SymbolKind.BLACKBOARD | SymbolKind.TREE_NODE:
-            return False  # `Trees.is_taken` tells; nodes of a tree may have equal names
+            return False  # `Trees.is_taken` decides; nodes of a tree may have equal names
     return (other.kind, other.path, other.scope) == (symbol.kind, symbol.path, symbol.scope)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of BehaviorTree.CPP as HL-SCXML machines (docs/spec/nodes.md).
 
-Each is a document beside this module; `Switch`, whose size varies, is written on demand. Besides the ports that the
-schema describes they have some that are filled in here.
+Each is a document beside this module; `Switch`, whose size varies, is generated on demand. In addition to the ports in
+the schema they have some that are set here.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _MILLISECONDS_PER_SECOND = 1000
 
 
 def builtin_machine(automaton: SystemAutomaton, program: TranslatableSystem) -> Machine:
-    """The machine that a node of BehaviorTree.CPP is translated as."""
+    """The machine for a node of BehaviorTree.CPP."""
     name = automaton.outline.name
     if name in _SWITCHES:
         return _parsed(switch(name, _SWITCHES[name], program.system.any_type(automaton)))
@@ -36,7 +36,8 @@ def builtin_machine(automaton: SystemAutomaton, program: TranslatableSystem) -> 
 
 
 def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> dict[str, str]:
-    """The ports of such a node that nobody sets: defaults of the schema, number of children, rate of the tree."""
+    """The ports of the node that the tree does not set: defaults of the schema, number of children, rate of the
+    tree."""
     rate = Fraction(str(program.parameters.tick_rate))
     found = {
         CHILDREN_COUNT: str(_children(automaton)),
@@ -50,7 +51,7 @@ def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> di
 
 
 def node_file(name: str) -> str | None:
-    """The document that a node of BehaviorTree.CPP is translated as; None if it is written on demand."""
+    """The document for a node of BehaviorTree.CPP; `None` if it is generated on demand."""
     file = importlib.resources.files(__name__) / f"{_current(name)}.ascxml"
     return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exactly once on every path: where an answer never comes, or comes only if something happens that cannot.
+"""Exactly one answer on every path: the places where an answer never comes, or comes only after an impossible event.
 
-All functions are pure functions of a graph (`Behavior`). `possible` tells which steps may be taken; it is left out
-where all may.
+All functions are pure functions of a graph (`Behavior`). `possible` are the steps that can be taken; without it, all
+can.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _FOLLOWING = (
     ProtocolPart.CHILD_STATUS,
     ProtocolPart.CHILD_HALTED,
 )
-"""What comes because of something that was sent; other events come of their own accord."""
+"""Events that answer something that was sent; other events come spontaneously."""
 
 
 def always(_: BehaviorStep) -> bool:
@@ -48,7 +48,7 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
 
 
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
-    """Of several goals at once it is not known which one an answer is for."""
+    """If there are several goals at once, it is unknown which one an answer is for."""
     if configuration.state == NOWHERE or configuration.phase(duty.kind, duty.handle) == "several":
         return False
     return configuration.owes(duty)
@@ -56,7 +56,7 @@ def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
 
 def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
     """The configurations to which a tick or halt (a request, a goal) may come, and from which no sequence of possible
-    steps leads to a handler for it. Meanwhile nothing else is asked by the tree."""
+    steps leads to a handler for it. Meanwhile the tree asks nothing else."""
     waiting = frozenset(
         n
         for n, c in enumerate(behavior.configurations)
@@ -70,7 +70,7 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
         if possible(step) and not (step.event and step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT))
     ]
     lost = waiting - _back((taking & waiting) | known, between)
-    # Where something still follows without being asked for, the machine does not stay.
+    # If an event still follows without a request, the machine does not stay.
     left = {
         step.source
         for step in between
@@ -89,18 +89,18 @@ def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
 
 
 def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
-    """The steps behind which the answer never comes.
+    """The steps after which the answer never comes.
 
-    Where the answer was missed early, but more was still to follow from it (the response to a request that was sent),
-    the last step counts: that is where the answer is missing. But if the machine waits for it in a state that takes the
-    next tick, the answer is missing in the first step.
+    If the answer was omitted early, but a further event was still to follow (the response to a request that was sent),
+    the last step is reported, because the answer is missing there. But if the machine waits for the event in a state
+    that handles the next tick, the answer is missing in the first step.
     """
     lost = unfinished(behavior, duty)
     inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
     following = [step for step in inside if _follows(step)]
     going_on = _back({step.source for step in following if step.source != step.target}, inside)
     if going_on >= lost:
-        going_on, following = set(), []  # it never ends: what leads there counts
+        going_on, following = set(), []  # it never ends: the step that leads there is reported
     takers = (s for s in behavior.chart.states if any(h.trigger == _TAKING[duty.kind] for h in s.handlers))
     ready = {state.id.value for state in takers if state.id}
     early: set[int] = set()
@@ -117,13 +117,14 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
 
 
 def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[int]:
-    """The configurations to which a step leads, itself or by further ones, and which owe an answer that never comes."""
+    """The configurations to which a step leads, directly or by further steps, and which owe an answer that never
+    comes."""
     lost = unfinished(behavior, duty)
     return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
 
 
 def is_suspicious(behavior: Behavior) -> bool:
-    """Whether there may be a mistake in what the chart answers, or in which thread it starts."""
+    """Whether the answers of the chart, or the threads that it starts, may contain an error."""
     known = behavior.chart.__dict__.setdefault("suspicion", {})
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}
@@ -146,7 +147,7 @@ def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Beh
 
 
 def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, int]:
-    """How many steps lead out of a set of configurations from each of them, and from what lies outside: 0."""
+    """The number of steps out of a set of configurations from each of them; 0 for those outside."""
     incoming: dict[int, list[int]] = {}
     for step in behavior.steps:
         if step.source in configurations:
@@ -162,12 +163,12 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
 
 
 def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations from which some of `steps` lead to `goals`, these included."""
+    """The configurations from which some of `steps` lead to `goals`, including these."""
     return _reached(goals, ((step.target, step.source) for step in steps))
 
 
 def _forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations to which some of `steps` lead from `first`, these included."""
+    """The configurations to which some of `steps` lead from `first`, including these."""
     return _reached(first, ((step.source, step.target) for step in steps))
 
 

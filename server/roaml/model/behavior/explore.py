@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
-A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step takes an
-event, or none, runs all that belongs to the transition (docs/spec/machines.md#onentry) and ends in a configuration.
-What has happened before decides which events may come: a response only after its request, a tick only when the last one
-is answered.
+A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step handles an
+event, or none, executes everything in the transition (docs/spec/machines.md#onentry) and ends in a configuration. The
+history decides which events may come: a response only after its request, a tick only when the last one is answered.
 
 - The graph contains every path that the chart can take, and it may contain paths that it cannot take.
-- Its size is bounded. Where what is known differs too much, it is forgotten; a chart that is still too large has no
-  graph (`None`).
-- Made from one machine alone; remembered as long as its chart is.
+- Its size is bounded. If the knowledge about values has too many variants, it is discarded; a chart that is still too
+  large has no graph (`None`).
+- It depends on one machine only and is cached as long as its chart exists.
 """
 
 from __future__ import annotations
@@ -46,22 +45,22 @@ from roaml.text import Span
 
 MOST_CONFIGURATIONS = 4000
 MOST_KNOWN = 12
-"""Of configurations that differ in what is known only."""
+"""The maximum number of configurations that differ only in the knowledge about values."""
 
 NOWHERE = "?"
-"""Stands for a state that is not known: anything may happen there."""
+"""Represents an unknown state, in which anything may happen."""
 
 
 class ProtocolEvent(NamedTuple):
-    """Something that a machine receives or sends: the part of an interface or of the tree protocol, as the schema calls
-    it, and the handle or the name of the event ("" for the tree)."""
+    """An event that a machine receives or sends: the part of an interface or of the tree protocol, with its name in the
+    schema, and the handle or the name of the event ("" for the tree)."""
 
     part: ProtocolPart
     name: str
 
 
 class Duty(NamedTuple):
-    """Something that has to be answered exactly once: "tick", "halt", "request", "goal" (accepted or rejected) or
+    """Something that must be answered exactly once: "tick", "halt", "request", "goal" (accepted or rejected) or
     "result" (of an accepted goal). `handle` is that of the server, "" for the tree."""
 
     kind: str
@@ -106,7 +105,7 @@ class ChartConfiguration:
 
     @property
     def tree(self) -> str:
-        """Where a plugin stands: "" (never ticked), "ticked", "halting", "running" or "ended"."""
+        """The status of a plugin: "" (never ticked), "ticked", "halting", "running" or "ended"."""
         return self.phase("tree")
 
     def owes(self, duty: Duty) -> bool:
@@ -177,13 +176,13 @@ class Behavior:
 
 
 def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior | None:
-    """The graph of a chart of `machine`; None if it has no initial state or is too large to be looked through.
+    """The graph of a chart of `machine`; `None` if it has no initial state or is too large.
 
-    It is kept with the chart, as the chart's own cached properties are, and goes with it.
+    It is cached with the chart and discarded with it.
 
     Args:
-        fine: values are followed from step to step. That takes longer and leaves out more of the paths that cannot be
-            taken, so it is for charts in which something seems to be wrong.
+        fine: follow values from step to step. This takes longer and leaves out more of the impossible paths, so it is
+            used for charts that may contain an error.
     """
     known: dict[bool, Behavior | None] = chart.__dict__.setdefault("behavior", {})
     if fine not in known:
@@ -211,17 +210,17 @@ class _Path(NamedTuple):
         return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
 
     def variable_with(self, held: str) -> str:
-        """A variable that holds the id of such a goal; "" if none does."""
+        """A variable that holds the id of a goal in this phase; "" if there is none."""
         return next((variable for (kind, variable), id_ in self.phases if kind == "id" and id_ == held), "")
 
     def with_ids(self, before: str, after: str) -> _Path:
-        """With another phase for each variable that holds the id of such a goal."""
+        """With another phase for each variable that holds the id of a goal in this phase."""
         changed = ((key, after if key[0] == "id" and held == before else held) for key, held in self.phases)
         return self._replace(phases=tuple(changed))
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
-    """The types of the scalar variables of a chart; those that are integers and those that are truth values."""
+    """The scalar variables of a chart that are integers, and those that are booleans."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
     whole = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
@@ -229,7 +228,7 @@ def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[s
 
 
 def condition_facts(chart: Chart) -> ConditionFacts:
-    """With which conditions of a chart are compared with each other."""
+    """The facts with which the conditions of a chart are compared."""
     _, whole, logical = _kinds(chart)
     return ConditionFacts(whole, logical, constants=STATUSES)
 
@@ -241,11 +240,11 @@ class _TooLargeError(Exception):
 EVENT_VARIABLES = frozenset(
     ("_event", "_msg", "_req", "_res", "_goal", "_action", "_feedback", "_wrapped_result", "_bt")
 )
-"""They hold the data of the event that is being handled, and nothing behind its step."""
+"""Variables that hold the data of the current event, which are not available after its step."""
 
 
 class _Group(NamedTuple):
-    """The handlers of a state for one event, with the phases that matter to them."""
+    """The handlers of a state for one event, with the phases that affect them."""
 
     state: State
     event: ProtocolEvent | None
@@ -254,7 +253,7 @@ class _Group(NamedTuple):
 
 
 _Found = tuple[str, _Path, Handler, int, bool]
-"""Where a step leads, what has happened on the way, its handler, the choice, and whether the event is ignored."""
+"""The target of a step, the history within it, its handler, the choice, and whether the event is ignored."""
 
 _ANSWERABLE = (
     ProtocolPart.BT_TICK,
@@ -266,10 +265,10 @@ _ANSWERABLE = (
     ProtocolPart.CHILD_STATUS,
     ProtocolPart.CHILD_HALTED,
 )
-"""Events that are lost if no condition holds, and that somebody waits for."""
+"""Events that are lost if no condition holds, and that a client or parent waits for."""
 _CODES = (4, 5, 6)
 _ANSWERED = {ProtocolPart.RESPONSE: "response", ProtocolPart.RESULT: "outcome", ProtocolPart.GOAL_RESPONSE: "decision"}
-"""What a client waits for, by what it receives."""
+"""What a client waits for, by the event that it receives."""
 _ARRIVED = {ProtocolPart.GOAL: "asked", ProtocolPart.THREAD_START: "accepted"}
 """What the id of a goal is that an event brings."""
 
@@ -309,7 +308,7 @@ class _Explorer:
         self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, Knowledge], list[_Found]] = {}
         self.found: list[_Found] = []
         self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
-        self.goal_here = "any"  # what `_action.goal_id` means in the step that is being executed
+        self.goal_here = "any"  # the meaning of `_action.goal_id` in the current step
 
     def declaration(self, user: Handler | RosSend) -> Declaration | None:
         if user not in self.declarations:
@@ -319,8 +318,8 @@ class _Explorer:
     # ------------------------------------------------------ what is followed
 
     def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
-        """The variables of which it is worth to know something, because that may decide where a path leads: those that
-        conditions read, if they are compared more than once or given nothing but constants and truth values."""
+        """The variables whose values may decide where a path leads: those that conditions read, if they are compared
+        more than once or assigned only constants and booleans."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
         wanted = {*self._counted(), *self._statuses()}
         assigned: dict[str, list[Expr | None]] = {}
@@ -352,13 +351,13 @@ class _Explorer:
         return frozenset(wanted) - EVENT_VARIABLES
 
     def _statuses(self) -> frozenset[str]:
-        """The variables that hold answers."""
+        """The variables that hold statuses."""
         given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
         return frozenset(given) - set(STATUSES)
 
     def _counts_down(self) -> bool:
-        """Whether a thread that becomes free changes the number of the next one. How many threads are running is not
-        followed, so that such a number seems to fall without end."""
+        """Whether a thread that becomes free changes the number of the next one. The number of running threads is not
+        followed, so this number seems to decrease without end."""
         numbers = set(self._counted())
         while True:
             values = [
@@ -382,7 +381,7 @@ class _Explorer:
         )
 
     def _counted(self) -> frozenset[str]:
-        """The variables that number threads."""
+        """The variables that hold thread numbers."""
         started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, RosSend) and s.thread_id)
         return variables_in(started)
 
@@ -413,8 +412,8 @@ class _Explorer:
             found |= copied
 
     def _may_be_ids(self) -> frozenset[str]:
-        """The variables, and the data of events, from which the id of a goal may be had: all but the fields of a goal
-        and what is made of nothing but them, of constants and of each other."""
+        """The variables, and the data of events, that may hold the id of a goal: all except the fields of a goal and
+        values computed only from these, from constants and from each other."""
         found = set(EVENT_VARIABLES - {"_goal"})
         assigned = [
             ((access_path(s.location.tree) or ("",))[0], s.value.tree if isinstance(s.value, Expression) else None)
@@ -506,7 +505,7 @@ class _Explorer:
     def _touched(
         self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
     ) -> frozenset[tuple[str, str]]:
-        """The phases that the steps of a group may look at or change."""
+        """The phases that the steps of a group may read or change."""
         found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
         if event is not None:
             handle = event.name
@@ -524,7 +523,7 @@ class _Explorer:
         return frozenset(found)
 
     def event(self, handler: Handler) -> ProtocolEvent | None:
-        """What a handler waits for; None for nothing."""
+        """The event that a handler waits for; `None` if it waits for none."""
         match handler.trigger:
             case None:
                 return None
@@ -553,7 +552,7 @@ class _Explorer:
         return True
 
     def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
-        """What happens depends on few phases only, so the same happens in many configurations."""
+        """The result depends on few phases only, so it is shared by many configurations."""
         taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
         inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
         key = (group.state, group.event, inside, taken.knowledge)
@@ -603,7 +602,7 @@ class _Explorer:
         if matters:
             assert group.state.id is not None
             for way in ways:
-                if not way.enumerates(taken.knowledge):  # if so, they are all values that are ever sent
+                if not way.enumerates(taken.knowledge):  # if so, these are all values that are ever sent
                     path = taken._replace(knowledge=self._kept(way))
                     self.found.append((group.state.id.value, path, handlers[-1], 0, True))
 
@@ -628,14 +627,12 @@ class _Explorer:
                 known = self._kept(path.knowledge) if entered else NOTHING
                 after = name if entered else NOWHERE
                 done = path._replace(knowledge=known)
-                if (
-                    event is not None and event.part is ProtocolPart.GOAL
-                ):  # what was the earlier goal is an accepted one again
+                if event is not None and event.part is ProtocolPart.GOAL:  # the earlier goal is an accepted one again
                     done = done.with_ids(f"earlier {event.name}", f"accepted {event.name}")
                 self.found.append((after, done, handler, choice, False))
 
     def _received(self, path: _Path, event: ProtocolEvent | None) -> _Path:
-        """What an event changes before anything is executed."""
+        """The changes by an event before anything is executed."""
         if event is None:
             return path
         match event.part:
@@ -668,7 +665,7 @@ class _Explorer:
         return paths
 
     def _effective(self, body: tuple[Statement, ...]) -> tuple[Statement, ...]:
-        """The statements of a body that matter here; most assignments do not."""
+        """The statements of a body that are relevant here; most assignments are not."""
         if body not in self.effective:
             self.effective[body] = tuple(statement for statement in body if self._matters(statement))
         return self.effective[body]
@@ -725,7 +722,7 @@ class _Explorer:
         return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> str:
-        """Which goal a variable holds the id of after an assignment."""
+        """The goal whose id a variable holds after an assignment."""
         if not isinstance(location, Name) or value is None:
             return "any"
         if access_path(value) == ("_action", "goal_id"):
@@ -839,7 +836,7 @@ class _Explorer:
         if isinstance(variable, Name) and path.phase("id", variable.name) in ended:
             path = path.at("id", variable.name, f"finished {handle}")
         if len(path.faults) > before:
-            return path.at("result", handle, "")  # that it ends no goal is said already
+            return path.at("result", handle, "")  # it is already reported that this ends no goal
         if handle in self.threaded and not self.thread:
             return path
         match path.phase("result", handle):
@@ -850,7 +847,7 @@ class _Explorer:
         return path
 
     def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]) -> _Path:
-        """A goal must be named by the id that it came with."""
+        """A goal must be named by the id with which it arrived."""
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:
             return path

@@ -3,10 +3,10 @@
 (docs/spec/semantics.md#time).
 
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
-So a plugin can wait only for what it sets going itself: its request, the server's own requests, and so on.
+So a plugin can wait only for what it triggers itself: its request, the server's own requests, and so on.
 
-Where a part of the system cannot be read that might send what is awaited, it is taken to come at once; so is all that
-comes from a machine of which a part cannot be read that takes events.
+If an unreadable part of the system might send the awaited event, the event is assumed to come at once, and so is
+everything from a machine of which a part that handles events cannot be read.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, Sy
 from roaml.roles import ProtocolPart, SymbolKind
 
 _PROMISED = {ProtocolPart.RESPONSE: "request", ProtocolPart.GOAL_RESPONSE: "goal", ProtocolPart.RESULT: "result"}
-"""What a client receives, and the duty of the server that it comes from."""
+"""The events that a client receives, with the duty of the server that they answer."""
 _KINDS = {
     ProtocolPart.MESSAGE: (SymbolKind.SUBSCRIBER,),
     ProtocolPart.REQUEST: (SymbolKind.SERVICE_SERVER,),
@@ -48,7 +48,7 @@ _ANSWERS = {
     ProtocolPart.GOAL_RESPONSE: (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED),
     ProtocolPart.RESULT: (ProtocolPart.RESULT,),
 }
-"""What a server sends that a client receives."""
+"""The events that a server sends and a client receives."""
 
 _Fact = tuple[int, ProtocolEvent]
 
@@ -58,10 +58,10 @@ class EventDelay:
     """Why an event takes time.
 
     Attributes:
-        automaton: who waits for it.
-        event: what is waited for.
-        promise: for an answer, the one that does not come at once, and `server`, who gives it.
-        next: what that waits for in turn; None for a timer.
+        automaton: the automaton that waits for it.
+        event: the awaited event.
+        promise: for an answer, the one that does not come at once; `server` sends it.
+        next: what that waits for in turn; `None` for a timer.
     """
 
     automaton: SystemAutomaton
@@ -105,7 +105,7 @@ class _Solver:
     def senders(
         self, automaton: SystemAutomaton, event: ProtocolEvent
     ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
-        """Who may send what comes to `automaton` as `event`, and as what."""
+        """The automata that may send what arrives at `automaton` as `event`, with the event that they send."""
         if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
@@ -129,7 +129,7 @@ class _Solver:
 
 
 def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> Channel | None:
-    """The topic, service or action that an event of an automaton belongs to."""
+    """The topic, service or action of an event of an automaton."""
     for use in automaton.outline.interfaces:
         if use.handle == event.name and use.kind in _KINDS.get(event.part, ()):
             return system.channel(automaton, use)
@@ -193,7 +193,7 @@ class Instants:
         return False
 
     def _kept(self, server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
-        """The promises that the plugin may meet: an only client does not find a server busy with its own goal."""
+        """The promises that the plugin may encounter: a single client does not find a server busy with its own goal."""
         channel = self.system.channel(server.automaton, server.use)
         alone = channel is not None and len(channel.users) == 1
         return (promise for promise in promises(server, event) if not (alone and promise.busy))
@@ -225,14 +225,14 @@ class Instants:
         return EventDelay(automaton, event)
 
     def _first(self, automaton: SystemAutomaton, needs: Needs) -> ProtocolEvent:
-        """The first event that does not come, of the alternative that needs least."""
+        """The first event that does not come, of the alternative with the fewest events."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
 
 
 def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
-    """Whether an event may come from something that cannot be read."""
+    """Whether an event may come from an unreadable part."""
     if event.part is ProtocolPart.EVENT:
         return system.may(SENDS, event.name)
     if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
@@ -249,7 +249,7 @@ def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent
 
 
 def is_readable(system: System, automaton: SystemAutomaton) -> bool:
-    """Whether all that an automaton takes and sends can be read; the fields of what it sends do not matter."""
+    """Whether everything that an automaton receives and sends can be read; the fields of sent messages are ignored."""
     return id(automaton) not in system.partly_read
 
 
@@ -295,7 +295,7 @@ def comes_again(
     `sent` since. Time may pass meanwhile (docs/spec/semantics.md#time).
 
     Args:
-        chart: its index in the outline; one of several copies of a thread does not hinder the others.
+        chart: its index in the outline; a copy of a thread does not block the other copies.
     """
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is known about values on a path: which conditions have held, and which constants have been assigned.
 
-- A `Knowledge` is a conjunction, one `Domain` for each term (`level`, `_res.success`, `a + b`, `v.length`); what no
-  domain speaks of may have any value. It is immutable.
-- It never excludes a value that is possible: where something is not understood, nothing is learned.
+- A `Knowledge` is a conjunction with one `Domain` for each term (`level`, `_res.success`, `a + b`, `v.length`); a term
+  without a domain may have any value. It is immutable.
+- It never excludes a possible value: an expression that is not understood adds nothing.
 - Two terms that are compared with each other have a domain as well: a subset of `<`, `=`, `>`.
 """
 
@@ -35,7 +35,7 @@ from roaml.expr.tree import (
 Constant: TypeAlias = bool | int | float | str
 
 MOST_WAYS = 16
-"""Into how many conjunctions a condition is taken apart; behind that nothing is learned from it."""
+"""The maximum number of conjunctions into which a condition is split; a larger condition adds no knowledge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +43,9 @@ class Domain:
     """The values that a term may have.
 
     Attributes:
-        only: all of them, if they are finitely many.
+        only: all of them, if there are finitely many.
         excluded: values that it does not have.
-        low, high: bounds of numbers; `low_open` and `high_open` tell that the bound itself is excluded.
+        low, high: bounds of numbers; `low_open` and `high_open` mean that the bound itself is excluded.
     """
 
     only: frozenset[Constant] | None = None
@@ -57,7 +57,7 @@ class Domain:
 
     @property
     def value(self) -> Constant | None:
-        """The only value, if there is just one."""
+        """The only value, if there is exactly one."""
         return next(iter(self.only)) if self.only is not None and len(self.only) == 1 else None
 
     def admits(self, value: Constant) -> bool:
@@ -70,7 +70,7 @@ class Domain:
         return above and below
 
     def narrowed(self, whole: bool) -> Domain | None:
-        """In its simplest form; None if nothing is left. `whole` tells that the values are integers."""
+        """In its simplest form; `None` if no value is left. `whole` means that the values are integers."""
         if self.only is not None:
             only = frozenset(value for value in self.only if self.admits(value))
             return Domain(only) if only else None
@@ -98,7 +98,7 @@ _RELATIONS = Domain(frozenset("<=>"))
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """`roots` are the variables that the term is made of."""
+    """`roots` are the variables in the term."""
 
     term: str
     roots: frozenset[str]
@@ -114,18 +114,18 @@ class Knowledge:
         return next((entry.domain for entry in self.entries if entry.term == term), None)
 
     def without(self, variable: str) -> Knowledge:
-        """Without the terms in which there is a variable."""
+        """Without the terms that contain a variable."""
         kept = tuple(entry for entry in self.entries if variable not in entry.roots)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
     def within(self, variables: frozenset[str]) -> Knowledge:
-        """Only the terms all whose variables are among these."""
+        """Only the terms whose variables are all among these."""
         kept = tuple(entry for entry in self.entries if entry.roots <= variables)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
     def enumerates(self, before: Knowledge) -> bool:
-        """Whether some term has been compared for equality with several constants since `before`, and is none of them:
-        as it is with the values of an enumeration when none is left."""
+        """Whether a term has been compared for equality with several constants since `before`, and equals none of them,
+        as when all values of an enumeration are excluded."""
         return any(
             entry.domain.only is None and len(entry.domain.excluded) > 1 and entry not in before.entries
             for entry in self.entries
@@ -140,7 +140,7 @@ NOTHING = Knowledge()
 
 
 class _Term(NamedTuple):
-    """`text` is None for an expression whose value may differ each time it is read, or that cannot be read."""
+    """`text` is `None` for an expression that cannot be read, or whose value may differ at each evaluation."""
 
     text: str | None
     roots: frozenset[str]
@@ -151,13 +151,13 @@ class _Term(NamedTuple):
 
 @dataclass(frozen=True)
 class ConditionFacts:
-    """What holds for the variables of a chart on every path.
+    """Facts that hold for the variables of a chart on every path.
 
     Attributes:
         whole: variables whose values are integers.
-        logical: variables that are true or false.
-        followed: variables of which something is to be known; None for all.
-        counted: variables to which sums and remainders are followed.
+        logical: variables that are booleans.
+        followed: variables whose values are followed; `None` for all.
+        counted: variables for which sums and remainders are followed.
         constants: names of values, such as `SUCCESS`.
     """
 
@@ -169,7 +169,7 @@ class ConditionFacts:
     _terms: dict[int, _Term] = field(default_factory=dict, repr=False, compare=False)
 
     def term(self, expr: Expr) -> _Term:
-        """What an expression is called here; computed once for each (the expressions outlive this)."""
+        """The term for an expression; computed once for each (the expressions outlive this object)."""
         known = self._terms.get(id(expr))
         if known is None:
             if isinstance(expr, Boolean | String):
@@ -186,7 +186,8 @@ class ConditionFacts:
     # ------------------------------------------------------------ conditions
 
     def assume(self, knowledge: Knowledge, condition: Expr, holds: bool = True) -> tuple[Knowledge, ...]:
-        """What is known where `condition` holds, or does not: one of several conjunctions, none if that cannot be."""
+        """The knowledge where `condition` holds, or does not: one of several conjunctions; empty if it is
+        impossible."""
         ways = tuple(dict.fromkeys(self._assume(knowledge, condition, holds)))
         return ways if len(ways) <= MOST_WAYS else (knowledge,)
 
@@ -282,7 +283,7 @@ class ConditionFacts:
     # ---------------------------------------------------------------- values
 
     def value(self, knowledge: Knowledge, expr: Expr) -> Constant | None:
-        """The value of an expression, if it is certain."""
+        """The value of an expression, if it is known."""
         term = self.term(expr)
         if term.constant is not None or term.text is None:
             return term.constant
@@ -290,7 +291,7 @@ class ConditionFacts:
         return domain.value if domain is not None else None
 
     def values(self, knowledge: Knowledge, expr: Expr, calculates: bool = True) -> Domain:
-        """The values that an expression may have. `calculates` tells whether sums and remainders are looked into."""
+        """The values that an expression may have. `calculates` means that sums and remainders are evaluated."""
         term = self.term(expr)
         if term.constant is not None:
             return Domain(frozenset((term.constant,)))
@@ -306,7 +307,7 @@ class ConditionFacts:
         return Domain()
 
     def assign(self, knowledge: Knowledge, location: Expr, value: Expr | None) -> tuple[Knowledge, ...]:
-        """What is known after an assignment. A condition that is stored splits what is known in two."""
+        """The knowledge after an assignment. A condition that is stored splits the knowledge in two."""
         root = next(iter(self.term(location).roots), "")
         if value is None or not isinstance(location, Name):
             return (knowledge.without(root),)
@@ -368,7 +369,7 @@ _HOLDING = {
 
 
 def _relation(operator: Operator, holds: bool) -> frozenset[str]:
-    """How two values may stand to each other where a comparison holds, or does not."""
+    """The possible relations of two values where a comparison holds, or does not."""
     relation = frozenset(_HOLDING[operator])
     return relation if holds else frozenset("<=>") - relation
 

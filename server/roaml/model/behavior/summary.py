@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What other machines see of a graph: what each answer waits for, and what makes a machine send something.
+"""The part of a graph that other machines use: what each answer waits for, and what makes a machine send something.
 
-It holds names of states and handles, but no places, so that most changes of a file leave it as it was.
+It contains names of states and handles, but no positions, so most changes of a file do not change it.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
-"""Alternatives: each is a set of events that suffice together. No alternative: it never comes."""
+"""Alternatives: each is a set of events that together are sufficient. Without an alternative, it never comes."""
 
 AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
-"""What comes before the first event of a machine."""
+"""The time before the first event of a machine."""
 
 MOST_ALTERNATIVES = 6
 MOST_EVENTS = 4
@@ -38,10 +38,10 @@ class Promise:
 
     Attributes:
         duty: "request", "goal" or "result".
-        state: where the machine waits; `scope` tells the threads of a file apart.
-        taken: the request has been taken; else the machine does not even take it there.
-        busy: the result of an earlier goal is still owed there.
-        needs: what has to happen before the answer is sent, or before the request is taken.
+        state: where the machine waits; `scope` distinguishes the threads of a file.
+        taken: whether the request has been received; otherwise the machine does not even handle it there.
+        busy: whether the result of an earlier goal is still owed there.
+        needs: what has to happen before the answer is sent, or before the request is handled.
     """
 
     duty: Duty
@@ -70,7 +70,7 @@ UNKNOWN = ChartOutline((), frozenset(), ())
 
 
 def summarised(machine: Machine, chart: Chart) -> ChartOutline:
-    """The outline of a chart, kept with it; it says nothing where there is no graph."""
+    """The outline of a chart, cached with it; it is empty if there is no graph."""
     known: dict[str, ChartOutline] = chart.__dict__.setdefault("summary", {})
     if "outline" not in known:
         behavior = explore(machine, chart)
@@ -84,7 +84,8 @@ def summarise(behavior: Behavior) -> ChartOutline:
 
 @dataclass(frozen=True, slots=True)
 class _Edge:
-    """Steps that are alike here. `event` is a bit, 0 for none; `taken` and `sent` are what is received and sent."""
+    """Steps that are equivalent here. `event` is a bit, 0 for none; `taken` and `sent` are what is received and
+    sent."""
 
     source: int
     target: int
@@ -94,7 +95,7 @@ class _Edge:
 
 
 class _Summary:
-    """Sets of events are numbers here, with one bit for each event."""
+    """Sets of events are represented as integers, with one bit for each event."""
 
     def __init__(self, behavior: Behavior) -> None:
         self.behavior = behavior
@@ -113,7 +114,7 @@ class _Summary:
         return ChartOutline(tuple(promises), self._reactions(), tuple(self._repeats()))
 
     def _duties(self) -> list[Duty]:
-        """What the machine answers as a server."""
+        """The duties of the machine as a server."""
         found: dict[Duty, None] = {}
         for event in self.events:
             if event.part in (ProtocolPart.REQUEST, ProtocolPart.GOAL):
@@ -123,7 +124,7 @@ class _Summary:
         return list(found)
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
-        """Where an answer is owed, and where a request is not even taken."""
+        """The places where an answer is owed, and where a request is not even handled."""
         taking, configurations = ProtocolEvent(ProtocolPart(duty.kind), duty.handle), self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
@@ -180,8 +181,8 @@ class _Summary:
         return frozenset(found)
 
     def _needs(self, edges: Iterable[_Edge], reaching: Iterable[_Edge]) -> dict[int, tuple[int, ...]]:
-        """For each configuration from which `edges` lead to one of those that are `reaching`, the least sets of events
-        by which that happens."""
+        """For each configuration from which `edges` lead to one of `reaching`, the smallest sets of events that lead
+        there."""
         goals = set(reaching)
         incoming: dict[int, list[_Edge]] = {}
         found: dict[int, tuple[int, ...]] = {}
@@ -207,7 +208,7 @@ class _Summary:
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:
-    """Without those that contain another one; of many, the smallest."""
+    """Without sets that contain another one; if there are many, only the smallest."""
     found: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
         if mask.bit_count() > MOST_EVENTS:

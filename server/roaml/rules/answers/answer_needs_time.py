@@ -18,7 +18,7 @@ from roaml.rules.support.asynchronous import rewritten
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A tick or halt is answered in the instant in which it comes, or the clock of the model stops
+    """A tick or halt must be answered in the instant in which it arrives; otherwise the clock of the model stops
     (docs/spec/semantics.md#time)."""
     system = context.system
     if system is None:
@@ -44,8 +44,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[Handler]:
-    """Where the wait begins: the handler of the step; behind a decision on a goal, which has no content, the handlers
-    of the ticks that lead there."""
+    """The handlers where the wait begins.
+
+    This is the handler of the step. If the step is a decision on a goal, which has no content, these are the handlers
+    of the ticks that lead there.
+    """
     if step.event is None or step.event.part is not ProtocolPart.GOAL_RESPONSE:
         return (step.handler,)
     sources, waiting = {step.source}, [step.source]
@@ -64,7 +67,8 @@ def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[H
 
 
 def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], instants: Instants) -> ProtocolEvent | None:
-    """The first event on the way to the answer that does not come without time: of several, one that leads to it."""
+    """The first event on the way to the answer that needs time to arrive; if there are several, one that leads to the
+    answer."""
     outgoing, left = behavior.outgoing(), distances(behavior, slow)
     seen, waiting = {first.target}, [first.target]
     while waiting:
@@ -86,9 +90,9 @@ def _finding(
     reason = "; ".join(_reasons(system, delay))
     message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
     message += f", which takes time: {reason}" if reason else ""
-    what = "answer RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
+    what = "return RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
     if _not_taken(delay):
-        what = "take the request in that state, too"
+        what = "handle the request in that state as well"
     message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {what}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
@@ -99,7 +103,7 @@ def _not_taken(delay: EventDelay) -> bool:
 
 
 def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
-    """The chain of who waits for whom, without its beginning."""
+    """One phrase for each link of the chain of machines that wait for each other, without the first link."""
     while delay is not None and delay.next is not None:
         then = delay.next
         what = _named(system, then.automaton, then.event)
@@ -109,7 +113,7 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
             doing, state = _DOING[delay.event.part], delay.promise.state
             if not delay.promise.taken:
                 question = "request for" if delay.promise.duty.kind == "request" else "goal for"
-                yield f"`{name}` takes no {question} {channel} in its state `{state}` before {what}"
+                yield f"`{name}` does not handle the {question} {channel} in its state `{state}` before {what}"
             else:
                 yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {what}"
         else:
@@ -139,7 +143,7 @@ def _channel(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -
 
 
 def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
-    """What is waited for, in words."""
+    """A phrase for the event that is waited for."""
     match event.part:
         case ProtocolPart.TICK:
             return f"its timer `{event.name}`"
@@ -161,7 +165,7 @@ def _related(delay: EventDelay) -> Iterator[Related]:
     while each is not None:
         if each.promise is not None and each.server is not None:
             path, promise = each.server.automaton.path, each.promise
-            yield Related(Symbol(path, SymbolKind.STATE, promise.state, promise.scope), "it waits here")
+            yield Related(Symbol(path, SymbolKind.STATE, promise.state, promise.scope), "the machine waits here")
         elif each.next is None and each.event.part is ProtocolPart.TICK:
             yield Related(Symbol(each.automaton.path, SymbolKind.TIMER, each.event.name), "the timer")
         each = each.next

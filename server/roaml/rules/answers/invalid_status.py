@@ -32,10 +32,10 @@ def _check(context: MachineContext, chart: Chart, status: Name) -> Iterator[Find
         ints = [name for name, type_ in variables.items() if is_kind(type_, "int")]
         known = (NUMBERS[status.value],) if status.value in NUMBERS else close_names(status.value, (*STATUSES, *ints))
         hint = did_you_mean(known) or "; write `SUCCESS`, `FAILURE`, `RUNNING` or the name of an int variable"
-        yield RULE.at(status.span, f"`{status.value}` is no answer{hint}", *replacements(status.span, known))
+        yield RULE.at(status.span, f"`{status.value}` is not a status{hint}", *replacements(status.span, known))
     elif not (isinstance(type_, Unknown) or is_kind(type_, "int")):
-        message = f"an answer in a variable is an int (1 SUCCESS, 2 FAILURE, 3 RUNNING), not `{type_}`"
+        message = f"a variable that holds a status must be an integer (1 SUCCESS, 2 FAILURE, 3 RUNNING), not `{type_}`"
         yield RULE.at(status.span, message)
 
 
-RULE = Rule("invalid-status", Severity.ERROR, "A plugin answers with something that is no status.", machine=check)
+RULE = Rule("invalid-status", Severity.ERROR, "A plugin returns an invalid status.", machine=check)

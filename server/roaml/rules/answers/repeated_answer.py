@@ -19,7 +19,7 @@ KINDS = ("unasked", "wrong-kind")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """What is answered twice, or without having been asked for, counts as the answer to the next question."""
+    """An answer that is sent twice, or that nothing has asked for, is used as the answer to the next question."""
     told: set[tuple[Handler, Duty]] = set()
     in_tree = bool(plugins(context))
     for behavior in behaviors(context):
@@ -39,16 +39,16 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
             return False
         takes = ProtocolPart.BT_TICK if isinstance(fault.statement, ReturnStatus) else ProtocolPart.BT_HALT
         if not any(s.event and s.event.part is takes for s in behavior.steps) and not _twice(step, fault):
-            return False  # the handler that is missing is reported
+            return False  # the missing handler is reported instead
     elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
         return False
     elif fault.duty.kind == "request" and _owes_another(behavior, step, fault.duty):
-        return False  # the request that is not answered is reported
+        return False  # the unanswered request is reported instead
     return not behavior.approximate or _twice(step, fault)
 
 
 def _is_asked(behavior: Behavior, duty: Duty) -> bool:
-    """Whether this chart takes what is answered."""
+    """Whether this chart handles the events that the duty answers."""
     parts = (ProtocolPart.GOAL, ProtocolPart.THREAD_START) if duty.kind == "result" else (ProtocolPart(duty.kind),)
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
@@ -59,12 +59,12 @@ def _owes_another(behavior: Behavior, step: BehaviorStep, duty: Duty) -> bool:
 
 
 def _twice(step: BehaviorStep, fault: Fault) -> bool:
-    """Whether the answer is sent more than once in the very same step."""
+    """Whether the answer is sent more than once in one step."""
     return sum(event in _answers(fault) for event in step.sent) > 1
 
 
 def _answers(fault: Fault) -> set[ProtocolEvent]:
-    """What counts as an answer to what a fault answers."""
+    """The events that answer the duty of a fault."""
     if fault.duty.kind == "goal":
         parts = {ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED}
     elif fault.duty.kind in ("tick", "halt"):
@@ -81,7 +81,7 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
     related = [Related(first.element.name_span, "the first answer")] if first is not None else []
     again = "the second answer" if first is not None else "this answer"
     related.append(Related(fault.statement.element.name_span, again))
-    # What is sent when a state is entered may be meant for another way into it.
+    # An answer that is sent when a state is entered may be correct for another way into the state.
     shared = where == fault.statement.element.name_span and not _twice(step, fault)
     severity = Severity.INFORMATION if shared else None
     message = _message(behavior, step, fault, first)
@@ -92,25 +92,25 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
     what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
     if fault.kind == "wrong-kind":
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
-        return f"a {what} is answered with `<{tag}>`, which its parent does not wait for; send `<{right}>` instead"
+        return f"a {what} is answered with `<{tag}>`, but its parent waits for another answer; send `<{right}>` instead"
     how = {"result": "ended", "goal": "accepted or rejected"}.get(fault.duty.kind, "answered")
-    tail = f"the second answer is taken for that to the next {what}; send one of them only"
+    tail = f"the second answer is used as the answer to the next {what}; send only one of them"
     if first is None:
         if _twice(step, fault):
-            return f"on a path through this a {what} is {how} twice: {tail}"
-        return f"`<{tag}>` is sent here though no {what} has come that waits for it; send it where the {what} is taken"
+            return f"a {what} is {how} twice on one path: {tail}"
+        return f"`<{tag}>` is sent while no {what} waits for it; send it where the {what} is handled"
     earlier, place, other = f"`<{first.element.name}>`", _where(behavior, first), _where(behavior, fault.statement)
     if not _twice(step, fault):
-        why = f"on a path that leads here it was {how} before, by {earlier} {place}"
-        return f"`<{tag}>` is sent here though no {what} is waiting for it: {why}; {tail}"
+        why = f"on a path to this place it was already {how} by {earlier} {place}"
+        return f"`<{tag}>` is sent while no {what} waits for it: {why}; {tail}"
     by = f"first by {earlier} {place}, then by `<{tag}>` {other}"
     if place == other:
         by = f"by {earlier} and then by `<{tag}>`, both {place}"
-    return f"on a path through this a {what} is {how} twice, {by}: {tail}"
+    return f"a {what} is {how} twice on one path, {by}: {tail}"
 
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
-    """What has answered the question before, in the same step or in the nearest one that leads to it."""
+    """The statement that has answered the question before, in the same step or in the nearest step that leads to it."""
     if fault.kind == "wrong-kind":
         return None
     events = _answers(fault)
@@ -136,7 +136,8 @@ def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorSte
 
 
 def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statement | None) -> list[Statement]:
-    """What a step may have executed before a statement, in order; all that it may execute for None."""
+    """The statements that a step may execute before `last`, in order; if `last` is `None`, all statements that it may
+    execute."""
     states = {state.id.value: state for state in behavior.chart.states if state.id}
     left = states.get(behavior.configurations[step.source].state)
     target = step.handler.targets[step.choice]
@@ -151,7 +152,8 @@ def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statemen
 
 
 def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
-    """Append what is executed in a body before `last`, which is not in another branch; whether the body ends first."""
+    """Append the statements that a body executes before `last`, without those in other branches; return whether the
+    body ends first."""
     for each in body:
         if each is last:
             return False
@@ -178,7 +180,7 @@ def _event(context: MachineContext, statement: Statement) -> ProtocolEvent | Non
 
 
 def _where(behavior: Behavior, statement: Statement) -> str:
-    """Where a statement stands, in words."""
+    """A phrase for the place of a statement."""
     at = statement.element.span
     for state in behavior.chart.states:
         name = state.id.value if state.id else ""
@@ -208,10 +210,8 @@ def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterato
 
 
 def _is_last(handler: Handler, statement: Statement) -> bool:
-    """Whether the statement stands in the handler itself, so that taking it away leaves no empty `<if>`."""
+    """Whether the statement is a direct child of the handler, so that its removal does not leave an empty `<if>`."""
     return any(statement in target.body for target in handler.targets)
 
 
-RULE = Rule(
-    "repeated-answer", Severity.WARNING, "Something is answered twice, or without having been asked.", machine=check
-)
+RULE = Rule("repeated-answer", Severity.WARNING, "Something is answered twice, or without a question.", machine=check)

@@ -13,7 +13,7 @@ from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """BehaviorTree.CPP takes RUNNING from an action or a control node only."""
+    """In BehaviorTree.CPP, only action and control nodes may return RUNNING."""
     used = next((a for a in plugins(context) if a.instance is not None and a.instance.condition), None)
     if used is None:
         return
@@ -21,15 +21,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement, answers in behavior.statuses.items():
             if "RUNNING" in answers:
                 message = (
-                    "the tree has this plugin as a `<Condition>`, and BehaviorTree.CPP stops when a condition answers "
-                    "RUNNING; answer SUCCESS or FAILURE at once, or make it an `<Action>`"
+                    "the tree uses this plugin as a `<Condition>`, and BehaviorTree.CPP throws an exception if a "
+                    "condition returns "
+                    "RUNNING; return SUCCESS or FAILURE at once, or make it an `<Action>`"
                 )
-                related = [Related(statement.element.name_span, "it answers RUNNING here")]
+                related = [Related(statement.element.name_span, "it returns RUNNING here")]
                 yield RULE.at(_handler(context, statement), message, *_fixes(statement), related=related)
 
 
 def _handler(context: MachineContext, statement: Statement) -> Span:
-    """The handler that a statement stands in, or the statement in `<onentry>` and `<onexit>`."""
+    """The handler that contains a statement, or the statement itself in `<onentry>` and `<onexit>`."""
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
@@ -44,4 +45,4 @@ def _fixes(statement: ReturnStatus) -> Iterator[Fix]:
             yield Fix(f"Answer `{status}`", (TextEdit(statement.status.span, status),), preferred=False)
 
 
-RULE = Rule("running-condition", Severity.WARNING, "A condition answers RUNNING.", machine=check)
+RULE = Rule("running-condition", Severity.WARNING, "A condition returns RUNNING.", machine=check)

@@ -14,8 +14,8 @@ from roaml.rules.support.interfaces import declared
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A goal that is neither accepted nor rejected on some path, or accepted and never ended; an action that never does
-    is reported by silent-server."""
+    """Report goals that are neither accepted nor rejected on some path, or accepted and never ended. Actions that never
+    accept or end a goal are reported by silent-server."""
     awaited = _awaited(context)
     for behavior in behaviors(context):
         asked = {
@@ -33,7 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _awaited(context: MachineContext) -> set[str]:
-    """The handles of the actions whose results some client waits for."""
+    """The handles of the actions whose results at least one client waits for."""
     return {
         declaration.handle.value
         for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER)
@@ -52,14 +52,14 @@ def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     tag, ends = f"<{step.handler.element.name}>", duty.kind == "result"
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
-        what = "what comes while this condition does not hold is dropped, and a goal"
-        return f"{what} {never}, so that its client waits for ever; add a `{tag}` without `cond` behind it"
+        what = "events are dropped while this condition does not hold, so a goal"
+        return f"{what} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
     how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
-    which = "a goal that is accepted here" if ends else "a goal that is taken here"
+    which = "a goal that is accepted here" if ends else "a goal that is handled here"
     if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _asks(step)):
-        which = "the goal that is waiting here"
-    return f"{which} {how}, so that its client waits for ever; {end} on each path"
+        which = "the goal that waits here"
+    return f"{which} {how}, so its client waits for ever; {end} on every path"
 
 
 def _asks(step: BehaviorStep) -> bool:

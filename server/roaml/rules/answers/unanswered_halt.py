@@ -28,7 +28,8 @@ from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A plugin whose parent halts it must answer, or the parent waits for ever (docs/spec/plugins.md#protocol)."""
+    """A plugin whose parent halts it must answer; otherwise the parent waits for ever
+    (docs/spec/plugins.md#protocol)."""
     halted = list(_halted(context))
     if not halted:
         return
@@ -36,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     root, name = context.machine.element, context.machine.name
     if not plugin.halted:
         if not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
-            message = f"the plugin takes no halts, but `{parent}` halts it: it has no `<bt_halt>`"
+            message = f"the plugin does not handle halts, but `{parent}` halts it: it has no `<bt_halt>`"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
         return
     if not is_spelled(context, HALT):
@@ -48,7 +49,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _halted(context: MachineContext) -> Iterator[tuple[SystemAutomaton, SystemAutomaton]]:
-    """What the plugin is in the tree, with the parent, if that halts its children."""
+    """The nodes of the plugin in the tree, each with its parent if the parent halts its children."""
     for automaton in plugins(context):
         number = automaton.instance.parent if automaton.instance else None
         parent = context.system.by_instance.get(number) if context.system and number is not None else None
@@ -66,26 +67,26 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 def _message(step: BehaviorStep, certain: bool) -> str:
     if step.ignored:
-        what = "what comes while this condition does not hold is dropped, and the halt is never answered"
+        what = "events are dropped while this condition does not hold, so the halt is never answered"
         tag = f"<{step.handler.element.name}>"
-        return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
+        return f"{what} and the tree waits for ever; add a `{tag}` without `cond` after it"
     halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
-    where = "a halt that is taken here" if halted else "the halt that is waiting here"
+    where = "a halt that is handled here" if halted else "the halt that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
-    return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_halted>` on each path"
+    return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
-    """States in which the plugin waits and that have no `<bt_halt>`."""
+    """Report the states in which the plugin waits and that have no `<bt_halt>`."""
     for waiting in deaf(context, behavior, automata, HALT):
         if waiting.needs_time:
-            message = f"a halt that comes in the state `{waiting.name}` is not taken before time has passed, but the "
+            message = (
+                f"a halt that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
+            )
             message += "clock waits until it is answered; add a `<bt_halt>`"
         else:
             how = "while the plugin is running " if waiting.standing == "running" else ""
-            message = (
-                f"a halt that comes {how}in the state `{waiting.name}` is never taken, so that the tree waits for "
-            )
+            message = f"a halt that arrives {how}in the state `{waiting.name}` is never handled, so the tree waits for "
             message += "ever; add a `<bt_halt>`"
         fixes = _add_handler(context, waiting.state)
         yield RULE.at(waiting.span, message, *fixes, severity=Severity.WARNING)
@@ -94,7 +95,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
 def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:
     edits = halts(context.document, root, root.elements)
     if edits:
-        yield Fix("Add `<bt_halt>` to every state that takes ticks", edits)
+        yield Fix("Add `<bt_halt>` to every state with `<bt_tick>`", edits)
 
 
 def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
@@ -117,4 +118,4 @@ def _answer(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
         yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 
-RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not taken or not answered on every path.", machine=check)
+RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not handled or not answered on every path.", machine=check)

@@ -18,7 +18,7 @@ from roaml.rules.support.interfaces import response
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A service that answers on some paths only; one that never answers is reported by silent-server."""
+    """Report services that answer on some paths only. Services that never answer are reported by silent-server."""
     for behavior in behaviors(context):
         asked = {
             step.event.name: step.handler
@@ -42,18 +42,18 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Ha
 def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
     if step.ignored:
-        what = f"a request for `{duty.handle}` that comes while this condition does not hold is dropped and"
+        what = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
         if not asked:
-            what = f"what comes while this condition does not hold is dropped, and the request for `{duty.handle}` is"
+            what = f"events are dropped while this condition does not hold, so the request for `{duty.handle}` is"
         tag = f"<{step.handler.element.name}>"
-        return f"{what} never answered, so that the client waits for ever; add a `{tag}` without `cond` behind it"
-    where = "a request that is taken here" if asked else f"the request for `{duty.handle}` that is waiting here"
+        return f"{what} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
+    where = "a request that is handled here" if asked else f"the request for `{duty.handle}` that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
-    return f"{where} {how}, so that the client waits for ever; send one `<ros_service_send_response>` on each path"
+    return f"{where} {how}, so the client waits for ever; send one `<ros_service_send_response>` on every path"
 
 
 def _fixes(context: MachineContext, step: BehaviorStep, asked: Handler) -> Iterator[Fix]:
-    """Answer with zeros at the end of the handler."""
+    """Send a response with the zero of each field's type at the end of the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     declaration = find_handle(context.machine, asked)
     if not step.certain or step.ignored or not place.complete or declaration is None or declaration.type is None:

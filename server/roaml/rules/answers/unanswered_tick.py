@@ -28,14 +28,14 @@ ANSWER = '<bt_return_status status="SUCCESS" />'
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A plugin that is used in the tree but cannot take or answer a tick stops the whole tree."""
+    """A plugin that is used in the tree and does not handle or answer a tick stops the whole tree."""
     automata = plugins(context)
     if not automata:
         return
     plugin, name, root = automata[0].outline.plugin, context.machine.name, context.machine.element
     if not plugin.ticked:
         if not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
-            message = "the plugin takes no ticks: it has no `<bt_tick>`"
+            message = "the plugin does not handle ticks: it has no `<bt_tick>`"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handler(context))
         return
     if not is_spelled(context, TICK):
@@ -61,24 +61,26 @@ def _message(step: BehaviorStep, certain: bool) -> str:
     ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
     if step.ignored:
         tag = f"<{step.handler.element.name}>"
-        what = "a tick that comes while this condition does not hold is dropped and never answered"
+        what = "a tick that arrives while this condition does not hold is dropped and never answered,"
         if not ticked:
-            what = "what comes while this condition does not hold is dropped, and the tick is never answered"
-        return f"{what}, so that the tree waits for ever; add a `{tag}` without `cond` behind it"
-    where = "a tick that is taken here" if ticked else "the tick that is waiting here"
+            what = "events are dropped while this condition does not hold, so the tick is never answered,"
+        return f"{what} and the tree waits for ever; add a `{tag}` without `cond` after it"
+    where = "a tick that is handled here" if ticked else "the tick that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
-    return f"{where} {how}, so that the tree waits for ever; send one `<bt_return_status>` on each path"
+    return f"{where} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
-    """States in which the plugin waits and that have no `<bt_tick>`."""
+    """Report the states in which the plugin waits and that have no `<bt_tick>`."""
     for waiting in deaf(context, behavior, automata, TICK):
         if waiting.needs_time:
-            message = f"a tick that comes in the state `{waiting.name}` is not taken before time has passed, but the "
-            message += "clock waits until it is answered; add a `<bt_tick>` that answers RUNNING"
+            message = (
+                f"a tick that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
+            )
+            message += "clock waits until it is answered; add a `<bt_tick>` that returns RUNNING"
         else:
             message = (
-                f"a tick that comes in the state `{waiting.name}` is never taken, so that the tree waits for ever; "
+                f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "
             )
             message += "add a `<bt_tick>`"
         severity = Severity.WARNING if waiting.needs_time or waiting.standing == "ended" else None
@@ -87,7 +89,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
 
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:
-    """Answer RUNNING in a state that takes no ticks."""
+    """Return RUNNING in a state that does not handle ticks."""
     for each in context.machine.chart.states:
         if each.element is state and each.id is not None and each.element.complete:
             lines = (f'<bt_tick target="{each.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
@@ -96,7 +98,7 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
 
 
 def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """Succeed at the end of the handler, or where none of its conditions holds."""
+    """Return SUCCESS at the end of the handler, or RUNNING where none of its conditions holds."""
     document, element = context.document, step.handler.element
     if not element.complete or step.event is None:
         return
@@ -104,7 +106,11 @@ def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
         state = next((s for s in context.machine.chart.states if step.handler in s.handlers), None)
         if state is not None and state.id is not None:
             lines = (f'<bt_tick target="{state.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
-            yield Fix("Answer such a tick with `RUNNING`", (after(document, element, *lines),), preferred=False)
+            yield Fix(
+                "Answer the tick with `RUNNING` if no condition holds",
+                (after(document, element, *lines),),
+                preferred=False,
+            )
     elif not step.ignored and ProtocolPart.BT_STATUS not in {e.part for e in step.sent} and step.certain:
         place = step.handler.targets[step.choice].element or element
         if place.complete:
@@ -112,7 +118,7 @@ def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
 
 
 def _add_handler(context: MachineContext) -> Iterator[Fix]:
-    """A `<bt_tick>` for the initial state that succeeds at once."""
+    """Add a `<bt_tick>` to the initial state that returns SUCCESS at once."""
     document, chart = context.document, context.machine.chart
     state = next((s for s in chart.states if s.id and chart.initial and s.id.value == chart.initial.value), None)
     if state is not None and state.id is not None and state.element.complete:
@@ -121,4 +127,4 @@ def _add_handler(context: MachineContext) -> Iterator[Fix]:
         yield Fix(f"Add `<bt_tick>` to the state `{state.id.value}`", (edit,), preferred=False)
 
 
-RULE = Rule("unanswered-tick", Severity.ERROR, "A tick is not taken or not answered on every path.", machine=check)
+RULE = Rule("unanswered-tick", Severity.ERROR, "A tick is not handled or not answered on every path.", machine=check)

@@ -13,7 +13,7 @@ from roaml.rules.support.answers import behaviors, place
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Threads are numbered from 0; a start for another number reaches none of them."""
+    """Threads are numbered from 0; a start with another number reaches no thread."""
     for behavior in behaviors(context):
         told: set[Statement] = set()
         for step in behavior.steps:
@@ -26,10 +26,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Finding:
     thread = next(t for t in context.machine.threads if t.server and t.server.value == fault.duty.handle)
     assert statement.thread_id is not None
-    numbers = "the only one is 0" if thread.count == 1 else f"they are 0 to {(thread.count or 1) - 1}"
+    numbers = "the only number is 0" if thread.count == 1 else f"the numbers are 0 to {(thread.count or 1) - 1}"
     message = (
-        f"`{fault.duty.handle}` has no thread numbered `{statement.thread_id.text.strip()}`: {numbers}, "
-        "so this start reaches nobody; start a thread that exists, or raise `n_threads`"
+        f"`{fault.duty.handle}` has no thread with the number `{statement.thread_id.text.strip()}`: {numbers}, "
+        "so no thread receives this start; use the number of an existing thread, or raise `n_threads`"
     )
     count = thread.element.get("n_threads")
     related = [Related(statement.element.name_span, "it is started here")]

@@ -22,18 +22,19 @@ from roaml.rules.support.interfaces import declared
 from roaml.text import TextEdit
 
 _WHY = {
-    "rejected": "the goal whose id `{id}` holds was rejected; keep the id of the accepted goal in another variable",
-    "earlier": "`{id}` holds the id of an earlier goal, not of the one that has come; {advice}",
-    "undecided": "the goal whose id `{id}` holds has not been accepted; accept it first",
-    "other": "`{id}` holds the id of a goal of another action; name the goal by the id that it came with",
-    "foreign": "`{id}` is given `{source}`, which is not the id of a goal; {advice}",
-    "unstored": "no goal id has been stored in `{id}` before; store `_action.goal_id` in it where the goal is taken",
+    "rejected": "the goal whose id is in `{id}` was rejected; store the id of the accepted goal in another variable",
+    "earlier": "`{id}` holds the id of an earlier goal, not of the one that has just arrived; {advice}",
+    "undecided": "the goal whose id is in `{id}` has not been accepted; accept it first",
+    "other": "`{id}` holds the id of a goal of another action; use the `goal_id` that the goal arrived with",
+    "foreign": "`{id}` is set to `{source}`, which is not the id of a goal; {advice}",
+    "unstored": "no goal id was stored in `{id}` before; store `_action.goal_id` in it where the goal is handled",
 }
-"""By the kind of the fault. Of several kinds for one element the first counts: it says most about the mistake."""
+"""Reasons by the kind of fault. If several kinds apply to one element, the first is reported: it is the most
+specific."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A goal is known by the id that it came with; what is sent with another one reaches another client, or nobody."""
+    """A goal has the id that it arrived with; an answer with another id reaches another client, or none."""
     for behavior in behaviors(context):
         told: set[tuple[str, str]] = set()
         for step, fault in _faults(behavior).values():
@@ -50,7 +51,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _faults(behavior: Behavior) -> dict[Statement, tuple[BehaviorStep, Fault]]:
-    """For each element that names a wrong goal the fault that says most, with a step in which it happens."""
+    """For each element that names a wrong goal, the most specific fault, with a step in which it happens."""
     order = list(_WHY)
     found: dict[Statement, tuple[BehaviorStep, Fault]] = {}
     for step in behavior.steps:
@@ -64,9 +65,13 @@ def _faults(behavior: Behavior) -> dict[Statement, tuple[BehaviorStep, Fault]]:
 
 
 def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend, variable: str) -> Finding:
-    advice = "name it by the variable in which `_action.goal_id` is stored"
+    advice = "use the variable in which `_action.goal_id` is stored"
     if fault.kind == "earlier":
-        advice = f"name it by `{fault.source}`" if fault.source else "store `_action.goal_id`, and name it by that"
+        advice = (
+            f"use `{fault.source}` as `goal_id`"
+            if fault.source
+            else "store `_action.goal_id` in a variable, and use that"
+        )
     why = _WHY[fault.kind].format(id=variable, source=fault.source, advice=advice)
     message = f"`<{statement.element.name}>` names the wrong goal: {why}"
     related = [Related(statement.element.name_span, "it is used here")]
@@ -79,14 +84,15 @@ def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, statement:
         yield from _store(context, step, statement.goal_id.text.strip())
     elif fault.kind == "earlier" and fault.source:
         edit = TextEdit(statement.goal_id.span, fault.source)
-        yield Fix(f"Name the goal by `{fault.source}`", (edit,), preferred=False)
+        yield Fix(f"Use `{fault.source}` as `goal_id`", (edit,), preferred=False)
 
 
 # ------------------------------------------------------------------- constants
 
 
 def _constants(context: MachineContext) -> Iterator[Finding]:
-    """A constant is the id of one client's goals (docs/spec/ros.md#goal-ids), whoever sent the goal."""
+    """Report constants as `goal_id`. A constant is the id of the goals of one client (docs/spec/ros.md#goal-ids),
+    whichever client sent the goal."""
     if context.system is None:
         return
     for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER):
@@ -106,8 +112,8 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
 def _constant_finding(statements: list[RosSend], why: str) -> Finding:
     first, *others = statements
     assert first.goal_id is not None
-    what = f"`<{first.element.name}>` names its goal by the constant `{first.goal_id.text.strip()}`, {why}"
-    advice = "store `_action.goal_id` where the goal is taken, and name the goal by that"
+    what = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
+    advice = "store `_action.goal_id` in a variable where the goal is handled, and use that"
     related = [Related(statement.element.name_span, "here, too") for statement in others]
     return RULE.at(first.goal_id.span, f"{what}; {advice}", related=related)
 
@@ -119,15 +125,15 @@ def _wrong_constant(system: System, channel: Channel, value: float) -> str:
         if len(clients) < 2:
             return ""
         named = channel.users[int(value)].automaton.name
-        return f"which is always that of `{named}`, though `{channel.name}` has {len(clients)} clients"
+        return f"which is always the id of `{named}`, but `{channel.name}` has {len(clients)} clients"
     if not clients or system.may(SymbolKind.ACTION_CLIENT.value, channel.name):
         return ""
     ids = "0" if len(channel.users) == 1 else f"0 to {len(channel.users) - 1}"
-    return f"which no client of `{channel.name}` has: their ids are {ids}"
+    return f"which is not the id of any client of `{channel.name}`: the ids are {ids}"
 
 
 def _asks_for_ids(chart: Chart) -> bool:
-    """Whether some condition reads the id of a goal, so that a constant may be right where it holds."""
+    """Whether a condition reads the id of a goal, so that a constant may be right where the condition holds."""
     read = [h.cond.tree for state in chart.states for h in state.handlers if h.cond]
     stored = {"_action"}
     for statement in chart.statements:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about elements and attributes: which may occur where, and which values they take."""
+"""Rules about elements and attributes: where they are allowed, and which values they accept."""

@@ -20,10 +20,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         closed = False
         for child in element.elements:
             if child.name == "elseif" and closed:
-                message = "an `<elseif>` must stand before the `<else/>`: here it is never reached"
+                message = "an `<elseif>` after the `<else/>` is never reached; move it before the `<else/>`"
                 yield RULE.at(child.name_span, message)
             if child.name in BRANCH_MARKERS and child.elements:
-                message = f"`<{child.name}/>` is an empty element: what belongs to it follows it"
+                message = f"`<{child.name}/>` must be empty; write its content after it"
                 yield RULE.at(child.name_span, message, *_unwrapped(child))
             closed = closed or child.name == "else"
 
@@ -32,7 +32,7 @@ def _unwrapped(marker: Element) -> Iterator[Fix]:
     if marker.complete and marker.close_span is not None:
         end = marker.open_span.end
         close = TextEdit(Span(end - 1, end), " />")
-        yield Fix(f"Write `<{marker.name}/>` before its content", (close, TextEdit(marker.close_span, "")))
+        yield Fix(f"Close `<{marker.name}/>` before its content", (close, TextEdit(marker.close_span, "")))
 
 
 RULE = Rule("branch-order", Severity.ERROR, "The parts of an `<if>` are not in order.", machine=check, plain=True)

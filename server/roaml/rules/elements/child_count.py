@@ -35,13 +35,13 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
     if node.children:
-        where = f"; its nodes stand in the tree `{node.plugin.value}`" if node.plugin else ""
-        message = f"`{node.element.name}` has no children{where}"
+        where = f"; its nodes are in the tree `{node.plugin.value}`" if node.plugin else ""
+        message = f"`{node.element.name}` allows no children{where}"
         yield RULE.at(node.children[0].element.name_span, message, _without(context, node, 0))
 
 
 def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
-    """The schema knows how many children the nodes of BehaviorTree.CPP have."""
+    """Check a node of BehaviorTree.CPP, whose number of children the schema defines."""
     if node.type is not None:
         allowed = node.type.any_child
         yield from _counted(context, node, *((allowed.least, allowed.most) if allowed else (0, 0)))
@@ -62,7 +62,9 @@ def _counted(context: TreeContext, node: TreeNode, least: int, most: int) -> Ite
     count, name = len(node.children), node.plugin.value
     if most == 0:
         if count:
-            yield RULE.at(node.children[0].element.name_span, f"`{name}` has no children", _without(context, node, 0))
+            yield RULE.at(
+                node.children[0].element.name_span, f"`{name}` allows no children", _without(context, node, 0)
+            )
     elif count > most:
         message = f"`{name}` has {_children(most)}: this is one more"
         yield RULE.at(node.children[most].element.name_span, message, _without(context, node, most))
@@ -71,7 +73,8 @@ def _counted(context: TreeContext, node: TreeNode, least: int, most: int) -> Ite
 
 
 def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterator[Finding]:
-    """A plugin's machine ticks its children by their index, or by a variable that may be any."""
+    """Check a node with a plugin. The machine of the plugin ticks its children by their index, or by a variable, which
+    may have any value."""
     count, calls = len(node.children), plugin.plugin
     least = max(calls.children, 1 if calls.any_child else 0)
     if count < least:
@@ -82,9 +85,9 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
         span = child.element.name_span
         if index >= calls.children and not calls.any_child:
             if calls.children == 0:
-                message = f"`{plugin.name}` is a leaf: it never ticks a child"
+                message = f"`{plugin.name}` allows no children: its machine never ticks a child"
             else:
-                message = f"`{plugin.name}` has {_children(calls.children)}: this one is never ticked"
+                message = f"`{plugin.name}` ticks only {_children(calls.children)}, so this one is never ticked"
             yield RULE.at(span, message, _without(context, node, index))
             return
         if index not in calls.ticked_children:
@@ -93,10 +96,10 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
 
 
 def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:
-    """Take away the children of a node that are too many."""
+    """Remove the surplus children of a node."""
     extra = node.children[most:]
     edits = tuple(removal(context.source.text, child.element.span) for child in extra)
-    one = "this child" if len(extra) == 1 else "the children that are too many"
+    one = "this child" if len(extra) == 1 else "the surplus children"
     return Fix(f"Remove {one}", edits, preferred=False)
 
 
@@ -106,7 +109,7 @@ def _too_few(node: TreeNode, least: int, most: int) -> Finding:
         wanted = f"at least {_children(least)}"
     else:
         wanted = _children(least) if least == most else f"{least} to {_children(most)}"
-    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {wanted}, and has {len(node.children) or 'none'}")
+    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {wanted} and has {len(node.children) or 'none'}")
 
 
 def _children(count: int) -> str:

@@ -24,18 +24,18 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if children_text(child).strip() and child.find("bt_get_input"):
                 yield RULE.at(
                     child.name_span,
-                    f"`<{child.name}>` holds text or a `<bt_get_input>`, not both",
+                    f"`<{child.name}>` contains both text and a `<bt_get_input>`; remove one of them",
                     severity=Severity.ERROR,
                 )
 
 
 def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
-    """Legal: the attribute wins (docs/spec/files.md#attribute-or-child)."""
+    """Two values are legal; the attribute takes precedence (docs/spec/files.md#attribute-or-child)."""
     return RULE.at(
         child.name_span,
-        f"`{child.name}` is given twice: the attribute counts, this is not read",
+        f"`{child.name}` is ignored: the attribute of the same name takes precedence",
         Fix(f"Remove `<{child.name}>`", (removal(context.source.text, child.span),), safe=True),
-        related=(Related(attribute.name_span, "the attribute that counts"),),
+        related=(Related(attribute.name_span, "the attribute that is used"),),
     )
 
 

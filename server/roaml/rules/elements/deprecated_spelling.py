@@ -34,41 +34,42 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """The system decides which dialect its machines are written in (docs/spec/files.md#dialects), and the current one
-    has one root only."""
+    """The system decides in which dialect its machines are written (docs/spec/files.md#dialects); the current dialect
+    has only one root."""
     machine = context.machine
     if context.system is not None and not context.older and machine.root != ROOT:
-        message = f"the machines of a `<roaml>` system have the root `<{ROOT}>`, not `<{machine.root}>`"
+        message = f"machines of a `<roaml>` system need the root `<{ROOT}>`, not `<{machine.root}>`"
         rename = replace(rename_tag(machine.element, ROOT), safe=True)
         yield RULE.at(machine.element.name_span, message, rename, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
 
 
 def check_system(context: SystemContext) -> Iterator[Finding]:
-    """The reference translator tells by its name, too, whether a file is a machine (docs/spec/files.md#kinds)."""
+    """The reference translator also uses the name of a file to decide whether it is a machine
+    (docs/spec/files.md#kinds)."""
     roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
     for listed in context.files:
         src = listed.input.src
-        # Where the root is the older one, too, it is reported there.
+        # If the root is the older one as well, the machine rule reports it.
         if src is not None and not context.file.older and roots.get(listed.path) == ROOT:
             name = re.split(r"[/\\]", src.value)[-1]
             if not name.endswith(EXTENSION):
                 new = (name.rpartition(".")[0] or name) + EXTENSION
-                message = f"the machines of a `<roaml>` system are `{EXTENSION}` files: call it `{new}`"
+                message = f"machines of a `<roaml>` system need the extension `{EXTENSION}`; rename the file to `{new}`"
                 yield RULE.at(src.span, message, severity=Severity.ERROR, tags=(Tag.DEPRECATED,))
 
 
 def _is_newer_tree(root: Element | None) -> bool:
-    """Whether a tree says that it is written in a format in which older spellings are no longer right."""
+    """Whether a tree declares a format in which older spellings are not valid any more."""
     version = root.get("BTCPP_format") if root else None
     return version is not None and version.value.strip() not in ("", "3")
 
 
 def _element(context: FileContext, element: Element, type_: ElementType, parent: Element | None) -> Finding:
     if parent is not None and parent.find(type_.use) is not None and context.grammar is not BEHAVIOR_TREE:
-        message = f"`<{element.name}>` is the older name of `<{type_.use}>`, which is given too: this is not read"
+        message = f"`<{element.name}>` is ignored: it is the older name of `<{type_.use}>`, which is given as well"
         return _unread(context, element.name_span, message, element.span)
     message = f"`<{element.name}>` is now called `<{type_.use}>`"
-    # The root decides how the other files of the system are read, so it is the last thing to change.
+    # The root decides how the other files of the system are read, so it must be changed last.
     inside = parent is not None
     rename = replace(rename_tag(element, type_.use, preferred=inside), safe=inside)
     return RULE.at(element.name_span, message, rename, tags=(Tag.DEPRECATED,))
@@ -76,12 +77,12 @@ def _element(context: FileContext, element: Element, type_: ElementType, parent:
 
 def _attribute(context: FileContext, element: Element, attribute: Attribute, known: AttributeType) -> Iterator[Finding]:
     if known.use and element.get(known.use) is not None:
-        message = f"`{attribute.name}` is the older name of `{known.use}`, which is given too: this is not read"
+        message = f"`{attribute.name}` is ignored: it is the older name of `{known.use}`, which is given as well"
         yield _unread(context, attribute.name_span, message, attribute.span)
     elif known.use:
         fix = Fix(f"Change to `{known.use}`", (TextEdit(attribute.name_span, known.use),), safe=True)
-        message = f"`<{element.name}>` has `{known.use}` instead of `{attribute.name}` now"
-        # Where the current dialect is spoken, the reference translator does not know the older attribute.
+        message = f"`{attribute.name}` of `<{element.name}>` is now called `{known.use}`"
+        # In the current dialect, the reference translator does not know the older attribute.
         severity = None if context.older or context.grammar is BEHAVIOR_TREE else Severity.ERROR
         yield RULE.at(attribute.name_span, message, fix, severity=severity, tags=(Tag.DEPRECATED,))
     for choice in known.simple.choices:

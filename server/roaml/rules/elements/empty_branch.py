@@ -31,14 +31,14 @@ def _check(context: MachineContext, choice: If) -> Iterator[Finding]:
     fixes = [remove] if useless else []
     for branch in choice.branches:
         if not branch.body and not _content(parts, branch.element):
-            message = f"`<{branch.element.name}>` holds nothing: a part with a condition needs content"
+            message = f"`<{branch.element.name}>` has no content; a part with a condition needs content"
             yield RULE.at(branch.element.name_span, message, *fixes)
 
 
 def _content(parts: list[Element], marker: Element) -> bool:
-    """Whether an element, be it a misspelled one, follows `marker` before the next one."""
+    """Whether an element, even a misspelled one, follows `marker` before the next marker."""
     following = parts[parts.index(marker) + 1 :] if marker in parts else parts
     return bool(following) and following[0].name not in MARKERS
 
 
-RULE = Rule("empty-branch", Severity.ERROR, "A part of an `<if>` holds nothing.", machine=check)
+RULE = Rule("empty-branch", Severity.ERROR, "A part of an `<if>` has no content.", machine=check)

@@ -15,17 +15,19 @@ from roaml.xml_syntax import Attribute, Element
 
 CHANGES_MEANING = ("delay", "delayexpr", "initial", "src")
 SPEAKS_FOR = {("param", "location"): "expr"}
-"""Ignored attributes and those in which their value would have its effect."""
+"""Ignored attributes, with the attributes in which their values would have an effect."""
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """Attributes that other tools read and the model does not."""
+    """Report attributes that other tools read and the model does not."""
     if context.document is None or context.grammar is None:
         return
     for element, type_, _ in known_elements(context.document, context.grammar):
         for attribute in element.attributes:
             known = type_.attributes.get(attribute.name)
-            if known is not None and known.ignored is False and attribute.name != "after":  # delayed-transition tells
+            if (
+                known is not None and known.ignored is False and attribute.name != "after"
+            ):  # reported by delayed-transition
                 yield RULE.at(
                     attribute.span,
                     f"`{attribute.name}` has no effect: {_reason(known)}",
@@ -49,7 +51,7 @@ def _severity(name: str, context: FileContext) -> Severity:
 
 
 def _reason(attribute: AttributeType) -> str:
-    """What the schema says behind "Ignored:", else its second sentence, else its first."""
+    """The text after "Ignored:" in the schema; otherwise its second sentence, or its first."""
     text = attribute.documentation
     first, _, second = text.partition(". ")
     reason = text.partition("Ignored:")[2].strip() or second.partition("Not supported:")[2].strip()

@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         found: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
         found += [h.element for state in chart.states for h in state.handlers if not h.effective]
         for element in found:
-            # Whatever it stands alone in needs content, so that goes as well: empty-branch tells.
+            # An element whose only content it is needs content (empty-branch), so it is removed as well.
             alone = stands_alone(context.document, element)
             edit = removal(context.source.text, element.span)
             remove = Fix(f"Remove `<{element.name}>`", (edit,), preferred=not alone, safe=not alone)

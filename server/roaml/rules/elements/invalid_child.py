@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for name in _children(chart):
             if name.value.isascii() and name.value.isdigit():
-                # Where only some nodes have too few children, child-count says that of them.
+                # If only some of the nodes have too few children, child-count reports it.
                 if counts and int(name.value[:9]) >= max(counts):
                     most = max(counts)
                     children = "no children" if most == 0 else f"{most} {'child' if most == 1 else 'children'}"
@@ -45,10 +45,10 @@ def _variable(context: MachineContext, chart: Chart, name: Name) -> Iterator[Fin
         if misspelled.declaration(context.machine, "data", name.value):
             return
         close = close_names(name.value, variables)
-        hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an int variable"
-        yield RULE.at(name.span, f"`{name.value}` is no child{hint}", *replacements(name.span, close))
+        hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an integer variable"
+        yield RULE.at(name.span, f"`{name.value}` is not the index of a child{hint}", *replacements(name.span, close))
     elif not (isinstance(type_, Unknown) or is_kind(type_, "int")):
-        yield RULE.at(name.span, f"a child is an int, not `{type_}`")
+        yield RULE.at(name.span, f"the index of a child must be an integer, not `{type_}`")
 
 
-RULE = Rule("invalid-child", Severity.ERROR, "A child of a tree node is named that does not exist.", machine=check)
+RULE = Rule("invalid-child", Severity.ERROR, "The index of a child does not exist.", machine=check)

@@ -22,7 +22,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
             fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []
             yield RULE.at(attribute.span, f"`{attribute.name}` is empty{wanted}", *fixes)
-        elif type_.value != "ros-type":  # of these, unknown-ros-type says more
+        elif type_.value != "ros-type":  # unknown-ros-type reports these with more detail
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)
             hint = did_you_mean(close) if len(choices) > 1 else ""
@@ -30,4 +30,4 @@ def check(context: FileContext) -> Iterator[Finding]:
             yield RULE.at(attribute.value_span, message, *replacements(attribute.value_span, close))
 
 
-RULE = Rule("invalid-value", Severity.ERROR, "The value of an attribute is not one that it may have.", file=check)
+RULE = Rule("invalid-value", Severity.ERROR, "The value of an attribute is not allowed.", file=check)

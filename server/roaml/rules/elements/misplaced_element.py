@@ -14,7 +14,7 @@ from roaml.rules.rule import FileContext, Rule, listing
 from roaml.rules.support.children import has_counted_children
 
 SAME_PARTS = {"param": "field", "field": "param"}
-"""Elements that do the same in different parents."""
+"""Elements that mean the same in different parents."""
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -23,10 +23,10 @@ def check(context: FileContext) -> Iterator[Finding]:
             name, parent = violation.element.name, violation.parent.name
             assert context.grammar is not None
             if parent in BRANCH_MARKERS and context.grammar in (HL_SCXML, PLAIN_SCXML):
-                continue  # branch-order says more
+                continue  # branch-order reports this with more detail
             if has_counted_children(violation.parent):
                 continue
-            message = f"`<{name}>` may not stand in `<{parent}>`{_where(context, name, parent)}"
+            message = f"`<{name}>` is not allowed in `<{parent}>`{_where(context, name, parent)}"
             yield RULE.at(violation.element.name_span, message, *_fixes(violation))
 
 
@@ -34,15 +34,15 @@ def _where(context: FileContext, name: str, parent: str) -> str:
     grammar = context.grammar
     assert grammar is not None
     if name == "state" and parent == "state":
-        return "; states are flat: they contain no other states"
+        return "; states are flat: they cannot contain other states"
     parents = [p for p in grammar.parents(name) if _is_current(context, p)]
     if grammar is HL_SCXML and len(parents) > 4:
         return _group(grammar, name)
-    return f"; it stands in {listing(f'<{p}>' for p in parents)}" if 0 < len(parents) <= 4 else ""
+    return f"; it is allowed in {listing(f'<{p}>' for p in parents)}" if 0 < len(parents) <= 4 else ""
 
 
 def _is_current(context: FileContext, name: str) -> bool:
-    """Whether an element is neither an older name nor another root than that of the file."""
+    """Whether an element is neither an older name nor the root of another kind of file."""
     assert context.grammar is not None
     root = context.document.root if context.document else None
     if root is not None and name in context.grammar.roots:
@@ -51,13 +51,13 @@ def _is_current(context: FileContext, name: str) -> bool:
 
 
 def _group(grammar: Grammar, name: str) -> str:
-    """Where elements stand that stand in many."""
+    """A phrase for the parents of elements that are allowed in many places."""
     if name in grammar.groups["Executable"]:
-        return "; it stands in a transition, a `<target>`, `<onentry>`, `<onexit>` or `<if>`"
+        return "; it is allowed in a transition, a `<target>`, `<onentry>`, `<onexit>` or `<if>`"
     return {
-        "target": "; it stands in a transition",
-        "field": "; it stands in the elements that send something to other nodes",
-        "bt_get_input": "; it stands in a value element such as `<expr>`",
+        "target": "; it is allowed in a transition",
+        "field": "; it is allowed in the elements that send data to other nodes",
+        "bt_get_input": "; it is allowed in a value element such as `<expr>`",
     }.get(name, "")
 
 
@@ -67,4 +67,4 @@ def _fixes(violation: MisplacedElement) -> Iterator[Fix]:
         yield rename_tag(violation.element, other)
 
 
-RULE = Rule("misplaced-element", Severity.ERROR, "An element stands where it may not stand.", file=check)
+RULE = Rule("misplaced-element", Severity.ERROR, "An element is in a place where it is not allowed.", file=check)

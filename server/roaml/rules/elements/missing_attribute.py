@@ -27,7 +27,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue
         element, attribute = violation.element, violation.attribute
         if attribute.name == "name" and set(attribute.refers) & DECLARING_ELEMENTS.keys():
-            continue  # undeclared-handle says more
+            continue  # undeclared-handle reports this with more detail
         if not misspelled.attribute(element, attribute.name, violation.type.attributes):
             choices = [choice.value for choice in attribute.simple.choices if not choice.use]
             value = choices[0] if len(choices) == 1 else _likely(context, element, attribute.name)
@@ -35,9 +35,9 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """What the schema cannot say, because a child element may give it as well."""
+    """Attributes that the schema cannot require, because a child element may replace them."""
     for declaration in context.machine.declarations:
-        if declaration.kind is not SymbolKind.TIMER:  # of these, invalid-rate tells
+        if declaration.kind is not SymbolKind.TIMER:  # invalid-rate reports these
             yield from _interface(declaration)
 
 
@@ -47,7 +47,9 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
     name = next(name for name in INTERFACE_ATTRIBUTES if name in known)
     child = element.find(name)
     if isinstance(declaration.interface, PortRead) and declaration.handle is None and element.get("name") is None:
-        yield RULE.at(element.name_span, f"`<{element.name}>` needs a `name`: its `{name}` comes from a port")
+        yield RULE.at(
+            element.name_span, f"`<{element.name}>` needs a `name`, because its `{name}` is the value of a port"
+        )
     elif declaration.interface is None and element.get(name) is None:
         if child is not None:
             yield RULE.at(child.name_span, f"`<{name}>` is empty")
@@ -56,7 +58,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
 
 
 def _likely(context: FileContext, element: Element, name: str) -> str:
-    """The value that a missing attribute most likely should have."""
+    """The most likely value of a missing attribute; "" if there is none."""
     if name == "initial":
         state = element.find("state")
         identifier = state.get("id") if state else None
@@ -75,7 +77,7 @@ def _missing(element: Element, name: str, value: str) -> Finding:
 RULE = Rule(
     "missing-attribute",
     Severity.ERROR,
-    "An element lacks an attribute that it needs.",
+    "A required attribute is missing.",
     file=check,
     machine=check_machine,
 )

@@ -44,7 +44,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """What the schema cannot say, because children may stand in any order."""
+    """Children that the schema cannot limit, because it allows children in any order."""
     for chart in context.machine.charts:
         element = chart.element
         states = any(child.name == "state" for child in element.elements)
@@ -56,17 +56,17 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
-    """A machine may do without a datamodel, a thread may not (docs/spec/ros.md#threads)."""
+    """The datamodel of a machine is optional, that of a thread is not (docs/spec/ros.md#threads)."""
     element = thread.element
     wanted = element.complete and element.find("datamodel") is None
     if wanted and not misspelled.among(element.elements, "datamodel", HL_SCXML):
-        message = f"`<{element.name}>` needs a `<datamodel>`, even if it holds nothing"
+        message = f"`<{element.name}>` needs a `<datamodel>`, even if it is empty"
         edit = first_in(context.document, element, "<datamodel />")
         yield RULE.at(element.name_span, message, Fix("Add an empty `<datamodel>`", (edit,), safe=True))
 
 
 def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
-    """An element that holds nothing, where none is needed."""
+    """Remove an element without content, if the element is optional."""
     root = context.document.root if context.document else None
     if context.document is None or root is None or context.grammar is None or element not in root.elements:
         return
@@ -88,7 +88,7 @@ def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
 RULE = Rule(
     "missing-element",
     Severity.ERROR,
-    "An element lacks a child that it needs.",
+    "A required child element is missing.",
     file=check,
     machine=check_machine,
     facts=MissingChild,

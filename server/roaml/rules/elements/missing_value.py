@@ -28,7 +28,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             match statement:
                 case Assign(value=value) if is_missing(statement.element, value):
                     target = f" for `{statement.location.text}`" if statement.location else ""
-                    yield RULE.at(statement.element.name_span, f"there is no value{target}: `expr` is missing")
+                    yield RULE.at(statement.element.name_span, f"the value{target} is missing; add `expr`")
                 case Send(params=params) | RosSend(fields=params):
                     for param in params:
                         if param.name is not None and is_missing(param.element, param.value):
@@ -36,7 +36,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def is_missing(element: Element, value: Value | None) -> bool:
-    """Whether an element has no value, neither half-written nor misspelled."""
+    """Whether an element has no value, not even an incomplete or misspelled one."""
     if value is not None or element.get("expr") is not None:
         return False
     return not misspelled.attribute(element, "expr", HL_SCXML.elements[element.name].attributes)
@@ -45,9 +45,11 @@ def is_missing(element: Element, value: Value | None) -> bool:
 def _param(param: Param, name: str) -> Finding:
     location = param.element.get("location")
     if location is None:
-        return RULE.at(param.element.name_span, f"there is no value for `{name}`: `expr` is missing")
+        return RULE.at(param.element.name_span, f"the value of `{name}` is missing; add `expr`")
     fix = Fix("Change to `expr`", (TextEdit(location.name_span, "expr"),))
-    return RULE.at(param.element.name_span, f"there is no value for `{name}`: write `expr` for `location`", fix)
+    return RULE.at(
+        param.element.name_span, f"the value of `{name}` is missing; write `expr` instead of `location`", fix
+    )
 
 
 def _fix(element: Element, type_: Type | None) -> Iterator[Fix]:

@@ -30,29 +30,29 @@ def check(context: FileContext) -> Iterator[Finding]:
     for violation in context.violations:
         if isinstance(violation, TooManyElements) and not has_counted_children(violation.parent):
             name, parent = violation.element.name, violation.parent.name
-            message = f"`<{parent}>` has only one `<{name}>`"
+            message = f"`<{parent}>` allows only one `<{name}>`"
             if context.grammar is BEHAVIOR_TREE:
                 most = {0: "no children", 1: "one child"}.get(violation.most, f"{violation.most} children")
-                message = f"`<{parent}>` has {most}; this is one more"
+                message = f"`<{parent}>` allows only {most}"
             related = (Related(violation.first.name_span, "the first one"),) if violation.most else ()
             fixes = [remove(context.document, violation.element, "Remove this one")] if context.document else []
             yield RULE.at(violation.element.name_span, message, *fixes, related=related)
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """What the schema cannot say, because children may stand in any order."""
+    """Children that the schema cannot limit, because it allows children in any order."""
     for element, children in _families(context.document):
         for name in ONCE.get(element.name, ()):
             same = [child for child in children if child.name == name]
             for other in same[1:]:
                 related = (Related(same[0].name_span, "the first one"),)
-                message = f"`<{element.name}>` has only one `<{name}>`"
+                message = f"`<{element.name}>` allows only one `<{name}>`"
                 again = remove(context.document, other, "Remove this one")
                 yield RULE.at(other.name_span, message, again, related=related)
 
 
 def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
-    """Every element with its children; those of other languages are left out."""
+    """Every element with its children, without elements of other namespaces."""
     namespaces = dict(document.namespaces)
     for element in own_elements(document):
         yield element, [child for child in element.elements if not is_foreign(namespaces, child)]
@@ -61,7 +61,7 @@ def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
 RULE = Rule(
     "repeated-element",
     Severity.ERROR,
-    "An element stands more often than it may.",
+    "An element occurs more often than allowed.",
     file=check,
     machine=check_machine,
 )

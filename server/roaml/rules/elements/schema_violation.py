@@ -12,16 +12,17 @@ from roaml.rules.rule import FileContext, Rule
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """What the schema forbids and no other rule explains."""
+    """Report violations of the schema that no other rule explains."""
     for violation in context.violations:
         if isinstance(violation, SchemaViolation) and not _told_elsewhere(context, violation):
-            yield RULE.at(violation.element.name_span, f"this does not follow the schema: {violation.reason}")
+            yield RULE.at(violation.element.name_span, f"invalid according to the schema: {violation.reason}")
 
 
 def _told_elsewhere(context: FileContext, violation: SchemaViolation) -> bool:
-    """The order in an `<if>` is the business of branch-order, what stands beside `<target>` of transition-target."""
+    """Whether another rule reports it: branch-order the order in an `<if>`, transition-target what is beside a
+    `<target>`."""
     name = violation.element.name
     return context.grammar is HL_SCXML and (name == "if" or name in HL_SCXML.groups["Transition"])
 
 
-RULE = Rule("schema-violation", Severity.ERROR, "The schema of the language forbids what is written.", file=check)
+RULE = Rule("schema-violation", Severity.ERROR, "The file violates the schema of its language.", file=check)

@@ -28,10 +28,10 @@ def check(context: FileContext) -> Iterator[Finding]:
         close = close_names(attribute.name, free)
         remove = Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=not close)
         if attribute.name == "cond" and element.name in WITHOUT_CONDITION:
-            message = f"`<{element.name}>` has no condition; test it with an `<if>` inside"
+            message = f"`<{element.name}>` does not support conditions; test the condition with an `<if>` inside it"
             yield RULE.at(attribute.name_span, message, severity=Severity.ERROR)
             continue
-        # The reference translator refuses unknown attributes of <transition> and overlooks all others
+        # The reference translator rejects unknown attributes of <transition> and ignores all others
         # (docs/spec/differences.md#rejected-machines).
         certain = bool(close) or element.name == "transition"
         message = f"`<{element.name}>` has no attribute `{attribute.name}`{did_you_mean(close)}"
@@ -44,4 +44,4 @@ def check(context: FileContext) -> Iterator[Finding]:
         )
 
 
-RULE = Rule("unknown-attribute", Severity.ERROR, "An element has an attribute that it does not know.", file=check)
+RULE = Rule("unknown-attribute", Severity.ERROR, "An element has an unknown attribute.", file=check)

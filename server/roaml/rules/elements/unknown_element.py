@@ -20,7 +20,7 @@ def check(context: FileContext) -> Iterator[Finding]:
         element, parent = violation.element, violation.parent
         assert context.grammar is not None
         if context.grammar is HL_SCXML and element.name in PLAIN_SCXML.elements:
-            continue  # unsupported-scxml-element says more
+            continue  # unsupported-scxml-element reports this with more detail
         if has_counted_children(parent):
             continue
         if element.name in _PORTS and "inout_port" in parent.children:
@@ -32,10 +32,10 @@ def check(context: FileContext) -> Iterator[Finding]:
         fits = [name for name in close if name in parent.children]
         fixes = [rename_tag(element, name, preferred=name in fits[:1]) for name in close]
         hint = did_you_mean(tuple(f"<{name}>" for name in close))
-        yield RULE.at(element.name_span, f"there is no element `<{element.name}>`{hint}", *fixes)
+        yield RULE.at(element.name_span, f"unknown element `<{element.name}>`{hint}", *fixes)
 
 
 _PORTS = {"bidirectional_port": "inout_port"}
 """Names of ports in models that BehaviorTree.CPP does not know, with the right ones."""
 
-RULE = Rule("unknown-element", Severity.ERROR, "The language has no such element.", file=check)
+RULE = Rule("unknown-element", Severity.ERROR, "An element is not known in the language.", file=check)

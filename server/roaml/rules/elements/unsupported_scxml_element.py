@@ -12,17 +12,17 @@ from roaml.language.validate import UnknownElement
 from roaml.rules.rule import FileContext, Rule
 
 ADVICE = {
-    "parallel": "states are flat here: make a machine of its own for each region",
+    "parallel": "states are flat; write a separate machine for each region",
     "final": "a `<state>` without transitions is final",
-    "history": "states are flat here: keep what must be remembered in a variable",
-    "initial": "name the initial state in the attribute `initial` of the root",
-    "raise": "use `<send>`: there is no internal event queue",
+    "history": "states are flat; store the history in a variable",
+    "initial": "set the initial state in the attribute `initial` of the root",
+    "raise": "use `<send>`, because there is no internal event queue",
     "script": "use `<assign>`",
-    "foreach": "there are no loops: let a transition lead back to its state",
-    "cancel": "events are never delayed, so nothing can be cancelled",
-    "invoke": "list the other machine in the system file and talk to it by events",
+    "foreach": "there are no loops; write a transition that leads back to its state",
+    "cancel": "events are never delayed, so none can be cancelled",
+    "invoke": "list the other machine in the system file and communicate by events",
     "finalize": "there is no `<invoke>`",
-    "donedata": "send an event from the `<onentry>` of the last state",
+    "donedata": "send an event in the `<onentry>` of the last state",
     "content": "use `<param>`",
 }
 
@@ -38,12 +38,16 @@ def check(context: FileContext) -> Iterator[Finding]:
             advice = f"; {ADVICE[name]}" if name in ADVICE else ""
             is_replaced = name in REPLACED and violation.element.find("donedata") is None
             fixes = [rename_tag(violation.element, REPLACED[name])] if is_replaced else []
-            yield RULE.at(violation.element.name_span, f"`<{name}>` is SCXML but not part of HL-SCXML{advice}", *fixes)
+            yield RULE.at(
+                violation.element.name_span,
+                f"`<{name}>` is an element of SCXML that HL-SCXML does not support{advice}",
+                *fixes,
+            )
 
 
 RULE = Rule(
     "unsupported-scxml-element",
     Severity.ERROR,
-    "An element of SCXML that HL-SCXML does not have.",
+    "An element of SCXML is not supported in HL-SCXML.",
     file=check,
 )

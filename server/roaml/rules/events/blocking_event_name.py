@@ -19,17 +19,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and is_synchronising(statement.event.value):
-                message = "an event of such a name is never discarded: it waits until every receiver handles it"
+                message = "an event with this name is never discarded: it waits until every receiver handles it"
                 yield RULE.at(statement.event.span, message)
     for declaration in _with_feedback(context.machine):
         name = declaration.interface
         if isinstance(name, Name) and is_synchronising(f"action_{sanitise(name.value)}_feedback"):
-            message = f"the feedback of an action called `{name.value}` is never discarded: it waits to be handled"
+            message = f"feedback of an action named `{name.value}` is never discarded: it waits until it is handled"
             yield RULE.at(name.span, message)
 
 
 def _with_feedback(machine: Machine) -> Iterator[Declaration]:
-    """The actions whose feedback the machine sends or handles."""
+    """The declarations of actions whose feedback the machine sends or handles."""
     users: list[RosSend | Handler] = []
     for chart in machine.charts:
         users += [s for s in chart.statements if isinstance(s, RosSend) and s.type.sends is ProtocolPart.FEEDBACK]

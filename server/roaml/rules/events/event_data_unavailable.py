@@ -16,7 +16,7 @@ from roaml.text import Span, TextEdit
 
 SCXML_VARIABLES = ("_name", "_sessionid", "_ioprocessors", "_x")
 DATA = {"_event": "_event.data", "_wrapped_result": "_wrapped_result.result"}
-"""Event variables whose fields stand one level deeper."""
+"""Event variables whose fields are one level deeper."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _is_target(value: TypedValue, problem: UnknownName) -> bool:
-    """Whether received data are assigned to; invalid-location says more."""
+    """Whether the event variable is the target of an assignment; invalid-location reports this with more detail."""
     return (
         value.use is ValueUse.LOCATION
         and problem.name in EVENT_VARIABLES
@@ -41,9 +41,9 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     name, place = problem.name, value.place
     tag = place_tag(place)
     if place.part == "data":
-        return RULE.at(problem.span, f"an initial value is constant: it cannot use `{name}`")
+        return RULE.at(problem.span, f"an initial value must be constant; it cannot use `{name}`")
     if name in SCXML_VARIABLES:
-        return RULE.at(problem.span, f"`{name}` is a variable of SCXML that does not exist here")
+        return RULE.at(problem.span, f"`{name}` is a variable of SCXML that HL-SCXML does not support")
     if name not in EVENT_VARIABLES:
         variables = context.typed.variables.get(place.chart.scope, {})
         close = close_names(name, [*known, *variables])
@@ -52,23 +52,24 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         return RULE.at(problem.span, message, *replacements(problem.span, close))
     if place.part in ("onentry", "onexit"):
         if name == "_event" and context.machine.plain:
-            # Machines without any ROS or tree element are taken over as they are
-            # (docs/spec/machines.md#plain-machines).
-            message = f"`_event` in `<{place.part}>` means the event of whichever transition is taken"
+            # Machines without any ROS or tree element are not rewritten (docs/spec/machines.md#plain-machines).
+            message = f"`_event` in `<{place.part}>` is the event of the transition that is taken, which may be any"
             return RULE.at(problem.span, message, severity=Severity.WARNING)
-        message = f"`{name}` is not known in `<{place.part}>`; store it in a variable in the body of the transition"
+        message = f"`{name}` is not available in `<{place.part}>`; store it in a variable in the body of the transition"
         return RULE.at(problem.span, message)
     if known:
-        message = f"`{name}` is not known here; `<{tag}>` knows {listing(known)}"
+        message = f"`{name}` is not available here; `<{tag}>` provides {listing(known)}"
         return RULE.at(problem.span, message, *_fixes(context, problem, known))
     if place.handler is not None and place.handler.trigger is None:
-        message = f"`{name}` is not known here: this transition has no event; give it the `event` whose data are meant"
+        message = (
+            f"`{name}` is not available here, because this transition has no event; add the `event` whose data it uses"
+        )
         return RULE.at(problem.span, message)
-    return RULE.at(problem.span, f"`{name}` is not known here: `<{tag}>` carries no data")
+    return RULE.at(problem.span, f"`{name}` is not available here: `<{tag}>` has no data")
 
 
 def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> Iterator[Fix]:
-    """Change `_event.data.x` to `_msg.x`, or the other way round."""
+    """Change `_event.data.x` to `_msg.x`, or `_msg.x` to `_event.data.x`."""
     old = DATA.get(problem.name, problem.name)
     names = [name for name in known if name != "_action"]
     start = problem.span.start
@@ -84,6 +85,6 @@ def place_tag(place: ValuePlace) -> str:
 RULE = Rule(
     "event-data-unavailable",
     Severity.ERROR,
-    "An event variable is used where there is no such event.",
+    "An event variable is used where its event is not available.",
     machine=check,
 )

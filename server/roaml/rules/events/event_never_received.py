@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if system is None:
         return
     awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
-    known = () if context.listed_as == {"node_models"} else REMOVED_EVENTS  # of these, removed-bt-event tells
+    known = () if context.listed_as == {"node_models"} else REMOVED_EVENTS  # reported by removed-bt-event
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value not in known:
@@ -31,4 +31,4 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))
 
 
-RULE = Rule("event-never-received", Severity.HINT, "An event is sent that no machine receives.", machine=check)
+RULE = Rule("event-never-received", Severity.HINT, "No machine receives an event that is sent.", machine=check)

@@ -19,7 +19,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 from roaml.scxml.names import TIMER_PREFIX
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
-"""Events by which plugins were called once: of these, removed-bt-event tells."""
+"""Events that ticked and halted plugins in an older version; removed-bt-event reports them."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -30,13 +30,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
         unread = system.may(SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
         if not unread and not _generated(context, system, event.value):
             close = close_names(event.value, [e.name for e in system.events.values() if e.senders])
-            message = f"nobody sends the event `{event.value}`{did_you_mean(close)}"
+            message = f"no machine sends the event `{event.value}`{did_you_mean(close)}"
             drop = remove(context.document, handler.element, "Remove this transition")
             yield RULE.at(event.span, message, *replacements(event.span, close), drop)
 
 
 def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Handler]]:
-    """The events of transitions that no machine sends; what is no event name is no business of this rule."""
+    """The events of transitions that no machine sends, without invalid event names."""
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
@@ -53,8 +53,7 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
 
 
 def _generated(context: MachineContext, system: System, event: str) -> bool:
-    """Whether it is an event that ROS elements, timers or the tree stand for in the translation
-    (docs/spec/plain-scxml.md)."""
+    """Whether the translation generates the event for a ROS element, a timer or the tree (docs/spec/plain-scxml.md)."""
     timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
 
     def interface(kind: str, name: str) -> InterfaceType | None:
@@ -64,4 +63,4 @@ def _generated(context: MachineContext, system: System, event: str) -> bool:
     return event in timers or f"{event}.valid" in global_variables(system, interface)
 
 
-RULE = Rule("event-never-sent", Severity.ERROR, "A transition waits for an event that nobody sends.", machine=check)
+RULE = Rule("event-never-sent", Severity.ERROR, "No machine sends an event that a transition waits for.", machine=check)

@@ -17,7 +17,7 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
 from roaml.rules.support.types import phrase
 
-ROUND = "; a number like `2.0` becomes an integer when it is sent: store it in a variable of a float type"
+ROUND = "; a number like `2.0` becomes an integer when it is sent; store it in a variable of a float type"
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -37,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[Finding]:
-    """All senders of an event must agree on the types of its parameters (docs/spec/machines.md#send)."""
+    """All senders of an event must use the same types for its parameters (docs/spec/machines.md#send)."""
     if param.name is None:
         return
     for automaton, sent in event.senders:
@@ -47,14 +47,14 @@ def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[F
                 hint = ROUND if value.type != value.sent and same(value.type, theirs) else ""
                 yield RULE.at(
                     value.value.span,
-                    f"`{name}` is {phrase(mine)} here, and {there} in another `{event.name}`{hint}",
+                    f"`{name}` is {phrase(mine)} here, but {there} in another `{event.name}`{hint}",
                     related=(Related(Symbol(automaton.path, SymbolKind.EVENT, event.name), f"sent as {there}"),),
                 )
                 return
 
 
 def _differing(name: str, type_: Type, other: SentField) -> Iterator[tuple[str, Type, Type]]:
-    """What two senders say of one parameter: its name, and its type for one and for the other."""
+    """The first parameter for which two senders differ: its name, and its types in the two senders."""
     if flat(name) == flat(other.name) and _is_struct(type_) is not _is_struct(other.type):
         if not isinstance(type_, (Unknown, EmptyArray)) and not isinstance(other.type, (Unknown, EmptyArray)):
             yield name, type_, other.type
@@ -74,12 +74,13 @@ def flat(name: str) -> str:
 
 
 def flattened(name: str, type_: Type) -> dict[str, Type]:
-    """What a parameter is in the translation: one parameter for each leaf of a struct (docs/spec/types.md#leaves)."""
+    """The leaves of a parameter: the translation has one parameter for each leaf of a struct
+    (docs/spec/types.md#leaves)."""
     return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
 
 
 def same(left: Type, right: Type) -> bool:
-    """Whether two senders give a parameter the same JANI type; bounds make no difference."""
+    """Whether two senders give a parameter the same JANI type. Bounds are not compared."""
     match left, right:
         case (Unknown(), _) | (_, Unknown()) | (EmptyArray(), EmptyArray() | Array()) | (Array(), EmptyArray()):
             return True
@@ -94,7 +95,7 @@ def same(left: Type, right: Type) -> bool:
 
 
 def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPart], list[Param]]:
-    """The fields that the machine sends, by declaration and part of its interface."""
+    """The fields that the machine sends, by declaration and part of the interface."""
     found: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
         for statement in chart.statements:
@@ -104,13 +105,13 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPar
 
 
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
-    """The reference translator gives a field the type of what is sent, whatever its ROS type is
+    """The reference translator gives a field the type of its value, whatever the ROS type is
     (docs/spec/expressions.md#whole-reals)."""
     real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
     for name, value in sent:
         if name in real and is_kind(value.sent, "int") and value.wanted and is_kind(value.wanted, "real"):
             hint = ROUND if is_kind(value.type, "real") else ""
-            message = f"`{name}` is an integer here, and a real number where else it is sent{hint}"
+            message = f"`{name}` is an integer here, but a real number where it is sent elsewhere{hint}"
             yield RULE.at(value.value.span, message, severity=Severity.INFORMATION)
 
 
@@ -131,6 +132,6 @@ def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[st
 RULE = Rule(
     "event-type-conflict",
     Severity.ERROR,
-    "Senders of an event disagree on the type of a parameter.",
+    "Senders of an event use different types for a parameter.",
     machine=check,
 )

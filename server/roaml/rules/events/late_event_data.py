@@ -27,11 +27,11 @@ _ANSWERS = {
     ProtocolPart.BT_TICK: (ProtocolPart.BT_STATUS,),
     ProtocolPart.BT_HALT: (ProtocolPart.BT_HALTED,),
 }
-"""What a machine has to send before the next such event can come."""
+"""What a machine must send before the next event of a kind can arrive."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Event data are shared variables, read when the step that reads them is executed
+    """Event data are shared variables that are read when the step is executed
     (docs/spec/machines.md#event-data-lifetime)."""
     for value in context.typed.values:
         if not value.place.late or not isinstance(value.value, Expression):
@@ -43,7 +43,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _may_be_newer(context: MachineContext, place: ValuePlace, at: int) -> bool:
-    """Whether the event of a handler may be sent again before the data are read at an offset of the file."""
+    """Whether the event of a handler may be sent again before its data are read at an offset of the file."""
     handler = place.handler
     assert handler is not None
     sent = frozenset(_sent_before(context, place, handler, at))
@@ -57,7 +57,7 @@ def _may_be_newer(context: MachineContext, place: ValuePlace, at: int) -> bool:
 
 
 def _event(context: MachineContext, user: Handler | RosSend) -> ProtocolEvent:
-    """What a handler receives, or what an element sends."""
+    """The event that a handler receives, or that an element sends."""
     part = user.trigger if isinstance(user, Handler) else user.part
     assert part is not None
     if isinstance(user, Handler) and user.trigger is ProtocolPart.EVENT:
@@ -86,18 +86,19 @@ def _names(tree: Expr) -> Iterator[Name]:
 
 
 def _message(value: TypedValue, name: str) -> str:
-    newer = f"when `{name}` may already hold the data of a later event than the one that is handled"
-    advice = f"store what you need of `{name}` in a variable first thing in the body"
+    newer = f"when `{name}` may already hold the data of a newer event than the one that is handled"
+    advice = f"store what you need of `{name}` in a variable at the beginning of the body"
     match value.use:
         case ValueUse.BRANCH:
             return f"this condition is evaluated in a later step, {newer}; {advice}"
         case ValueUse.ASSIGNED | ValueUse.LOCATION:
-            return f"this is read after something was sent or tested, {newer}; {advice}"
-    return f"what is sent is read in a later step, {newer}; {advice}"
+            return f"this is read after a send or a test, {newer}; {advice}"
+    return f"this value is read in a later step, {newer}; {advice}"
 
 
 def _severity(value: TypedValue) -> Severity | None:
-    """Data of the tree protocol cannot be overtaken: a node answers once per tick. What is sent at once seldom is."""
+    """Data of the tree protocol cannot be overwritten, because a node answers once per tick; data that are only sent on
+    seldom are."""
     handler = value.place.handler
     if handler is not None and handler.trigger in (
         ProtocolPart.CHILD_STATUS,

@@ -15,7 +15,7 @@ from roaml.text import Edit, TextEdit
 
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.listed_as == {"node_models"}:
-        return  # to a node these are events like any other
+        return  # in a node these are ordinary events
     yield from (_handler(handler, context.source.text) for handler in removed_handlers(context.machine))
     yield from map(_send, removed_sends(context.machine))
 
@@ -24,7 +24,7 @@ def _send(send: Send) -> Finding:
     assert send.event is not None
     new = REMOVED_EVENTS[send.event.value]
     fix = Fix(f"Change to `{new}`", (TextEdit(send.element.span, new.replace("/>", " />")),))
-    return RULE.at(send.event.span, f"the tree is no longer answered by events: write `{new}`", fix)
+    return RULE.at(send.event.span, f"the tree does not react to events any more; write `{new}` instead", fix)
 
 
 def _handler(handler: Handler, text: str) -> Finding:
@@ -37,12 +37,12 @@ def _handler(handler: Handler, text: str) -> Finding:
         edits.append(TextEdit(element.close_name_span, event.value))
     new = f"<{event.value}>"
     fix = Fix(f"Change to `{new}`", tuple(edits))
-    return RULE.at(event.span, f"the tree no longer sends the event `{event.value}`: write `{new}`", fix)
+    return RULE.at(event.span, f"the tree does not send the event `{event.value}` any more; write `{new}` instead", fix)
 
 
 RULE = Rule(
     "removed-bt-event",
     Severity.ERROR,
-    "The behavior tree is talked to by events, which is no longer possible.",
+    "Plain events can no longer tick a tree or answer its ticks.",
     machine=check,
 )

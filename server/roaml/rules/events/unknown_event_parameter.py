@@ -15,7 +15,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A sender that cannot be read may send the parameter."""
+    """A sender that cannot be read might send the parameter."""
     if context.system is None:
         return
     for value in context.typed.values:
@@ -30,14 +30,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _check(problem: UnknownMember, event: PlainEvent, params: list[str]) -> Iterator[Finding]:
     if any(name.startswith(f"{problem.name}.") for name in params):
-        return  # the beginning of a dotted name
+        return  # the first part of a dotted name
     close = close_names(problem.name, params)
     senders = dict.fromkeys(Symbol(automaton.path, SymbolKind.EVENT, event.name) for automaton, _ in event.senders)
     related = [Related(symbol, "sent here") for symbol in [*senders][:3]]
-    message = f"nobody sends a parameter `{problem.name}` with `{event.name}`{did_you_mean(close)}"
+    message = f"no machine sends a parameter `{problem.name}` with `{event.name}`{did_you_mean(close)}"
     yield RULE.at(problem.span, message, *replacements(problem.span, close), related=related)
 
 
 RULE = Rule(
-    "unknown-event-parameter", Severity.ERROR, "A parameter is read that no sender of the event sends.", machine=check
+    "unknown-event-parameter", Severity.ERROR, "No sender of an event sends a parameter that is read.", machine=check
 )

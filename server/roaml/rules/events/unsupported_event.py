@@ -25,15 +25,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _check(element: Element, attribute: Attribute, event: Name | None, text: str) -> Iterator[Finding]:
     if event is None:
-        remove = Fix("Leave out `event`", (removal(text, attribute.span),))
-        yield RULE.at(attribute.span, "the name of the event is missing; without an event leave out `event`", remove)
+        remove = Fix("Remove `event`", (removal(text, attribute.span),))
+        yield RULE.at(
+            attribute.span, "the name of the event is empty; for a transition without an event, remove `event`", remove
+        )
     elif len(event.value.split()) > 1:
         names = listing(event.value.split())
-        # Where one of them is a wildcard, the copy for that one is still wrong.
+        # If one of them is a wildcard, its copy is still reported.
         split = Fix("Write one transition for each event", (_copies(element, event, text),), preferred="*" not in names)
-        yield RULE.at(event.span, f"a transition waits for one event; write one for each of {names}", split)
+        yield RULE.at(event.span, f"a transition waits for exactly one event; write one for each of {names}", split)
     elif "*" in event.value:
-        yield RULE.at(event.span, "wildcards are not supported: write one transition for each event")
+        yield RULE.at(event.span, "wildcards are not supported; write one transition for each event")
 
 
 def _copies(element: Element, event: Name, text: str) -> TextEdit:
@@ -45,4 +47,4 @@ def _copies(element: Element, event: Name, text: str) -> TextEdit:
     return TextEdit(element.span, f"\n{indent_of(text, element)}".join(copies))
 
 
-RULE = Rule("unsupported-event", Severity.ERROR, "A transition waits for something else than one event.", machine=check)
+RULE = Rule("unsupported-event", Severity.ERROR, "A transition does not wait for exactly one event.", machine=check)

@@ -24,13 +24,13 @@ _MIRRORED = {
     Operator.GREATER: Operator.LESS,
     Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
 }
-"""Each comparison -> the same with its sides exchanged."""
+"""Each comparison operator, with the operator for exchanged sides."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     text = context.source.text
     if "random" not in text and "&#" not in text:
-        return  # most machines draw nothing, and looking at all their expressions takes a while
+        return  # most machines draw no random numbers, and checking all their expressions takes a while
     values = context.system.parameters.random_values if context.system else DEFAULT_RANDOM_VALUES
     drawn = {chart.scope: drawn_variables(chart) for chart in context.machine.charts}
     for value in context.typed.values:
@@ -40,7 +40,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
-    """Random numbers that are multiplied by more than there are values."""
+    """Random numbers that are multiplied by more than the number of their values."""
     is_rounded = isinstance(expr, Call) and isinstance(expr.function, Member) and expr.function.name in ROUNDING
     scale = slope(expr.arguments[0] if isinstance(expr, Call) and is_rounded and expr.arguments else expr)
     if scale is None or abs(scale) <= values:
@@ -58,7 +58,7 @@ def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
 
 
 def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Finding]:
-    """Comparisons of a random number whose probability is another one than they seem to say."""
+    """Comparisons of a random number whose probability differs from the probability that the constant suggests."""
     for node in walk(expr):
         if not isinstance(node, Binary) or node.operator not in _MIRRORED:
             continue
@@ -83,12 +83,12 @@ def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Findin
 
 
 _STRICT = (Operator.LESS, Operator.GREATER_EQUAL)
-"""The comparisons for which a value equal to the bound counts like the greater ones."""
+"""The comparisons for which a value equal to the bound is on the same side as the greater values."""
 
 
 def drawn_variables(chart: Chart) -> frozenset[str]:
-    """The variables that hold nothing but random numbers: `Math.random()` is assigned to them, and at most constants
-    besides."""
+    """The variables that hold only random numbers: `Math.random()` is assigned to them, and otherwise at most
+    constants."""
     assigned: dict[str, list[Expr | None]] = {}
     for statement in chart.statements:
         if isinstance(statement, Assign) and statement.location and isinstance(statement.location.tree, Name):
@@ -134,11 +134,11 @@ def _draws(expr: Expr) -> bool:
 def _advice(cells: int) -> str:
     if cells <= MAX_RANDOM_VALUES:
         return f'set `<random_values value="{cells}" />` in the system file'
-    return f"`<random_values>` in the system file allows up to {MAX_RANDOM_VALUES:,} values"
+    return f"`<random_values>` in the system file allows at most {MAX_RANDOM_VALUES:,} values"
 
 
 def _comparison_advice(name: str, operator: Operator, bound: Fraction, values: int) -> str:
-    """What to write so that the probability is `bound`, or 1 - `bound`."""
+    """What to write for a probability of `bound`, or 1 - `bound`."""
     if (bound * values).denominator == 1:
         other = "<" if operator is Operator.LESS_EQUAL else ">="
         return f"write `{name} {other} {float(bound):g}`"
@@ -146,6 +146,4 @@ def _comparison_advice(name: str, operator: Operator, bound: Fraction, values: i
     return _advice(enough)
 
 
-RULE = Rule(
-    "coarse-random", Severity.WARNING, "A random number has too few values for what is done with it.", machine=check
-)
+RULE = Rule("coarse-random", Severity.WARNING, "A random number has too few values for its use.", machine=check)

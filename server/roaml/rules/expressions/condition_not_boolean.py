@@ -19,7 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) and not fits(value.type, BOOL):
             span = value.value.tree.span if isinstance(value.value, Expression) else value.value.span
-            yield RULE.at(span, f"a condition is a boolean, not {phrase(value.type)}", *_fixes(value))
+            yield RULE.at(span, f"a condition must be a boolean, not {phrase(value.type)}", *_fixes(value))
 
 
 def _fixes(value: TypedValue) -> Iterator[Fix]:

@@ -17,4 +17,4 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(problem.span, "division by zero: the result is undefined")
 
 
-RULE = Rule("division-by-zero", Severity.WARNING, "Something is divided by a constant zero.", machine=check)
+RULE = Rule("division-by-zero", Severity.WARNING, "A division has the constant divisor zero.", machine=check)

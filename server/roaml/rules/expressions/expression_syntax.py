@@ -13,7 +13,7 @@ from roaml.rules.rule import MachineContext, Rule
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        # Of what is empty, invalid-value says so.
+        # invalid-value reports empty expressions
         if isinstance(value.value, Expression) and value.value.text.strip():
             yield from (finding for finding in value.value.findings if finding.code == SYNTAX)
 

@@ -22,10 +22,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for problem in value.problems:
             if isinstance(problem, IndexOutOfBounds):
                 if problem.index < 0:
-                    yield RULE.at(problem.span, "an index begins at 0")
+                    yield RULE.at(problem.span, "an index must be at least 0")
                 else:
                     last = (problem.array.bound or 1) - 1
-                    message = f"`{problem.array}` has no element {problem.index}: the last is {last}"
+                    message = f"`{problem.array}` has no element {problem.index}; the last index is {last}"
                     yield RULE.at(problem.span, message, *_more_room(value, problem))
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _unbounded(context, value.place, value.value.tree)
@@ -35,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
-    """Declare the array, if it is a variable of its own, with as many elements."""
+    """Declare the array with enough elements, if it is a variable."""
     if not isinstance(value.value, Expression):
         return
     used = [n for n in walk(value.value.tree) if isinstance(n, Index) and n.index.span == problem.span]
@@ -48,7 +48,7 @@ def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
 
 
 def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterator[Finding]:
-    """Indexes that lie behind what arrays without a bound hold in this system."""
+    """Indices beyond the size that arrays without a bound have in this system."""
     if context.system is None:
         return
     size = context.system.parameters.max_array_size
@@ -59,12 +59,15 @@ def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterat
         if isinstance(number, int) and number >= size:
             array = _type_of(context, place, node.object)
             if isinstance(array, Array) and array.bound is None:
-                message = f"`{array}` has no element {number}: without a bound it holds {size} (`max_array_size`)"
+                message = (
+                    f"`{array}` has no element {number}; an array without a bound has {size} elements "
+                    "(`max_array_size`)"
+                )
                 yield RULE.at(node.index.span, message)
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """`v[v.length]` writes behind the end of a bounded array that is full, unless a condition keeps it from that."""
+    """`v[v.length]` writes after the end of a bounded array that is full, unless a condition prevents it."""
     if not isinstance(tree, Index) or not _is_length_of(context, tree.index, tree.object):
         return
     array = _type_of(context, value.place, tree.object)
@@ -73,14 +76,14 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
         yield RULE.at(
             tree.index.span,
-            f"`{_text(context, tree.object)}` holds at most {array.bound} elements; nothing here keeps this from "
-            "writing behind the last one",
+            f"`{_text(context, tree.object)}` has at most {array.bound} elements, and no condition prevents a write "
+            "after the last one",
             severity=Severity.WARNING,
         )
 
 
 def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """`v.length` is set to more than the array holds."""
+    """`v.length` is set to more than the array can hold."""
     if not isinstance(tree, Member) or tree.name != "length":
         return
     array = _type_of(context, value.place, tree.object)
@@ -93,13 +96,13 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     most = array.bound or (context.system.parameters.max_array_size if context.system else None)
     if number is not None and number < 0:
         fix = Fix("Change to `0`", (TextEdit(assigned.value.span, "0"),), preferred=False)
-        yield RULE.at(assigned.value.span, "a length is at least 0", fix)
+        yield RULE.at(assigned.value.span, "a length must be at least 0", fix)
     elif number is not None and most is not None and number > most:
-        yield RULE.at(assigned.value.span, f"`{_text(context, tree.object)}` holds at most {most} elements")
+        yield RULE.at(assigned.value.span, f"`{_text(context, tree.object)}` has at most {most} elements")
 
 
 def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:
-    """Whether the same body gives the array a length, or other elements, before."""
+    """Whether the same body sets the length or the elements of the array before."""
     names = (_text(context, array), f"{_text(context, array)}.length")
     return any(
         isinstance(other.value, Expression)
@@ -117,7 +120,7 @@ def _is_length_of(context: MachineContext, expr: Expr, array: Expr) -> bool:
 
 
 def _text(context: MachineContext, expr: Expr) -> str:
-    """An expression as it is written, without white space."""
+    """The text of an expression without white space."""
     return "".join(context.source.text[expr.span.start : expr.span.end].split())
 
 
@@ -127,7 +130,7 @@ def _type_of(context: MachineContext, place: ValuePlace, expr: Expr) -> Type:
 
 
 def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: int) -> bool:
-    """Whether a condition that holds here keeps the length of the array below `bound`."""
+    """Whether a condition that holds at this place keeps the length of the array below `bound`."""
     conditions = list(place.branch_conditions or ())
     if place.handler is not None and place.handler.cond is not None:
         conditions.append((place.handler.cond, True))
@@ -139,13 +142,13 @@ def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: in
 
 
 def _trigger(handler: Handler) -> tuple[object, ...]:
-    """What handlers that are tried one after the other have in common."""
+    """The trigger that handlers which are tested in order have in common."""
     names = (handler.event, handler.handle, handler.child)
     return (handler.trigger, *(name.value if name else "" for name in names))
 
 
 def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds: bool) -> bool:
-    """Whether `expr`, being true (or false, if not `holds`), keeps the length of the array below `bound`."""
+    """Whether `expr` keeps the length of the array below `bound` if it is true (or false, if not `holds`)."""
     match expr:
         case Unary(operator=UnaryOperator.NOT):
             return _limits(context, expr.operand, array, bound, not holds)
@@ -180,16 +183,16 @@ _MIRRORED = {
 
 
 def _below(operator: Operator, number: float | None, bound: int) -> bool:
-    """Whether `length OPERATOR number` keeps the length below `bound`; of no constant that is taken on trust."""
+    """Whether `length OPERATOR number` keeps the length below `bound`."""
     match operator:
         case Operator.LESS:
             return number is None or number <= bound
         case Operator.LESS_EQUAL | Operator.EQUAL:
             return number is None or number < bound
         case Operator.NOT_EQUAL:
-            # An array that grows by one keeps below a length that it never has.
+            # An array that grows by one stays below a length that it never has.
             return number is None or 0 < number <= bound
     return False
 
 
-RULE = Rule("index-out-of-bounds", Severity.ERROR, "An index lies outside its array.", machine=check)
+RULE = Rule("index-out-of-bounds", Severity.ERROR, "An index is outside of its array.", machine=check)

@@ -19,19 +19,19 @@ WHOLE = ("floor", "ceil")
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         if not isinstance(value.value, Expression) or (value.wanted is not None and is_kind(value.wanted, "int")):
-            continue  # type-mismatch says more
+            continue  # type-mismatch reports this with more detail
         problems = [problem for problem in value.problems if isinstance(problem, IntegerDivision)]
         meant = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()
         for problem in problems:
             if problem.span not in meant:
-                message = "`/` of integers gives a real number (`7 / 2` is 3.5)"
+                message = "`/` of integers is a real number (`7 / 2` is 3.5)"
                 yield RULE.at(
-                    problem.span, f"{message}; for a whole one write `Math.floor(a / b)`", *_fixes(value.value, problem)
+                    problem.span, f"{message}; for an integer write `Math.floor(a / b)`", *_fixes(value.value, problem)
                 )
 
 
 def _whole(tree: Expr) -> Iterator[Call]:
-    """The calls in which a quotient is made whole."""
+    """The calls that round a quotient to an integer."""
     for node in walk(tree):
         if isinstance(node, Call) and isinstance(node.function, Member) and node.function.name in WHOLE:
             yield node
@@ -49,6 +49,4 @@ def _fixes(expression: Expression, problem: IntegerDivision) -> Iterator[Fix]:
             yield Fix("Round down with `Math.floor`", edits, preferred=False)
 
 
-RULE = Rule(
-    "integer-division", Severity.INFORMATION, "Two integers are divided, which gives a real number.", machine=check
-)
+RULE = Rule("integer-division", Severity.INFORMATION, "The division of two integers is a real number.", machine=check)

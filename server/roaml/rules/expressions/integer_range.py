@@ -22,17 +22,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 low, high = INTEGER_RANGES[type_]
                 wider = wide_enough(number, type_)
                 fixes = as_type(context, value, wider) if wider and not _is_nested(value.wanted) else ()
-                message = f"{number} does not fit into `{type_}`, which holds {low} to {high}"
+                message = f"{number} does not fit into `{type_}`, whose range is {low} to {high}"
                 yield RULE.at(span, message, *fixes)
 
 
 def _is_nested(wanted: Type) -> bool:
-    """Whether the integer is a member of a struct, whose type stands elsewhere."""
+    """Whether the integer is a member of a struct, whose type is declared elsewhere."""
     return isinstance(unwrap(wanted)[0], Struct)
 
 
 def outside(expr: Expr, wanted: Type) -> Iterator[tuple[Span, int, str]]:
-    """Constants in `expr` that lie outside the range of the integer type wanted there."""
+    """Constants in `expr` outside the range of the integer type that they must have."""
     match expr, wanted:
         case ArrayLiteral(), Array():
             for element in expr.elements:
@@ -53,6 +53,6 @@ def outside(expr: Expr, wanted: Type) -> Iterator[tuple[Span, int, str]]:
 RULE = Rule(
     "integer-range",
     Severity.WARNING,
-    "A constant lies outside the range of its integer type.",
+    "A constant is outside the range of its integer type.",
     machine=check,
 )

@@ -27,10 +27,10 @@ def _reason(value: TypedValue, variables: Mapping[str, Type]) -> str:
     tree = value.value.tree
     path = access_path(tree)
     if not isinstance(tree, (Name, Member, Index)) or path is None:
-        return "this cannot be assigned to: write a variable, an element `v[i]` or a member `s.m`"
+        return "not assignable; write a variable, an element `v[i]` or a member `s.m`"
     if path[0] in EVENT_VARIABLES and path[0] not in variables:
-        return f"`{path[0]}` is received data and cannot be changed; use `<send>` or a ROS element to send something"
+        return f"`{path[0]}` is received data and cannot be changed; to send data, use `<send>` or a ROS element"
     return ""
 
 
-RULE = Rule("invalid-location", Severity.ERROR, "Something is assigned to that cannot be assigned to.", machine=check)
+RULE = Rule("invalid-location", Severity.ERROR, "The location of an assignment is not assignable.", machine=check)

@@ -18,10 +18,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for problem in value.problems:
             match problem:
                 case BadOperand(operator="+") if is_kind(problem.given, "string"):
-                    yield RULE.at(problem.span, "strings cannot be joined: `+` takes numbers")
+                    yield RULE.at(problem.span, "strings cannot be joined: `+` requires numbers")
                 case BadOperand(operator="?"):
                     yield RULE.at(
-                        problem.span, f"the condition of `?` is {problem.wanted}, not {phrase(problem.given)}"
+                        problem.span, f"the condition of `?` must be {problem.wanted}, not {phrase(problem.given)}"
                     )
                 case BadOperand():
                     operand = "a boolean" if problem.wanted == BOOL else "a number"
@@ -30,20 +30,20 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case BadComparison():
                     yield RULE.at(problem.span, _comparison(problem))
                 case MixedTypes():
-                    message = f"{phrase(problem.first)} and {phrase(problem.other)} have no type in common"
+                    message = f"{phrase(problem.first)} and {phrase(problem.other)} have no common type"
                     yield RULE.at(problem.span, message)
                 case BadIndex() if isinstance(problem.indexed, Array) or is_kind(problem.indexed, "string"):
-                    message = f"an index is an integer, not {phrase(problem.index)}"
+                    message = f"an index must be an integer, not {phrase(problem.index)}"
                     fixes = [_floor(problem.span)] if is_kind(problem.index, "real") else []
                     yield RULE.at(problem.span, message, *fixes)
                 case BadIndex():
                     yield RULE.at(
-                        problem.span, f"only arrays and strings have an index; this is {phrase(problem.indexed)}"
+                        problem.span, f"only arrays and strings can be indexed, not {phrase(problem.indexed)}"
                     )
 
 
 def _compare(problem: BadOperand) -> Iterator[Fix]:
-    """A number where a boolean is wanted."""
+    """Compare a number with 0 where a boolean is required."""
     if problem.wanted == BOOL and is_number(problem.given):
         yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
 
@@ -63,4 +63,4 @@ def _comparison(problem: BadComparison) -> str:
     return f"{phrase(problem.left)} and {phrase(problem.right)} cannot be compared with `{problem.operator}`"
 
 
-RULE = Rule("invalid-operand", Severity.ERROR, "An operator is used on values that it does not take.", machine=check)
+RULE = Rule("invalid-operand", Severity.ERROR, "An operator does not support the types of its operands.", machine=check)

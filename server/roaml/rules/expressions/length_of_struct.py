@@ -19,12 +19,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 path, type_ = next(leaves(problem.struct), ((), None))
                 first = ".".join(path)
                 if isinstance(type_, Array):
-                    message = f"`{problem.struct}` is no array; this is the length of its `{first}`"
+                    message = f"`{problem.struct}` is not an array; this is the length of its member `{first}`"
                     fix = Fix(f"Write `.{first}.length`", (TextEdit(problem.span, f"{first}.length"),))
                     yield RULE.at(problem.span, message, fix)
                 elif not isinstance(type_, Unknown):
-                    message = f"`{problem.struct}` is no array and has no length"
+                    message = f"`{problem.struct}` is not an array and has no length"
                     yield RULE.at(problem.span, message, severity=Severity.ERROR)
 
 
-RULE = Rule("length-of-struct", Severity.INFORMATION, "The length of a struct is asked for.", machine=check)
+RULE = Rule("length-of-struct", Severity.INFORMATION, "The length of a struct is read.", machine=check)

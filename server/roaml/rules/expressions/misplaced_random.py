@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if isinstance(problem, RandomUsed):
                     yield RULE.at(
                         problem.span,
-                        f"`Math.random()` cannot stand {WHERE[value.use]}: assign it to a variable first",
+                        f"`Math.random()` is not allowed {WHERE[value.use]}; assign it to a variable first",
                     )
 
 

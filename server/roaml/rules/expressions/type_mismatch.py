@@ -41,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def can_hold(wanted: Type, given: Type) -> bool:
-    """Whether a value fits; a struct is assigned leaf by leaf, so another struct with the same leaves does too."""
+    """Whether a value fits. Structs are assigned leaf by leaf, so another struct with the same leaves fits as well."""
     inner, bounds = unwrap(wanted)
     other, more = unwrap(given)
     if isinstance(inner, Struct) and isinstance(other, Struct) and len(bounds) == len(more):
@@ -55,14 +55,14 @@ def _mismatch(context: MachineContext, value: TypedValue, wanted: Type) -> Findi
     edits = _without_points(context, value, wanted)
     if not edits:
         return RULE.at(value.value.span, message, *_fixes(context, value, value.type, wanted, value.value.span))
-    new = "leave out `.0`" if len(edits) == 1 else "leave out each `.0`"
+    new = "remove `.0`" if len(edits) == 1 else "remove each `.0`"
     fix = Fix(new.capitalize(), tuple(edits))
     return RULE.at(value.value.span, f"{message}; {new}", fix, severity=Severity.WARNING)
 
 
 def _without_points(context: MachineContext, value: TypedValue, wanted: Type) -> list[TextEdit]:
-    """How to write a real value as the int that the translation makes of it (docs/spec/expressions.md#whole-reals), if
-    it does."""
+    """The edits that write a real value as the integer to which the translation converts it
+    (docs/spec/expressions.md#whole-reals); empty if the translation does not convert it."""
     if not isinstance(value.value, Expression):
         return []
     tree = value.value.tree
@@ -78,7 +78,7 @@ def _without_points(context: MachineContext, value: TypedValue, wanted: Type) ->
 
 
 def _too_long(tree: Expr, wanted: Type, size: int | None) -> Iterator[Finding]:
-    """Literals with more elements than the array can hold; `size` is that of arrays without a bound, if known."""
+    """Literals with more elements than the array can hold; `size` is the size of arrays without a bound, if known."""
     match tree, wanted:
         case ArrayLiteral(), Array():
             yield from _longer(tree.span, f"`{wanted}` holds", "elements", len(tree.elements), wanted.bound or size)
@@ -114,7 +114,7 @@ def _what(value: TypedValue) -> str:
 
 
 def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type, span: Span) -> Iterator[Fix]:
-    """Write the value otherwise, or give the variable the type of the value."""
+    """Rewrite the value, or change the type of the variable to that of the value."""
     if not isinstance(value.value, Expression):
         return
     whole = span == value.value.span
@@ -143,4 +143,4 @@ def _other_value(value: Expression, use: ValueUse, given: Type, wanted: Type) ->
         yield Fix(f"Change to `{literal}`", (TextEdit(span, literal),))
 
 
-RULE = Rule("type-mismatch", Severity.ERROR, "A value has not the type that is wanted.", machine=check)
+RULE = Rule("type-mismatch", Severity.ERROR, "The type of a value does not match.", machine=check)

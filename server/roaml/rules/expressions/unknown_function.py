@@ -25,7 +25,7 @@ ADVICE = {
 
 
 REWRITTEN = {"Math.sqrt": ("Math.pow", ", 0.5"), "Math.round": ("Math.floor", " + 0.5")}
-"""Another function, and what to put behind its argument."""
+"""A function with the same effect, and the text to add after its argument."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -43,15 +43,15 @@ def _unknown(problem: UnknownFunction, value: Value) -> Finding:
     name = problem.name
     if name in CONSTANTS and not problem.called:
         fixes = replacements(problem.span, (CONSTANTS[name],))
-        return RULE.at(problem.span, f"there is no `{name}`; write the number `{CONSTANTS[name]}`", *fixes)
+        return RULE.at(problem.span, f"there is no constant `{name}`; write the number `{CONSTANTS[name]}`", *fixes)
     if name in ADVICE:
         message = f"there is no function `{name}`; {ADVICE[name]}"
         return RULE.at(problem.span, message, *_rewrite(problem, value))
     if name == "Math":
-        return RULE.at(problem.span, "`Math` is no value: call one of its functions, such as `Math.floor(x)`")
+        return RULE.at(problem.span, "`Math` is not a value; call one of its functions, such as `Math.floor(x)`")
     known = [f"Math.{function}" for function in FUNCTIONS]
     if name in known and not problem.called:
-        return RULE.at(problem.span, f"`{name}` is a function: call it as `{FUNCTIONS[name[5:]].signature}`")
+        return RULE.at(problem.span, f"`{name}` is a function; call it as `{FUNCTIONS[name[5:]].signature}`")
     close = close_names(name, known) if name.startswith("Math.") else ()
     if not close and f"Math.{name}" in known:
         close = (f"Math.{name}",)
@@ -61,7 +61,7 @@ def _unknown(problem: UnknownFunction, value: Value) -> Finding:
 
 
 def _rewrite(problem: UnknownFunction, value: Value) -> Iterator[Fix]:
-    """Call another function that does the same."""
+    """Call another function with the same effect."""
     if problem.name not in REWRITTEN or not isinstance(value, Expression) or value.broken:
         return
     function, behind = REWRITTEN[problem.name]
@@ -73,4 +73,4 @@ def _rewrite(problem: UnknownFunction, value: Value) -> Iterator[Fix]:
                 yield Fix(f"Change to `{function}(x{behind})`", edits)
 
 
-RULE = Rule("unknown-function", Severity.ERROR, "A function is called that does not exist, or wrongly.", machine=check)
+RULE = Rule("unknown-function", Severity.ERROR, "A call has an unknown function or wrong arguments.", machine=check)

@@ -37,12 +37,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case MissingMembers():
                     names = _really_missing(problem, value)
                     if names:
-                        message = f"the value leaves out {listing(names)} of `{problem.struct}`"
+                        message = f"the value has no {listing(names)}, which `{problem.struct}` requires"
                         yield RULE.at(problem.span, message, *_add(context, problem, names))
 
 
 def _add(context: MachineContext, problem: MissingMembers, names: list[str]) -> Iterator[Fix]:
-    """The missing members, with 0 or what is like it."""
+    """Add the missing members with the zeros of their types."""
     text = context.source.text[slice(*problem.span)]
     values = [zero_text(type_) for name in names if (type_ := problem.struct.member(name)) is not None]
     if text[-1:] != "}" or len(values) < len(names):
@@ -58,7 +58,7 @@ def _add(context: MachineContext, problem: MissingMembers, names: list[str]) -> 
 
 
 def _really_missing(problem: MissingMembers, value: TypedValue) -> list[str]:
-    """The missing members that are not merely misspelled."""
+    """The missing members, without those that are only misspelled."""
     extra = [
         other.name
         for other in value.problems
@@ -69,7 +69,7 @@ def _really_missing(problem: MissingMembers, value: TypedValue) -> list[str]:
 
 
 def _without_quotes(span: Span, text: str) -> Span:
-    """The name in a member's key, however it is quoted."""
+    """The name of a member, without the quotes of its key."""
     quote = QUOTE.match(text, span.start, span.end)
     width = quote.end() - span.start if quote else 0
     return Span(span.start + width, span.end - width)
@@ -79,14 +79,14 @@ def _unknown(problem: UnknownMember) -> Finding | None:
     inner, _ = unwrap(problem.owner)
     if not isinstance(inner, Struct):
         what = "an array" if isinstance(problem.owner, Array) else f"of type `{problem.owner}`"
-        only = "; it has only `.length`" if isinstance(problem.owner, Array) else ""
+        only = "; its only member is `.length`" if isinstance(problem.owner, Array) else ""
         return RULE.at(problem.span, f"this is {what} and has no member `{problem.name}`{only}")
     if is_ros(inner) or inner.kind is StructKind.EVENT:
-        return None  # unknown-field and unknown-event-parameter say more
+        return None  # unknown-field and unknown-event-parameter report these with more detail
     close = close_names(problem.name, [name for name, _ in inner.members])
     owner = f"`{inner}`" if inner.name else f"the {inner.what}"
     message = f"{owner} has no member `{problem.name}`{did_you_mean(close)}"
     return RULE.at(problem.span, message, *replacements(problem.span, close))
 
 
-RULE = Rule("unknown-member", Severity.ERROR, "A member is named that its struct does not have.", machine=check)
+RULE = Rule("unknown-member", Severity.ERROR, "A struct does not have a member that is used.", machine=check)

@@ -21,19 +21,23 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case ObjectUsed():
                     yield RULE.at(
                         problem.span,
-                        "an object in braces can only be the initial value of a struct; assign the members one by one, "
+                        "an object in braces is only allowed as the initial value of a struct; assign the members "
+                        "one by one, "
                         "or another struct",
                     )
                 case ElementComputed():
                     yield RULE.at(
                         problem.span,
-                        "an array in brackets has literals only; assign this element with an `<assign>` of its own",
+                        (
+                            "an array in brackets may contain only literals; assign this element with a separate "
+                            "`<assign>`"
+                        ),
                     )
 
 
 RULE = Rule(
     "unsupported-expression",
     Severity.ERROR,
-    "An expression is ECMAScript, but not of the part that models can use.",
+    "An expression is valid ECMAScript, but not supported in models.",
     machine=check,
 )

@@ -25,7 +25,7 @@ def _check(context: TreeContext, script: Attribute, *, in_system: bool) -> Itera
     if reason:
         yield RULE.at(script.value_span, f"the script is not well-formed: {reason}")
     elif in_system:
-        message = f"`{script.name}` cannot be translated: scripts have no counterpart in the model"
+        message = f"`{script.name}` cannot be translated: the model does not support scripts"
         drop = Fix(f"Remove `{script.name}`", (removal(context.source.text, script.span),), preferred=False)
         yield RULE.at(script.span, message, drop)
 
@@ -34,7 +34,7 @@ PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
 def unbalanced(script: str) -> str:
-    """What is wrong with the brackets and quotes of a script, or ""."""
+    """The error in the brackets and quotes of a script; "" if there is none."""
     opened: list[str] = []
     quote = ""
     for character in script:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about files: what they are, which files they name, configuration and suppressions."""
+"""Rules about files: their kinds, the files that they refer to, configuration and suppressions."""

@@ -6,4 +6,4 @@ from __future__ import annotations
 from roaml.diagnostics import Severity
 from roaml.rules.rule import Rule
 
-RULE = Rule("file-too-large", Severity.ERROR, "A file is larger than what is checked.")
+RULE = Rule("file-too-large", Severity.ERROR, "A file is too large to be checked.")

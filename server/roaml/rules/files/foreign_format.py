@@ -14,13 +14,13 @@ from roaml.text import Span
 def check(context: FileContext) -> Iterator[Finding]:
     document = context.document
     if document is not None and document.root is not None and document.root.name == "specification":
-        yield RULE.at(document.root.name_span, "this is a specification for another tool; it is not checked here")
+        yield RULE.at(document.root.name_span, "this is a specification for another tool; it is not checked")
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
     if context.dialect is Dialect.FOREIGN:
         span: Span = context.machine.element.name_span
-        yield RULE.at(span, "this state machine is written for another tool; only its form is checked here")
+        yield RULE.at(span, "this state machine is written for another tool; only its syntax is checked")
 
 
 RULE = Rule(

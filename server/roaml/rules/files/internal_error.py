@@ -6,4 +6,4 @@ from __future__ import annotations
 from roaml.diagnostics import Severity
 from roaml.rules.rule import Rule
 
-RULE = Rule("internal-error", Severity.WARNING, "The tool itself has failed.")
+RULE = Rule("internal-error", Severity.WARNING, "A rule has failed with an internal error.")

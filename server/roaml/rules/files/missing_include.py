@@ -16,4 +16,4 @@ def check(context: TreeContext) -> Iterator[Finding]:
             yield RULE.at(include.path.span, f"`{include.path.value}` cannot be included: {reason}")
 
 
-RULE = Rule("missing-include", Severity.ERROR, "A tree file includes a file that it cannot have.", tree=check)
+RULE = Rule("missing-include", Severity.ERROR, "A tree file includes a file that cannot be included.", tree=check)

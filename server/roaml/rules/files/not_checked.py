@@ -20,11 +20,11 @@ from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_s
 from roaml.text import Span
 
 _PLUGIN = "plugin"
-"""What a file does that may be the plugin of a node."""
+"""The facts about a file that may be the plugin of a node."""
 _ANY_PLUGIN: set[Fact] = {(_PLUGIN, None)}
 _ANY_FACT: set[Fact] = {(ANYTHING, None)}
 _MOST = 3
-"""How much of what is not checked a message names."""
+"""The maximum number of questions that a message names."""
 
 
 def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
@@ -38,12 +38,12 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
         answered += [want.question for want in wants if want.question not in answered and want.may_be(facts)]
     for span, questions in told.items():
         if questions:
-            yield RULE.at(span, f"until this is mended, it is not checked {_listing(questions)}")
+            yield RULE.at(span, f"not checked because of this error: {_listing(questions)}; fix the error first")
 
 
 @dataclass(frozen=True, slots=True)
 class _Want:
-    """Something that is missing in the system as far as it can be read. Without an act, it is a variable."""
+    """Something that is missing in the readable part of the system. If `act` is empty, it is a variable."""
 
     act: str
     name: str
@@ -56,7 +56,7 @@ class _Want:
 
 
 def _causes(context: MachineContext | TreeContext | SystemContext, system: System) -> Iterator[tuple[Span, set[Fact]]]:
-    """The places in a file that cannot be read, with all that may be said there."""
+    """The places in a file that cannot be read, with the facts that they may contain."""
     if isinstance(context, MachineContext):
         for placed in context.gaps:
             for automaton in context.automata:
@@ -85,31 +85,33 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
 def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Want]:
     for name in sorted({instance.plugin for instance in system.instances}):
         if system.plugin(name)[1] is None:
-            yield _Want(_PLUGIN, name, f"whether there is the plugin `{name}`")
+            yield _Want(_PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
-            yield _Want(SymbolKind.SUBSCRIBER.value, topic.name, f"who subscribes to the topic `{topic.name}`")
+            yield _Want(
+                SymbolKind.SUBSCRIBER.value, topic.name, f"which machine subscribes to the topic `{topic.name}`"
+            )
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
-            yield _Want("publisher message", topic.name, f"who publishes on the topic `{topic.name}`")
+            yield _Want("publisher message", topic.name, f"which machine publishes on the topic `{topic.name}`")
     for what, channels in (("service", system.services), ("action", system.actions)):
         for channel in channels.values():
             if not channel.sources:
-                yield _Want(f"{what}-server", channel.name, f"who serves the {what} `{channel.name}`")
+                yield _Want(f"{what}-server", channel.name, f"which machine serves the {what} `{channel.name}`")
             elif not channel.users:
-                yield _Want(f"{what}-client", channel.name, f"who uses the {what} `{channel.name}`")
+                yield _Want(f"{what}-client", channel.name, f"which machine uses the {what} `{channel.name}`")
     for event in system.events.values():
         if not event.senders:
-            yield _Want(SENDS, event.name, f"who sends the event `{event.name}`")
+            yield _Want(SENDS, event.name, f"which machine sends the event `{event.name}`")
         elif not event.receivers and not system.is_observed(event.name):
-            yield _Want(RECEIVES, event.name, f"who has a transition for the event `{event.name}`")
+            yield _Want(RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
     for variable, ports in system.blackboard.items():
         if not any(bound.port.written for bound in ports):
-            yield _Want(VARIABLE, variable, f"who writes the blackboard variable `{variable}`")
+            yield _Want(VARIABLE, variable, f"which node writes the blackboard variable `{variable}`")
         elif not any(bound.port.read for bound in ports):
-            yield _Want(VARIABLE, variable, f"who reads the blackboard variable `{variable}`")
+            yield _Want(VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
     known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):
-        yield _Want("", name, f"whether there is the variable `{name}`, which a property names")
+        yield _Want("", name, f"whether the variable `{name}`, which a property names, exists")
 
 
 def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:
@@ -118,14 +120,14 @@ def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:
 
 def _listing(questions: list[str]) -> str:
     more = len(questions) - _MOST
-    parts = [*questions[:_MOST], *([f"{more} more such questions"] if more > 0 else [])]
+    parts = [*questions[:_MOST], *([f"{more} more questions of this kind"] if more > 0 else [])]
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
 RULE = Rule(
     "not-checked",
     Severity.INFORMATION,
-    "Something cannot be checked because of a mistake elsewhere.",
+    "Something cannot be checked because of an error elsewhere.",
     machine=check,
     tree=check,
     system=check,

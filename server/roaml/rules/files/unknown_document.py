@@ -14,14 +14,14 @@ ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS, XML
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """A file that was named, and is none of ours."""
+    """Report a file that was named explicitly and is not a supported file."""
     if context.grammar is not None or context.document is None:
         return
     root = context.document.root
     if root is None or root.name == "specification":
         return
     if root.name in ROOTS:
-        yield RULE.at(root.name_span, f"`<{root.name}>` holds no behavior tree")
+        yield RULE.at(root.name_span, f"`<{root.name}>` contains no behavior tree")
         return
     close = close_names(root.name, ROOTS)
     fixes = [rename_tag(root, name, preferred=number == 0) for number, name in enumerate(close)]
@@ -29,7 +29,7 @@ def check(context: FileContext) -> Iterator[Finding]:
         did_you_mean(tuple(f"<{name}>" for name in close))
         or "; the root is `<roaml>`, `<ascxml>`, `<root>`, `<types>` or `<properties>`"
     )
-    yield RULE.at(root.name_span, f"`<{root.name}>` is no root of ours{hint}", *fixes)
+    yield RULE.at(root.name_span, f"unknown root element `<{root.name}>`{hint}", *fixes)
 
 
-RULE = Rule("unknown-document", Severity.ERROR, "The file is of none of the languages that are checked.", file=check)
+RULE = Rule("unknown-document", Severity.ERROR, "The file is not a supported file.", file=check)

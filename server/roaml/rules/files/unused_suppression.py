@@ -15,8 +15,8 @@ from roaml.text import Span, TextEdit
 def finding(
     text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
 ) -> Iterator[Finding]:
-    """What is to be said about a comment that keeps `codes` quiet (None for all), of which it needs those `used`; there
-    are rules with the codes `known`."""
+    """The finding for a comment that suppresses `codes` (`None`: all), of which it needs only those in `used`; `known`
+    are the codes of all rules."""
     used, known = frozenset(used), frozenset(known)
     misspelt = [code for code in codes or () if code not in known]
     if misspelt:
@@ -33,12 +33,14 @@ def finding(
     tags = (Tag.UNNECESSARY,)
     if not kept:
         fix = Fix("Remove the comment", (removal(text, comment),))
-        yield RULE.at(comment, "nothing is found here that this comment keeps quiet", fix, tags=tags)
+        yield RULE.at(
+            comment, "unused suppression: nothing is reported here that this comment suppresses", fix, tags=tags
+        )
     else:
         fix = Fix(
             f"Leave out {listing(superfluous)}", (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),)
         )
-        yield RULE.at(comment, f"{listing(superfluous)} is not found here", fix, tags=tags)
+        yield RULE.at(comment, f"unused suppression: {listing(superfluous)} is not reported here", fix, tags=tags)
 
 
 def _misspelt(text: str, comment: Span, code: str, known: Iterable[str]) -> Finding:
@@ -48,4 +50,4 @@ def _misspelt(text: str, comment: Span, code: str, known: Iterable[str]) -> Find
     return RULE.at(comment, f"there is no rule `{code}`{did_you_mean(close)}", *fixes)
 
 
-RULE = Rule("unused-suppression", Severity.INFORMATION, "A comment keeps quiet what is not found.")
+RULE = Rule("unused-suppression", Severity.INFORMATION, "A comment suppresses findings that do not occur.")

@@ -21,7 +21,7 @@ TYPES = {
     ("data_declarations", FileKind.STRUCTS): "xml",
     ("data_declarations", FileKind.JSON_STRUCTS): "json",
 }
-"""What a file is listed as in the section where it may stand."""
+"""The kinds of files that each section lists."""
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
@@ -38,14 +38,14 @@ def check(context: SystemContext) -> Iterator[Finding]:
 
 
 def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
-    """A machine that is listed as a plugin and is none, or the other way round: another file is meant."""
+    """Report a machine that is listed as a plugin and is not one, or listed as a node and is a plugin."""
     system, section = context.system, listed.input.section
     ticked = section == "node_models" and listed.path in system.ticked_nodes
     same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")
     plugins = list(same) if ticked else []
     reason = ""
-    if plugins:  # else tree-element-in-node tells
-        reason = "a plugin of the behavior tree and is listed as one, so it is no node; name the file of the node"
+    if plugins:  # otherwise tree-element-in-node reports it
+        reason = "a plugin of the behavior tree and listed as one, so it cannot be a node; name the file of the node"
     elif section == "behavior_tree" and listed.path in system.idle_plugins:
         reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"
     if reason:
@@ -68,4 +68,4 @@ def _other_type(listed: ListedFile, files: Iterable[ListedFile]) -> Iterator[Fix
         yield Fix(f"Change the type to `{type_}`", edits, preferred=not second_tree)
 
 
-RULE = Rule("wrong-file-kind", Severity.ERROR, "A system lists a file as something that it is not.", system=check)
+RULE = Rule("wrong-file-kind", Severity.ERROR, "A system lists a file as a kind of file that it is not.", system=check)

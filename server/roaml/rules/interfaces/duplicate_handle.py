@@ -37,16 +37,16 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     assert before.handle is not None
     related = (Related(before.handle.span, "declared first here"),)
     if _meaning(declaration) == _meaning(before):
-        message = f"`{handle.value}` is declared twice in the same way"
+        message = f"`{handle.value}` is declared again with the same meaning"
         remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
-        # Two timers of one name are refused, whatever their rates are (docs/spec/ros.md#timers).
+        # Two timers of one name are rejected, whatever their rates are (docs/spec/ros.md#timers).
         severity = Severity.ERROR if declaration.kind is SymbolKind.TIMER else Severity.WARNING
         return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
         handle.span,
         f"`{handle.value}` is declared twice; give one of them another `name`",
         _rename(context, declaration, handle),
-        # With two kinds each use still finds its own here; the reference translator takes the first
+        # With two kinds, each use is still resolved here; the reference translator uses the first declaration
         # (docs/spec/ros.md#handles).
         severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
         related=related,
@@ -54,7 +54,7 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
 
 
 def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> Fix:
-    """Another name for a declaration, and for it wherever it is used."""
+    """Rename a declaration and all its uses."""
     machine = context.machine
     new = unused(handle.value.strip("/").replace("/", "_"), (d.handle.value for d in machine.declarations if d.handle))
     users: list[Handler | RosSend] = []
@@ -82,21 +82,21 @@ def _written(value: Name | PortRead | None) -> str:
 
 
 def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
-    """A machine declares each service and action that it uses once (docs/spec/ros.md#services)."""
+    """A machine declares each service and action that it uses only once (docs/spec/ros.md#services)."""
     assert before.handle is not None
     message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
 
 
 def _same_threads(context: MachineContext) -> Iterator[Finding]:
-    """Two declarations would make two threads of each number (docs/spec/ros.md#threads)."""
+    """Two declarations would create two threads for each number (docs/spec/ros.md#threads)."""
     known: dict[str, Name] = {}
     for thread in context.machine.threads:
         if thread.server is None:
             continue
         before = known.setdefault(thread.server.value, thread.server)
         if before is not thread.server:
-            message = f"the threads of `{thread.server.value}` are declared already; `n_threads` tells their number"
+            message = f"the threads of `{thread.server.value}` are already declared; set their number in `n_threads`"
             yield RULE.at(thread.server.span, message, related=(Related(before.span, "declared first here"),))
 
 

@@ -31,7 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         declaration.type.span,
                         f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere",
                         Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
-                        # The reference translates topics without comparing their types (docs/spec/ros.md#topics).
+                        # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
                         severity=Severity.WARNING if channel_kind is SymbolKind.TOPIC else Severity.ERROR,
                         related=related,
                     )
@@ -39,7 +39,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...]]]:
-    """The types at the other side, which count; where there is none, those at the same side."""
+    """The types at the other side, which take precedence; if there is none, those at the same side."""
     other = [endpoint for endpoint in channel.endpoints if endpoint.use.kind is other_kind(kind)]
     is_clock = kind is SymbolKind.SUBSCRIBER and channel.name == CLOCK_TOPIC and system.has_timer
     if is_clock:
@@ -49,12 +49,12 @@ def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tupl
 
 
 def _known(context: MachineContext, kind: SymbolKind, *types: str) -> bool:
-    """Whether all these types exist; unknown-ros-type says more of those that do not."""
+    """Whether all these types exist; unknown-ros-type reports those that do not."""
     return not any(isinstance(context.interface(INTERFACE_KINDS[kind], type_), NotFound) for type_ in types)
 
 
 def normal(type_: str) -> str:
-    """`package/Type`, whether or not the kind stands in between."""
+    """`package/Type`, whether or not the kind is written in between."""
     parts = type_.split("/")
     return f"{parts[0]}/{parts[-1]}"
 

@@ -37,29 +37,29 @@ def _missing(declaration: Declaration) -> Finding:
     attribute = element.get("rate_hz")
     end = element.attributes[-1].span.end if element.attributes else element.name_span.end
     edit = TextEdit(Span(end, end) if attribute is None else attribute.span, f'{" " * (attribute is None)}rate_hz="1"')
-    fix = Fix("Tick once a second", (edit,), preferred=False)
-    return RULE.at(element.name_span, "the timer has no rate: `rate_hz` is missing", fix)
+    fix = Fix("Add a rate of 1 Hz", (edit,), preferred=False)
+    return RULE.at(element.name_span, "the timer has no rate; add `rate_hz`", fix)
 
 
 def _port(context: MachineContext, read: PortRead) -> Iterator[Finding]:
-    """What the nodes of the tree give as a rate."""
+    """Check the rates that the nodes of the tree pass by a port."""
     key = read.key.value if read.key else ""
     for automaton in context.automata:
         value = automaton.port(key)
         if isinstance(value, PortConstant) and (reason := rate_problem(value.text)):
-            yield RULE.at(read.span, f'{reason}; so `{key}="{value.text}"` in the tree cannot be')
+            yield RULE.at(read.span, f'{reason}; the tree passes `{key}="{value.text}"`')
 
 
 def rate_problem(text: str) -> str:
-    """Why `text` is no rate in Hz, or ""."""
+    """Why `text` is not a rate in Hz; "" if it is one."""
     try:
         rate = float(text)
     except ValueError:
-        return f"a rate is a number in Hz, not `{text[:40]}`"
+        return f"a rate must be a number in Hz, not `{text[:40]}`"
     if not 0 < rate < float("inf"):
-        return f"a rate is above 0 Hz, not {text}"
+        return f"a rate must be greater than 0 Hz, not {text}"
     if rate > FASTEST:
-        return "a rate is at most 1 GHz: the clock counts nanoseconds"
+        return "a rate must be at most 1 GHz, because the clock has a resolution of 1 ns"
     return ""
 
 
@@ -71,4 +71,4 @@ def _corrected(text: str) -> tuple[str, ...]:
     return () if rate_problem(number) else (number,)
 
 
-RULE = Rule("invalid-rate", Severity.ERROR, "The rate of a timer is no positive number.", machine=check)
+RULE = Rule("invalid-rate", Severity.ERROR, "The rate of a timer is not a positive number.", machine=check)

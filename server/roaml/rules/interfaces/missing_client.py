@@ -23,9 +23,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for declaration, _, channel in declared(context, kind):
             if not channel.users and not system.may(other_kind(kind).value, channel.name):
                 close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
-                message = f"nobody uses the {what} `{channel.name}`{did_you_mean(close)}"
+                message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
                 yield RULE.at(name_span(declaration), message, *fixes)
 
 
-RULE = Rule("missing-client", Severity.WARNING, "A service or action is served that nobody uses.", machine=check)
+RULE = Rule("missing-client", Severity.WARNING, "No machine uses a service or action that is served.", machine=check)

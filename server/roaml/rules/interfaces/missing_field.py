@@ -26,12 +26,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Type]]:
-    """The fields that must be set and are not, with their types."""
+    """The fields that are required and not set, with their types."""
     unset = context.typed.unset.get(statement.element, ())
     part = sent_part(context, statement) if unset else None
     if part is None or any(field.name is None for field in statement.fields):
-        return []  # a field without a name (missing-attribute) may be the one that is missing
-    # What is only misspelled, or set as a whole, is reported as an unknown field.
+        return []  # a field without a name (missing-attribute) may be the missing one
+    # A field that is only misspelled, or set as a whole, is reported as an unknown field.
     names = {field.name.value for field in statement.fields if field.name}
     known = [".".join(path) for path, _ in leaves(part)]
     meant = {path for name in names.difference(known) for path in _meant(name, known)}
@@ -39,7 +39,7 @@ def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Typ
 
 
 def _meant(name: str, known: Iterable[str]) -> tuple[str, ...]:
-    """The fields that something that is no field was probably meant to set."""
+    """The fields that an unknown field was probably meant to set."""
     inside = tuple(path for path in known if path.startswith(f"{name}."))
     return inside or close_names(name, known, 1)
 
@@ -54,7 +54,7 @@ def _finding(context: MachineContext, statement: RosSend, missing: list[tuple[st
     new = [f'<field name="{name}" expr="{zero_text(type_)}" />' for name, type_ in missing]
     fix = Fix(f"Add the missing {fields}", (last_in(context.document, element, *new),))
     if context.older:
-        defaults = "is not set and has its ROS default" if one else "are not set and have their ROS defaults"
+        defaults = "is not set and gets its ROS default" if one else "are not set and get their ROS defaults"
         message = f"the {fields} {names} of `{part}` {defaults}"
         return RULE.at(element.name_span, message, fix, severity=Severity.INFORMATION)
     return RULE.at(element.name_span, f"the {fields} {names} of `{part}` must be set", fix)

@@ -32,17 +32,18 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
     for other in served:
         if other.name.lstrip("/") == channel.name.lstrip("/"):
             message = (
-                f"nobody serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference for {what}s"
+                f"no machine serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference "
+                f"for {what}s"
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
-    message = f"nobody serves the {what} `{channel.name}`{did_you_mean(close)}"
+    message = f"no machine serves the {what} `{channel.name}`{did_you_mean(close)}"
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 
 def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
-    """Another interface, where its name stands, and where it serves as the handle."""
+    """Rename an interface where it is declared, and where its name is used as the handle."""
     if not naming.literal:
         return
     spans = [naming.span]
@@ -55,7 +56,7 @@ def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterab
 
 
 def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
-    """Where the rest of the machine names a declaration."""
+    """The places where the rest of the machine refers to a declaration."""
     for chart in machine.charts:
         users: list[Handler | RosSend] = [h for state in chart.states for h in state.handlers]
         users += [s for s in chart.statements if isinstance(s, RosSend)]
@@ -65,5 +66,5 @@ def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
 
 
 RULE = Rule(
-    "missing-server", Severity.ERROR, "A service or action is used that nobody serves.", machine=check, tree=check
+    "missing-server", Severity.ERROR, "No machine serves a service or action that is used.", machine=check, tree=check
 )

@@ -11,21 +11,23 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Once for each package, where a machine first uses it."""
+    """Report each package once, where a machine first uses it."""
     told: set[str] = set()
     for declaration in context.machine.declarations:
         for repeated in context.repeated_types:
             type_ = declaration.type
             if type_ is not None and type_.value == repeated.used_by and repeated.package not in told:
                 told.add(repeated.package)
-                message = f"the package `{repeated.package}` is there twice and `{repeated.name}` differs: "
-                message += f"{_folder(repeated, repeated.path)} counts, {_folder(repeated, repeated.other)} does not; "
-                message += "remove one of them, or exclude it from the folders where packages are looked for"
+                message = f"there are two copies of the package `{repeated.package}`, and `{repeated.name}` differs: "
+                message += (
+                    f"{_folder(repeated, repeated.path)} is used, {_folder(repeated, repeated.other)} is ignored; "
+                )
+                message += "remove one of them, or exclude it from the folders that are searched for packages"
                 yield RULE.at(type_.span, message)
 
 
 def _folder(repeated: RepeatedType, path: str) -> str:
-    """The folder of the package that a definition file belongs to: `PACKAGE/msg/Name.msg`."""
+    """The folder of the package that contains a definition file: `PACKAGE/msg/Name.msg`."""
     folder = path.replace("\\", "/").rsplit("/", 2)[0]
     return f"`{folder}`"
 
@@ -33,6 +35,6 @@ def _folder(repeated: RepeatedType, path: str) -> str:
 RULE = Rule(
     "repeated-interface",
     Severity.WARNING,
-    "A package of ROS interfaces is there twice, with different content.",
+    "There are two copies of a package of ROS interfaces, with different content.",
     machine=check,
 )

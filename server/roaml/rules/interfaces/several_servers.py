@@ -28,13 +28,13 @@ def _finding(
     span, count = name_span(declaration), len(channel.sources)
     elsewhere = [e for e in others if e.automaton.path != automaton.path or e.automaton is automaton]
     if elsewhere:
-        message = f"the {what} `{channel.name}` has {count} servers; it must have one"
+        message = f"the {what} `{channel.name}` has {count} servers; it must have exactly one"
         return RULE.at(span, message, related=[Related(other.symbol, "another server") for other in elsewhere])
-    where = "stands in the tree" if automaton.instance is not None else "is listed in the system"
+    where = "is used in the tree" if automaton.instance is not None else "is listed in the system"
     message = (
         f"the {what} `{channel.name}` has {count} servers, because `{automaton.outline.name}` {where} {count} times"
     )
-    return RULE.at(span, f"{message}; it must have one")
+    return RULE.at(span, f"{message}; it must have exactly one")
 
 
 RULE = Rule("several-servers", Severity.ERROR, "A service or action has more than one server.", machine=check)

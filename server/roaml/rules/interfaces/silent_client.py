@@ -26,7 +26,7 @@ ANSWERS = {
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A handler waits for an answer to something that this machine never sends; told once for each handle."""
+    """Report handlers that wait for an answer to something that this machine never sends, once for each handle."""
     sent = set(_sent(context))
     for chart in context.machine.charts:
         for state in chart.states:
@@ -39,13 +39,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     continue
                 if not {(declaration, element), (None, element)} & sent:
                     sent.add((declaration, element))
-                    message = f"this never happens: no `<{element}>` for the `<{DECLARING_ELEMENTS[kind]}>` "
+                    message = (
+                        f"this handler is never taken: there is no `<{element}>` for the "
+                        f"`<{DECLARING_ELEMENTS[kind]}>` "
+                    )
                     message += f"`{declaration.handle.value}`"
                     yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
 
 
 def _without(context: MachineContext, declaration: Declaration, sender: str) -> Fix:
-    """Take away all that waits for an answer to `sender`."""
+    """Remove all handlers that wait for an answer to `sender`."""
     waiting = [
         handler.element
         for chart in context.machine.charts
@@ -55,11 +58,11 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
         if find_handle(context.machine, handler) is declaration
     ]
     edits = tuple(removal(context.source.text, element.span) for element in waiting)
-    return Fix("Remove what waits for it", edits, preferred=False)
+    return Fix("Remove the handlers that wait for it", edits, preferred=False)
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
-    """The elements that send something, with their declaration; None if it may be any, because one cannot be read."""
+    """The elements that send something, with their declaration; `None` instead of a declaration that cannot be read."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, RosSend):
@@ -72,4 +75,6 @@ def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
             yield None, name
 
 
-RULE = Rule("silent-client", Severity.ERROR, "An answer is waited for to something that is never sent.", machine=check)
+RULE = Rule(
+    "silent-client", Severity.ERROR, "A handler waits for an answer to something that is never sent.", machine=check
+)

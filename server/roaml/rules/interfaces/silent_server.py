@@ -30,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _may_do_more(system: System, automaton: SystemAutomaton, kind: SymbolKind, channel: Channel) -> bool:
-    """Whether a server may answer where its machine cannot be read."""
+    """Whether a server may answer in a part of its machine that cannot be read."""
     return any(system.may(f"{kind.value} {part.value}", channel.name, automaton) for part in _PARTS)
 
 
@@ -57,7 +57,7 @@ def _service(
         message = f"{what} never answers: `<ros_service_send_response>` is missing"
         yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
     elif not receives(automaton, declaration, ProtocolPart.REQUEST):
-        message = f"{what} takes no requests: `<ros_service_handle_request>` is missing"
+        message = f"{what} does not handle requests: `<ros_service_handle_request>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
 
 
@@ -71,7 +71,7 @@ def _action(
         message = f"the action `{channel.name}` {what}: `<ros_action_accept_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
     elif not receives(automaton, declaration, ProtocolPart.GOAL):
-        message = f"the action `{channel.name}` takes no goals: `<ros_action_handle_goal>` is missing"
+        message = f"the action `{channel.name}` does not handle goals: `<ros_action_handle_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
     waiting = [c for c in clients if ProtocolPart.RESULT in c.use.receives]
     if waiting and not sends(automaton, declaration, ProtocolPart.RESULT):
@@ -82,7 +82,7 @@ def _action(
 
 
 def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
-    """Answer each request at the end of its handler, with zeros."""
+    """Send a response with zeros at the end of the handler of each request."""
     assert declaration.handle is not None
     interface = context.interface("srv", declaration.type.value) if declaration.type else None
     handlers = [h for chart in context.machine.charts for state in chart.states for h in state.handlers]

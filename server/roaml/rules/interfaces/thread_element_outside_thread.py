@@ -17,17 +17,19 @@ def check(context: MachineContext) -> Iterator[Finding]:
         elements += [s.element for s in chart.statements if isinstance(s, RosSend)]
         for element in elements:
             if not chart.scope and element.name in INSIDE_THREADS:
-                yield RULE.at(element.name_span, f"`<{element.name}>` belongs into a `<ros_action_thread>`")
+                yield RULE.at(element.name_span, f"`<{element.name}>` is only allowed in a `<ros_action_thread>`")
             elif chart.scope and element.name in OUTSIDE_THREADS:
-                yield RULE.at(element.name_span, f"`<{element.name}>` belongs into the server, not into its threads")
+                yield RULE.at(
+                    element.name_span, f"`<{element.name}>` is only allowed in the server, not in its threads"
+                )
             elif chart.scope and element.name in UNUSUAL_IN_THREADS:
-                message = f"`<{element.name}>` in a thread: every goal waits until the server and all threads take it"
+                message = f"`<{element.name}>` in a thread: every goal waits until the server and all threads handle it"
                 yield RULE.at(element.name_span, message, severity=Severity.WARNING)
 
 
 RULE = Rule(
     "thread-element-outside-thread",
     Severity.ERROR,
-    "An element of action threads stands outside of one, or the other way round.",
+    "An element is on the wrong side of an action thread.",
     machine=check,
 )

@@ -19,13 +19,13 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         topic = naming.channel
         if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
             continue
-        # A topic that is declared on both sides is hardly misspelled.
+        # A topic that is declared on both sides is unlikely to be misspelled.
         others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]
         close = close_names(topic.name, others)
-        silent = " (declared, but nothing is ever published)" if topic.sources else ""
-        message = f"nobody publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
+        silent = " (a publisher is declared but never publishes)" if topic.sources else ""
+        message = f"no machine publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
         fixes = replacements(naming.span, close if naming.literal else ())
-        # A node that always has something else to do may well have inputs that nobody gives in this system.
+        # A machine that never waits for this topic alone may have inputs that are not used in this system.
         needed = bool(close or topic.sources or naming.use.awaited)
         severity = Severity.ERROR if needed else Severity.WARNING
         yield RULE.at(naming.span, message, *fixes, severity=severity, related=naming.related)
@@ -34,7 +34,7 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
 RULE = Rule(
     "topic-without-publisher",
     Severity.ERROR,
-    "A topic is subscribed to that nobody publishes.",
+    "No machine publishes on a topic that is subscribed to.",
     machine=check,
     tree=check,
 )

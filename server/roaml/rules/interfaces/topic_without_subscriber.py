@@ -20,9 +20,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         observed = system.is_observed(f"topic_{topic.name}_msg")
         if not topic.users and not observed and not system.may(SymbolKind.SUBSCRIBER.value, topic.name):
             close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
-            message = f"nobody subscribes to the topic `{topic.name}`{did_you_mean(close)}"
+            message = f"no machine subscribes to the topic `{topic.name}`{did_you_mean(close)}"
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
             yield RULE.at(name_span(declaration), message, *fixes)
 
 
-RULE = Rule("topic-without-subscriber", Severity.HINT, "A topic is published that nobody subscribes to.", machine=check)
+RULE = Rule(
+    "topic-without-subscriber", Severity.HINT, "No machine subscribes to a topic that is published.", machine=check
+)

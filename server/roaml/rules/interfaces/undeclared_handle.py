@@ -54,7 +54,7 @@ def _undeclared(
     wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
     if wrong is None or wrong.handle is None:
         close = close_names(handle.value, right)
-        message = f"there is no `<{DECLARING_ELEMENTS[kinds[0]]}>` called `{handle.value}`{did_you_mean(close)}"
+        message = f"there is no `<{DECLARING_ELEMENTS[kinds[0]]}>` named `{handle.value}`{did_you_mean(close)}"
         declare = _declare(context, handle.value, kinds[0], preferred=not close)
         return RULE.at(handle.span, message, *replacements(handle.span, close), *declare)
     is_tag, needed_tag = DECLARING_ELEMENTS[wrong.kind], DECLARING_ELEMENTS[kinds[0]]
@@ -65,7 +65,7 @@ def _undeclared(
 
 
 def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred: bool) -> Iterator[Fix]:
-    """Declare a timer, or the topic, service or action of this name that other machines of the system have."""
+    """Declare a timer, or the topic, service or action with this name that other machines of the system use."""
     document, root = context.document, context.machine.element
     if kind is SymbolKind.TIMER:
         text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False
@@ -82,7 +82,7 @@ def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred:
 
 
 def _elsewhere(context: MachineContext, name: str, kind: SymbolKind) -> tuple[str, str] | None:
-    """How another machine names a topic, service or action called `name`, and its type."""
+    """The name and type that another machine declares for a topic, service or action `name`."""
     for automaton in context.system.automata if context.system else ():
         for use in automaton.outline.interfaces:
             written = automaton.interface_name(use)
@@ -93,7 +93,7 @@ def _elsewhere(context: MachineContext, name: str, kind: SymbolKind) -> tuple[st
 
 
 def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[SymbolKind, ...]) -> tuple[str, ...]:
-    """The handles of the right kind for the topic, service or action that a wrong one stands for."""
+    """The handles of the right kind for the topic, service or action that a handle of the wrong kind refers to."""
     return tuple(
         d.handle.value
         for d in machine.declarations
@@ -103,7 +103,7 @@ def _same_interface(machine: Machine, wrong: Declaration, kinds: tuple[SymbolKin
 
 
 def _may_be_declared(machine: Machine, name: str, kinds: tuple[SymbolKind, ...]) -> bool:
-    """Whether a declaration without a name, or an element that is only misspelled, may be what is meant."""
+    """Whether a declaration without a name, or a misspelled element, may be the missing declaration."""
     if any(d.kind in kinds and d.handle is None for d in machine.declarations):
         return True
     named = [e for e in machine.element.elements if any(a.value == name for a in e.attributes)]
@@ -111,7 +111,8 @@ def _may_be_declared(machine: Machine, name: str, kinds: tuple[SymbolKind, ...])
 
 
 def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[SymbolKind, ...]]]:
-    """Every element that refers to a declaration, the name it uses, and the kinds of declaration it wants."""
+    """Every element that refers to a declaration, with the name that it uses and the kinds of declarations that it
+    accepts."""
     users: list[Handler | RosSend] = []
     for chart in machine.charts:
         users += [h for state in chart.states for h in state.handlers if h.effective]
@@ -124,6 +125,4 @@ def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[Symbol
         yield thread.element, thread.server, HL_SCXML.elements["ros_action_thread"].attributes["name"].refers
 
 
-RULE = Rule(
-    "undeclared-handle", Severity.ERROR, "A ROS interface or timer is used that is not declared.", machine=check
-)
+RULE = Rule("undeclared-handle", Severity.ERROR, "A ROS interface or timer is used but not declared.", machine=check)

@@ -44,12 +44,12 @@ def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[st
     name = field.name.value
     inside = [path for path in paths if path.startswith(f"{name}.")]
     if inside:
-        message = f"`{name}` is a message of its own; set its fields, such as `{inside[0]}`"
+        message = f"`{name}` is itself a message; set its fields, such as `{inside[0]}`"
         return RULE.at(field.name.span, message, *replacements(field.name.span, inside[:1]))
     close = close_names(name, paths) or close_names(name.rpartition(".")[2], paths)
     if not close:
         close = tuple(path for path in paths if path.rpartition(".")[2] == name)
-    known = "" if close or not paths else f"; it has {', '.join(f'`{p}`' for p in paths[:6])}"
+    known = "" if close or not paths else f"; its fields are {', '.join(f'`{p}`' for p in paths[:6])}"
     known = known if paths else "; it has no fields"
     message = f"`{part}` has no field `{name}`{did_you_mean(close)}{known}"
     drop = [] if close else [remove(context.document, field.element)]
@@ -57,9 +57,9 @@ def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[st
 
 
 def inside_unknown(part: Struct, name: str) -> bool:
-    """Whether a field lies in one whose type is not known, so that nothing can be said of it."""
+    """Whether a field is inside one of unknown type, so that it cannot be checked."""
     unknown = (".".join(path) for path, type_ in leaves(part) if isinstance(unwrap(type_)[0], Unknown))
     return any(name.startswith(f"{path}.") for path in unknown)
 
 
-RULE = Rule("unknown-field", Severity.ERROR, "A field is named that the ROS type does not have.", machine=check)
+RULE = Rule("unknown-field", Severity.ERROR, "A ROS type does not have a field that is used.", machine=check)

@@ -32,18 +32,19 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
-    """The name that ROS 2 itself uses: what is meant is clear, but other tools for these models do not take it."""
+    """Report the name that ROS 2 itself uses: its meaning is clear, but other tools for these models do not accept
+    it."""
     package, *kind, name = type_.split("/")
     if kind:
         short = f"{package}/{name}"
-        yield RULE.at(span, f"in a model a type has no `/{kind[0]}/`: write `{short}`", *replacements(span, (short,)))
+        yield RULE.at(span, f"a type in a model has no `/{kind[0]}/`; write `{short}`", *replacements(span, (short,)))
 
 
 def _unknown_package(found: NotFound, span: Span) -> Finding:
-    """A package may be misspelled; more often it stands where we do not look."""
+    """Report an unknown package. Its name may be misspelled; more often it is in a folder that is not searched."""
     package = found.wanted.partition("/")[0]
     meant = tuple(name for name in found.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
-    where = f"; looked in {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
+    where = f"; searched {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"
     others = (name for name in found.close if name not in meant)
     elsewhere = (Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=False) for name in others)
@@ -51,8 +52,8 @@ def _unknown_package(found: NotFound, span: Span) -> Finding:
 
 
 def _stem(package: str) -> str:
-    """The part of a package's name that tells it from others."""
+    """The part of a package's name that distinguishes it from others."""
     return KIND_SUFFIX.sub("", package)
 
 
-RULE = Rule("unknown-ros-type", Severity.ERROR, "A ROS type is named that cannot be found.", machine=check)
+RULE = Rule("unknown-ros-type", Severity.ERROR, "A ROS type cannot be found.", machine=check)

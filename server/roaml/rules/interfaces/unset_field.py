@@ -21,7 +21,7 @@ PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapp
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Fields that the reference translator leaves out need not be set; reading one that nobody sets gives nothing."""
+    """Fields that the reference translator omits need not be set; a field that no machine sets is empty."""
     if context.system is None:
         return
     for value in context.typed.values:
@@ -55,7 +55,13 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
             continue
         unread = context.system.may(f"{other_kind(declaration.kind).value} {part.value} field", channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
-            yield RULE.at(node.name_span, f"nobody sets the field `{field}` of `{channel.name}`: it is always empty")
+            yield RULE.at(
+                node.name_span,
+                (
+                    f"no machine sets the field `{field}` of `{channel.name}`, so it is always empty; set it where it "
+                    "is sent"
+                ),
+            )
             return
 
 
@@ -64,4 +70,4 @@ def _sent(channel: Channel, part: ProtocolPart) -> Iterator[set[str]]:
         yield {field.name for field in dict(endpoint.use.fields).get(part, ())}
 
 
-RULE = Rule("unset-field", Severity.WARNING, "A field is read that nobody sets.", machine=check)
+RULE = Rule("unset-field", Severity.WARNING, "A field is read that no machine sets.", machine=check)

@@ -37,6 +37,6 @@ def _jani_type(type_: Type) -> JaniType:
 RULE = Rule(
     TYPE,
     Severity.ERROR,
-    "In a property, an operator stands between values that it is not made for.",
+    "In a property, the types of the operands do not fit their operator.",
     properties=check,
 )

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about what properties ask."""
+"""Rules about the content of properties."""

@@ -11,8 +11,8 @@ from roaml.jani.properties import BinaryPath, UnaryPath, walk
 from roaml.rules.rule import PropertiesContext, Rule
 from roaml.smc.forms import BOUNDS
 
-TIME = "`verify` cannot answer this: the model counts steps only; for times compare the clock's `sec` in the formula"
-REWARD = "`verify` cannot answer this: the model has no rewards"
+TIME = "`verify` cannot decide this: the model counts only steps; for times, compare the clock's `sec` in the formula"
+REWARD = "`verify` cannot decide this: the model has no rewards"
 
 
 def check(context: PropertiesContext) -> Iterator[Finding]:
@@ -35,6 +35,6 @@ def _ignored(bound: Node, message: str) -> Iterator[Finding]:
 RULE = Rule(
     BOUNDS,
     Severity.WARNING,
-    "A property has bounds for which `verify` does not answer it and `translate` leaves it out.",
+    "A property has bounds that `verify` and `translate` do not support.",
     properties=check,
 )

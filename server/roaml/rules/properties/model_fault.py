@@ -7,4 +7,4 @@ from roaml.diagnostics import Severity
 from roaml.rules.rule import Rule
 from roaml.smc.fault import MODEL_FAULT
 
-RULE = Rule(MODEL_FAULT, Severity.ERROR, "While it runs, the model does something that has no meaning.")
+RULE = Rule(MODEL_FAULT, Severity.ERROR, "The model executes an undefined operation.")

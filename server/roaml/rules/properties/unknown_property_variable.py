@@ -27,24 +27,24 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
 
 
 def _is_part_of_unknown(name: str, variables: Mapping[str, GlobalVariable]) -> bool:
-    """Whether a variable would be one of those of a parameter whose type is not known: that is told elsewhere."""
+    """Whether a variable would be a part of a parameter of unknown type, which another rule reports."""
     unknown = (v.name for v in variables.values() if isinstance(unwrap(v.type)[0], Unknown))
     return any(name.startswith((f"{whole}__", f"{whole}.")) for whole in unknown)
 
 
 def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:
-    """Variables of the event that the name begins with."""
+    """Variables of the event with which the name begins."""
     event = name.partition("__")[0].partition(".")[0]
     return tuple(v.name for v in variables.values() if v.event == event)[:3]
 
 
 def _explanation(name: str, variables: Mapping[str, GlobalVariable]) -> str:
-    return "; a property sees what is sent: `EVENT.valid` and `EVENT__PARAMETER`" if variables else ""
+    return "; a property can use what is sent: `EVENT.valid` and `EVENT__PARAMETER`" if variables else ""
 
 
 RULE = Rule(
     "unknown-property-variable",
     Severity.ERROR,
-    "A property names a variable that the translated system will not have.",
+    "A property uses a variable that the translated system does not have.",
     properties=check,
 )

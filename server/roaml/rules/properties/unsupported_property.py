@@ -15,16 +15,16 @@ from roaml.smc.forms import UNSUPPORTED, faults_in
 def check(context: PropertiesContext) -> Iterator[Finding]:
     for property_ in context.properties:
         if any(isinstance(part, Missing) for part in walk(property_.expression)):
-            continue  # what is missing or unreadable is reported already
+            continue  # other rules report missing and unreadable parts
         for fault in faults_in(property_):
-            # Bounds on time and rewards have a rule of their own.
+            # ignored-bounds reports bounds on time and rewards
             if fault.code == UNSUPPORTED and fault.origin is not None:
-                yield RULE.at(fault.origin.span, f"`verify` cannot answer this: {fault.message}")
+                yield RULE.at(fault.origin.span, f"`verify` cannot decide this: {fault.message}")
 
 
 RULE = Rule(
     UNSUPPORTED,
     Severity.WARNING,
-    "A property has a form that `verify` cannot answer.",
+    "A property has a form that `verify` cannot decide.",
     properties=check,
 )

@@ -19,9 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if after is None or handler.element.name != "transition":
                     continue
                 timer = f'<ros_time_rate name="…" rate_hz="{_rate(after.value)}" />'
-                message = (
-                    f"a transition does not wait: `after` has no effect; declare the timer `{timer}` and count its"
-                )
+                message = f"`after` has no effect: transitions do not wait; declare the timer `{timer}` and count its"
                 message += " ticks in a `<ros_rate_callback>`"
                 remove = Fix("Remove the attribute", (removal(context.source.text, after.span),), preferred=False)
                 severity = Severity.HINT if context.older else Severity.WARNING
@@ -29,9 +27,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _rate(text: str) -> str:
-    """The rate in Hz of a timer whose period is a text such as `5s`; `…` if it is no time."""
+    """The rate in Hz of a timer whose period is a duration such as `5s`; `…` if the text is not a duration."""
     period = duration(text)
     return "…" if period is None else f"{NANOSECONDS['s'] / period:.6g}"
 
 
-RULE = Rule("delayed-transition", Severity.WARNING, "A transition is meant to wait for a time.", machine=check)
+RULE = Rule("delayed-transition", Severity.WARNING, "A transition has a delay, which is ignored.", machine=check)

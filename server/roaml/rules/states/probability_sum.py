@@ -31,30 +31,32 @@ def _check(handler: Handler, text: str) -> Iterator[Finding]:
         assert target.element is not None
         if target.probability is None:
             if target is not last and target.element.get("prob") is None:
-                yield RULE.at(target.element.name_span, "only the last `<target>` may leave out `prob`")
+                yield RULE.at(target.element.name_span, "only the last `<target>` may omit `prob`")
                 return
             continue
         value = _decimal(target.probability.value)
         if value is None:
-            return  # invalid-value says more
+            return  # reported by invalid-value
         total += value
     if not given or any(t.probability is None and t.element and t.element.get("prob") for t in handler.targets):
-        return  # nothing to add up, or a value that is empty: invalid-value says more
+        return  # nothing to add up, or an empty value, which invalid-value reports
     span = _span(given)
     if last.probability is None:
         if total >= 1:
-            yield RULE.at(span, f"the probabilities before the last target add up to {total}: nothing is left for it")
+            yield RULE.at(span, f"the probabilities before the last target add up to {total}, so none is left for it")
     elif len(given) == 1 and total != 1:
-        message = f"the only target has the probability 1, not {total}; leave out `prob`"
-        yield RULE.at(span, message, *_leave_out(last, text, "Leave out `prob`", preferred=True))
+        message = f"the only target has the probability 1, not {total}; remove `prob`"
+        yield RULE.at(span, message, *_leave_out(last, text, "Remove `prob`", preferred=True))
     elif abs(total - 1) > TOLERANCE:
         rest = 0 < total - (_decimal(last.probability.value) or 0) < 1
-        fixes = _leave_out(last, text, "Give the last target the rest", preferred=False) if rest else ()
+        fixes = (
+            _leave_out(last, text, "Give the last target the remaining probability", preferred=False) if rest else ()
+        )
         yield RULE.at(span, f"the probabilities add up to {total}, not 1", *fixes)
 
 
 def _span(given: list[Target]) -> Span:
-    """From the first to the last probability."""
+    """The span from the first to the last probability."""
     spans = [target.probability.span for target in given if target.probability]
     return spans[0].cover(spans[-1])
 

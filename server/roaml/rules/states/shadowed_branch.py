@@ -24,9 +24,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if found.same:
                     why = "an earlier branch has the same condition"
                 elif found.by:
-                    why = "whenever its condition holds, that of an earlier branch holds, too"
+                    why = "whenever its condition holds, that of an earlier branch holds as well"
                 else:
-                    why = "whenever its condition holds, that of one of the earlier branches holds, too"
+                    why = "whenever its condition holds, that of one of the earlier branches holds as well"
                 message = f"this branch is never executed: {why}; change one of the conditions"
                 related = [Related(branch.element.name_span, "tried first") for branch in earlier]
                 yield RULE.at(branches[found.number].element.name_span, message, related=related)
@@ -35,6 +35,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
 RULE = Rule(
     "shadowed-branch",
     Severity.WARNING,
-    "A branch of an `<if>` can never be executed because an earlier one always is.",
+    "A branch of an `<if>` can never be executed because of earlier branches.",
     machine=check,
 )

@@ -34,7 +34,10 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
             what = "without an event" if handler.trigger is None else "on the same event"
             yield RULE.at(
                 handler.element.name_span,
-                f"this is never taken: an earlier transition {what} has no condition",
+                (
+                    f"this is never taken: an earlier transition {what} has no condition; add one, or move this one "
+                    "before it"
+                ),
                 *_fixes(context, handler, before),
                 related=(Related(before.element.name_span, "always taken first"),),
             )
@@ -45,7 +48,7 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
 
 
 def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
-    """Transitions whose conditions never hold where those of the earlier ones do not."""
+    """Report transitions whose conditions never hold unless the condition of an earlier one does."""
     for handlers in conditional(context.machine, state):
         yield from _in_order(context, condition_facts(chart), handlers)
 
@@ -58,7 +61,7 @@ def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Han
         if found.same:
             why = f"an earlier transition {what} has the same condition"
         elif found.by:
-            why = f"whenever its condition holds, that of an earlier transition {what} holds, too"
+            why = f"whenever its condition holds, that of an earlier transition {what} holds as well"
         else:
             why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
         drop = remove(context.document, handler.element, "Remove this transition")
@@ -68,7 +71,7 @@ def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Han
 
 
 def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:
-    """With a condition of its own the transition may come first; without one it is of no use."""
+    """With a condition, the transition can be moved before the other one; without one it is useless."""
     document, element = context.document, handler.element
     if handler.cond is not None:
         text = document.text[slice(*element.span)]
@@ -81,6 +84,6 @@ def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Itera
 RULE = Rule(
     "shadowed-transition",
     Severity.ERROR,
-    "A transition can never be taken because an earlier one always is.",
+    "A transition can never be taken because of earlier transitions.",
     machine=check,
 )

@@ -33,7 +33,11 @@ def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Fin
     targets = [child for child in children if child.name == "target"]
     if attribute is not None and targets:
         related = (Related(attribute.name_span, "the attribute"),)
-        yield RULE.at(targets[0].name_span, "the target is given twice: as attribute and as child", related=related)
+        yield RULE.at(
+            targets[0].name_span,
+            "the target is given twice, as an attribute and as a child; remove one of them",
+            related=related,
+        )
     elif attribute is None and not targets:
         if not misspelled.attribute(element, "target", handler.type.attributes):
             at = element.name_span.end
@@ -43,7 +47,7 @@ def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Fin
     elif targets:
         beside = next((child for child in children if child.name in HL_SCXML.groups["Executable"]), None)
         if beside is not None:
-            message = "beside `<target>` nothing else may stand: move it into each `<target>` that needs it"
+            message = "only `<target>` is allowed beside `<target>`; move this into each `<target>` that needs it"
             yield RULE.at(beside.name_span, message)
 
 

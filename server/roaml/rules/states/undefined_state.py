@@ -30,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         states = [state.id.value for state in chart.states if state.id]
         for name in _references(chart) if chart.states else ():
-            # A state that stands where it may not stand is the business of misplaced-element.
+            # misplaced-element reports a state in a place where none is allowed
             if name.value in states or name.value in elsewhere:
                 continue
             if not misspelled.declaration(context.machine, "state", name.value):
@@ -44,7 +44,7 @@ def _finding(name: Name, states: Collection[str], *more: Fix) -> Finding:
 
 
 def _add(context: MachineContext, chart: Chart, name: str, states: Collection[str]) -> Iterator[Fix]:
-    """Add a state behind the others."""
+    """Add a state after the others."""
     if VALID.match(name):
         edit = after(context.document, chart.states[-1].element, f'<state id="{name}" />')
         yield Fix(f"Add the state `{name}`", (edit,), preferred=not close_names(name, states))
@@ -68,7 +68,7 @@ def _states_below(root: Element) -> Iterator[str]:
 
 
 def _plain_references(document: Document, root: Element) -> Iterator[Name]:
-    """In plain SCXML states are nested, and a transition may lead to several at once."""
+    """In plain SCXML, states are nested, and a transition may lead to several of them."""
     for element in root.walk():
         attribute = element.get("target" if element.name == "transition" else "initial")
         if attribute is not None and attribute.has_value and element.name in ("scxml", "state", "transition"):
@@ -77,4 +77,4 @@ def _plain_references(document: Document, root: Element) -> Iterator[Name]:
                 yield Name(word[0], source.span(*word.span()))
 
 
-RULE = Rule("undefined-state", Severity.ERROR, "A state is named that does not exist.", machine=check, plain=True)
+RULE = Rule("undefined-state", Severity.ERROR, "A reference to a state has no such state.", machine=check, plain=True)

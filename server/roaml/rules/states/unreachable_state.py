@@ -23,7 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix]:
-    """Unless another state, that is never entered either, leads there."""
+    """Remove a state, unless another state, which is never entered either, leads to it."""
     others = [handler for other in chart.states if other is not state for handler in other.handlers]
     targets = [target.state.value for handler in others for target in handler.targets if target.state]
     if state.id is not None and state.id.value not in targets:
@@ -31,7 +31,7 @@ def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix
 
 
 def _reached(chart: Chart) -> set[str] | None:
-    """The states that can be entered; None if the initial state is not known, because then nothing is."""
+    """The states that can be entered; `None` if the initial state is unknown, because nothing can be concluded then."""
     targets: dict[str, set[str]] = {}
     for state in chart.states:
         if state.id is not None:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What several rules use. Rules do not import each other."""
+"""Helpers that several rules use. Rules do not import each other."""

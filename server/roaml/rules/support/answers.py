@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules about answers share: the graphs of a machine, where a plugin stands in the tree, and where a mistake
-on a path is shown: at the handler that takes the step."""
+"""Helpers of the rules about answers: the graphs of a machine, the place of a plugin in the tree, and the place where a
+finding about a path is reported: the handler that takes the step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SENT = {
     "request": ProtocolPart.RESPONSE,
     "result": ProtocolPart.RESULT,
 }
-"""What answers a duty; a goal is accepted or rejected."""
+"""The events that answer a duty; a goal is accepted or rejected."""
 ELEMENTS = {
     ProtocolPart.BT_STATUS: ("bt_return_status",),
     ProtocolPart.BT_HALTED: ("bt_return_halted",),
@@ -40,9 +40,9 @@ ELEMENTS = {
 
 
 def behaviors(context: MachineContext) -> Iterator[Behavior]:
-    """The graphs of the machine and its threads; those that are too large are left out.
+    """The graphs of the machine and its threads, without those that are too large.
 
-    Where something seems to be wrong, values are followed in them.
+    If a fault is likely, the graph follows the values of variables.
     """
     for chart in context.machine.charts:
         behavior = explore(context.machine, chart)
@@ -53,14 +53,14 @@ def behaviors(context: MachineContext) -> Iterator[Behavior]:
 
 
 def plugins(context: MachineContext) -> list[SystemAutomaton]:
-    """What the machine is in the tree; nothing if it talks to the tree as was once done."""
+    """The automata that the machine is in the tree; none if it still uses the removed events."""
     if uses_removed_events(context.machine):
         return []
     return [automaton for automaton in context.automata if automaton.instance is not None]
 
 
 def is_spelled(context: MachineContext, duty: Duty) -> bool:
-    """Whether no element of the machine seems to be a misspelled answer to a duty."""
+    """Whether no element of the machine looks like a misspelled answer to a duty."""
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     elements = list(context.machine.element.walk())
     return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
@@ -80,10 +80,10 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
 
 
 def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
-    """The steps behind which an answer never comes, one for each handler, with whether it never comes behind it.
+    """The steps after which an answer never follows, one for each handler, with whether it follows on no path.
 
-    Left out is what another report explains: an element that cannot be read might be the answer, and of two conditions
-    one of which is never decisive (shadowed-transition) one was meant to be another.
+    Steps that another finding explains are left out: an element that cannot be read might be the answer, and if one of
+    two conditions never decides (shadowed-transition), it was probably meant to be different.
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):
@@ -100,8 +100,8 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
-    """Where a mistake in a step is shown: at the handler, or at what is executed outside it when a state is entered or
-    left."""
+    """Where a fault in a step is reported: at the handler, or at the statement in `<onentry>` or `<onexit>` that is
+    executed."""
     if statement is not None and not _within(statement.element.span, handler.element.span):
         return statement.element.name_span
     return handler.element.name_span
@@ -112,7 +112,7 @@ def _within(inner: Span, outer: Span) -> bool:
 
 
 def target_of(step: BehaviorStep) -> Iterator[Related]:
-    """The one of several targets that a step leads to."""
+    """The target that a step leads to, if its handler has several."""
     if step.handler.is_probabilistic and not step.ignored:
         element = step.handler.targets[step.choice].element
         if element is not None:
@@ -120,8 +120,8 @@ def target_of(step: BehaviorStep) -> Iterator[Related]:
 
 
 def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: BehaviorStep) -> bool:
-    """Whether an element that cannot be read might be the answer that is missed behind a step, or take what leads to
-    it: it is in the handler, or in a state where the answer is waited for, or where an event comes that is ignored."""
+    """Whether an element that cannot be read might be the missing answer after a step, or handle an event that leads to
+    it. Such an element is in the handler, in a state that waits for the answer, or in a state that ignores an event."""
     states = {state.id.value: state.element for state in behavior.chart.states if state.id}
     source = behavior.configurations[step.source]
     names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
@@ -139,7 +139,7 @@ def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: Behav
 
 
 def _is_misspelled(element: Element) -> bool:
-    """Whether an element is not known, or one of its attributes is a misspelled other one."""
+    """Whether an element is unknown, or one of its attributes is probably a misspelled known one."""
     if element.prefix:
         return False
     type_ = HL_SCXML.find(element.name)
@@ -156,13 +156,13 @@ _ASKS_ONCE = _SWITCHES | {
     *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
     *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
 }
-"""They do not tick a child again that has ended, before they have ended themselves (docs/spec/nodes.md)."""
+"""Nodes that do not tick a child again after it has ended, before they have ended themselves (docs/spec/nodes.md)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
-"""They halt their child only when they are halted."""
+"""Nodes that halt their child only when they are halted."""
 _INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}
-"""They halt children that are running of their own accord."""
+"""Nodes that halt running children without being halted."""
 _INTERRUPTS_LATER = frozenset(("ReactiveSequence", "ReactiveFallback", "WhileDoElse"))
-"""They ask their first child at every tick, and by its answer halt those behind it that are running."""
+"""Nodes that tick their first child at every tick, and halt running later children depending on its status."""
 
 
 def is_ticked_again(system: System, automaton: SystemAutomaton) -> bool:
@@ -176,7 +176,7 @@ def is_halted(system: System, automaton: SystemAutomaton, *, running: bool) -> b
     """Whether a node may be halted while it is running, or while it is not."""
     child = automaton
     for parent in ancestors(system, automaton):
-        if parent.path:  # a node of the user's
+        if parent.path:  # a node that a plugin of the user describes
             return parent.outline.plugin.halts_children
         name = parent.outline.name
         if name in _INTERRUPTS or (not running and name not in _PASSES_HALTS):
@@ -202,11 +202,11 @@ def ancestors(system: System, automaton: SystemAutomaton) -> Iterator[SystemAuto
 
 
 class Deaf(NamedTuple):
-    """A state in which a tick or halt may come and is not taken.
+    """A state in which a tick or halt may arrive and is not handled.
 
     Attributes:
         name, span: the identifier of the state.
-        standing: how the node stands there: "" (it has not been ticked yet), "running" or "ended".
+        standing: the status of the node: "" (not yet ticked), "running" or "ended".
         needs_time: the state is left, but only after time has passed.
     """
 
@@ -220,7 +220,7 @@ class Deaf(NamedTuple):
 def deaf(
     context: MachineContext, behavior: Behavior, automata: Iterable[SystemAutomaton], duty: Duty
 ) -> Iterator[Deaf]:
-    """The states in which a tick or halt is not taken by one of the nodes that a plugin is, each once."""
+    """The states in which at least one node of the plugin does not handle a tick or halt, without duplicates."""
     seen: set[State] = set()
     for automaton in automata:
         ways: list[tuple[Possible, bool]] = [(always, False)]
@@ -236,8 +236,8 @@ def deaf(
 def deaf_states(
     context: MachineContext, behavior: Behavior, automaton: SystemAutomaton, duty: Duty, possible: Possible = always
 ) -> Iterator[tuple[State, str]]:
-    """The states in which a tick or halt may come and is not taken, with how the node stands there: "" (it has not been
-    ticked yet), "running" or "ended"."""
+    """The states in which a tick or halt may arrive and is not handled, with the status of the node there: "" (not yet
+    ticked), "running" or "ended"."""
     assert context.system is not None
     takes, tag = ProtocolPart(f"bt-{duty.kind}"), f"bt_{duty.kind}"
     deaf = [state for state in behavior.chart.states if not any(h.trigger is takes for h in state.handlers)]
@@ -257,8 +257,8 @@ def deaf_states(
 
 
 def _is_for_errors(behavior: Behavior, state: State) -> bool:
-    """Whether a state without any transition is entered only where a condition holds: a plugin that checks its ports
-    ends there on purpose."""
+    """Whether a state without transitions is entered only if a condition holds: a plugin that checks its ports ends
+    there on purpose."""
     if any(handler.effective for handler in state.handlers):
         return False
     entering = [
@@ -270,7 +270,7 @@ def _is_for_errors(behavior: Behavior, state: State) -> bool:
 
 
 def _coming(system: System, automaton: SystemAutomaton, duty: Duty) -> frozenset[str]:
-    """How a node may stand when a tick or halt comes."""
+    """The statuses that a node may have when a tick or halt arrives."""
     if duty.kind == "tick":
         again = is_ticked_again(system, automaton)
         return frozenset(("", "running", "ended") if again else ("", "running"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin that waits within its tick, written so that it answers RUNNING and its status at a later tick."""
+"""Rewrite a plugin that waits within its tick: it returns RUNNING, and its status at a later tick."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ RUNNING = '<bt_return_status status="RUNNING" />'
 
 
 def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
-    """The change, where it is mechanical: the tick only starts something, and all that ends it answers in handlers that
-    lead to one and the same state."""
+    """The edits, if the rewrite is mechanical: the tick only starts something, and all handlers that end it answer and
+    lead to the same state."""
     chart = context.machine.chart
     states = {state.id.value: state for state in chart.states if state.id}
     if tick.trigger is not ProtocolPart.BT_TICK or _answers(tick) or not _is_tidy(tick):
@@ -34,7 +34,7 @@ def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
     if goal not in states or states[goal].entry is not None or states[goal] in region:
         return
     yield Fix(
-        "Answer RUNNING, and the status at a later tick",
+        "Return RUNNING, and the status at a later tick",
         lambda: computed(_edits(context, tick, region, answering, goal)),
     )
 
@@ -59,7 +59,7 @@ def _edits(
 
 
 def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
-    """The states in which the answer is waited for; None if one of them is more than that."""
+    """The states in which the answer is waited for; `None` if one of them also has another purpose."""
     found: list[State] = []
     waiting = [target.state for target in tick.targets]
     while waiting:
@@ -83,7 +83,7 @@ def _fresh(name: str, names: set[str]) -> str:
 
 
 def _asked(state: str, answer: str) -> tuple[str, ...]:
-    """What a state does on a tick, and on a halt."""
+    """The handlers of a tick and a halt in a state."""
     return (
         f'<bt_tick target="{state}">',
         f"    {answer}",
@@ -99,7 +99,7 @@ def _answers(handler: Handler) -> bool:
 
 
 def _is_tidy(handler: Handler) -> bool:
-    """Whether its one target is an attribute."""
+    """Whether the handler has one target, given as an attribute."""
     return len(handler.targets) == 1 and handler.element.get("target") is not None and handler.element.complete
 
 
@@ -113,7 +113,7 @@ def _declared(context: MachineContext, variable: str) -> Edit:
 
 
 def _stored(handler: Handler, variable: str, done: str) -> Iterator[TextEdit]:
-    """Store the status in place of answering with it, and lead to the state that answers."""
+    """Store the status instead of returning it, and lead to the state that returns it."""
     target = handler.element.get("target")
     assert target is not None
     yield TextEdit(target.value_span, done)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about the blackboard share."""
+"""Helpers of the rules about the blackboard."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from roaml.text import Span, TextEdit
 
 
 def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> Iterator[tuple[BoundPort, Span, str]]:
-    """Those of `ports` that nodes of this file have: where the port is bound, and the name of the variable there.
+    """Those of `ports` that nodes of this file have, each with the place where it is bound and the name of the variable
+    there.
 
-    That is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node of several
-    instances counts once. There are none where the name cannot be one; port-value says that.
+    The place is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node with
+    several instances is included once. Ports whose name is invalid are left out; port-value reports them.
     """
     if not is_variable_name(variable):
         return
@@ -41,16 +42,16 @@ def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> I
 
 
 def described(variable: str, written: str) -> str:
-    """A variable in words; `written` is its name inside a subtree, where it may be another."""
+    """A phrase for a variable; `written` is its name inside a subtree, which may differ."""
     if written in ("", variable, f"@{variable}"):
         return f"the blackboard variable `{variable}`"
     if variable.endswith(f"__{written}"):
-        return f"`{written}`, which is a variable of this subtree alone"
+        return f"`{written}`, which is a variable of this subtree only"
     return f"`{written}`, which is the blackboard variable `{variable}` here"
 
 
 def renamings(span: Span, written: str, variable: str, close: Iterable[str]) -> Iterator[Fix]:
-    """A fix for each variable that may be meant by `{written}` at `span`, in the main tree."""
+    """A fix for each variable that `{written}` at `span` may be a misspelling of, in the main tree."""
     if written == variable:
         for number, name in enumerate(close):
             yield Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),), preferred=number == 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conditions that are tried one after the other: which of them can never hold because earlier ones do."""
+"""Conditions that are tested in order: which of them can never hold because earlier ones do."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class Covered(NamedTuple):
     """A condition that holds only where earlier ones do.
 
     Attributes:
-        number: of the condition, from 0.
-        by: the numbers of the earlier ones each of which covers it alone; empty if it takes several together.
+        number: the index of the condition, from 0.
+        by: the indices of the earlier conditions that cover it alone; empty if only several together cover it.
         same: one of these is the same condition.
     """
 
@@ -28,7 +28,7 @@ class Covered(NamedTuple):
 def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
     """The conditions that never decide, in order.
 
-    Conditions that never hold by themselves are not among them. None, a condition that cannot be read and one that
+    Conditions that can never hold by themselves are left out. `None`, a condition that cannot be read and one that
     draws a random number cover nothing.
     """
     left: tuple[Knowledge, ...] = (NOTHING,)

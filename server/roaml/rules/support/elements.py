@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about elements and attributes share."""
+"""Helpers of the rules about elements and attributes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roaml.xml_syntax import Document, Element
 
 
 def own_elements(document: Document) -> Iterator[Element]:
-    """The elements of a document, parents first; those of other languages and all in them are left out."""
+    """The elements of a document, parents first, without elements of other namespaces and their content."""
     namespaces = dict(document.namespaces)
     stack = [document.root] if document.root else []
     while stack:
@@ -22,7 +22,7 @@ def own_elements(document: Document) -> Iterator[Element]:
 
 
 def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Element, ElementType, Element | None]]:
-    """The elements that stand where the grammar has them: what they are there, and their parents."""
+    """The elements that are where the grammar allows them, each with its declaration and its parent."""
     root, namespaces = document.root, dict(document.namespaces)
     if root is None or root.name not in grammar.roots:
         return
@@ -37,7 +37,7 @@ def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Eleme
 
 
 def stands_alone(document: Document, element: Element) -> bool:
-    """Whether an element is all that a part of an `<if>` holds."""
+    """Whether an element is the only content of a part of an `<if>`."""
     parent = document.path_at(element.name_span.end)[-2:-1]
     if not parent or parent[0].name != "if":
         return False

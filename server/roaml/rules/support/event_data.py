@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data of events: which are known where."""
+"""The data of events: which event variables are known at a place."""
 
 from __future__ import annotations
 

@@ -24,5 +24,5 @@ def sent_part(context: MachineContext, statement: RosSend) -> Struct | None:
     if not isinstance(found, InterfaceType):
         return None
     part = dict(found.parts).get(section_of(statement.part))
-    # Some elements send no fields at all: goal answers, and results that are no success.
+    # Some elements send no fields at all: decisions on goals, and results other than success.
     return part if "field" in statement.type.children else Struct(found.name, ())

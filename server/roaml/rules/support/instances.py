@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a tree file together with what they are in the executed tree."""
+"""The nodes of a tree file, with their automata in the executed tree."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from roaml.rules.rule import TreeContext
 
 
 def instances(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton]]:
-    """Every node of the file with each automaton that it is: none if it is not executed, several in a subtree."""
+    """Every node of the file with each automaton that it becomes: none if it is not executed, several in a repeated
+    subtree."""
     if context.system is None:
         return
     at: dict[tuple[str, int], TreeNode] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about topics, services and actions share."""
+"""Helpers of the rules about topics, services and actions."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class Naming:
-    """A place where an automaton says which topic, service or action it means.
+    """A place where an automaton names a topic, service or action.
 
     Attributes:
-        span: of the name, or of what stands for it: see `name_span` and `port_span`.
-        literal: the name itself stands there.
+        span: the name, or what replaces it: see `name_span` and `port_span`.
+        literal: whether the name itself is written there.
         related: for the port of a node, the declaration in its plugin.
     """
 
@@ -40,7 +40,8 @@ class Naming:
 
 
 def named_here(context: MachineContext | TreeContext, kind: SymbolKind) -> Iterator[Naming]:
-    """Where a file names topics, services or actions of a kind: in declarations, or as constants for ports."""
+    """The places where a file names topics, services or actions of a kind: in declarations, or as constants for
+    ports."""
     if context.system is None:
         return
     if isinstance(context, MachineContext):
@@ -64,7 +65,7 @@ def other_kind(kind: SymbolKind) -> SymbolKind:
 
 
 def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, SystemAutomaton, Channel]]:
-    """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
+    """The declarations of a kind, in each automaton of the machine, with the topic, service or action that is named."""
     if context.system is None:
         return
     for automaton in context.automata:
@@ -78,7 +79,7 @@ def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declar
 
 
 def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton, InterfaceUse]]:
-    """The nodes of a file whose ports name topics, services or actions, with what they are in the executed tree."""
+    """The nodes of a file whose ports name topics, services or actions, with their automata in the executed tree."""
     for node, automaton in instances(context):
         for use in automaton.outline.interfaces:
             if use.port:
@@ -86,7 +87,7 @@ def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutom
 
 
 def port_span(node: TreeNode, key: str) -> Span:
-    """Where a node says what its port holds; its name if that stands elsewhere, as a default does."""
+    """The value of the port of a node; the name of the node if the value is written elsewhere, as a default is."""
     setting = next((setting for setting in node.ports if setting.key.value == key), None)
     if setting is not None:
         return setting.value.span
@@ -116,7 +117,7 @@ def has_publisher(system: System, topic: Channel) -> bool:
 
 
 def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
-    """The lines that answer a request with 0, or what is like it, in each field."""
+    """The lines that send a response with the zero of its type in each field."""
     assert declaration.handle is not None
     types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
     fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What seems to be missing may only be misspelled: the rule about the misspelling says so, and others keep quiet."""
+"""Something that seems to be missing may only be misspelled: the rule about the misspelling reports it, and other rules
+do not."""
 
 from __future__ import annotations
 
@@ -13,24 +14,24 @@ from roaml.xml_syntax import Element
 
 
 def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
-    """Whether an attribute of `element` that is none of `known` was probably meant to be `name`."""
+    """Whether an attribute of `element` that is not in `known` is probably a misspelling of `name`."""
     names = set(known)
     return any(a.name not in names and are_similar(a.name, name) for a in element.attributes)
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:
-    """Whether something in a machine is probably meant to declare `name` with a `<tag>`, but cannot be read as that.
+    """Whether something in a machine is probably meant to declare `name` with a `<tag>`, but cannot be read as such.
 
-    It is a `<tag>` whose name is missing or misspelled, one that stands where it does not count, or another element in
-    place of a `<tag>`.
+    It is a `<tag>` whose name is missing or misspelled, a `<tag>` in a place where it is ignored, or another element
+    instead of a `<tag>`.
     """
     meant = _meant(machine, tag)
     return "" in meant or name in meant
 
 
-@lru_cache(maxsize=16)  # a declaration that cannot be read is missed at each of its uses
+@lru_cache(maxsize=16)  # an unreadable declaration leads to a finding at each of its uses
 def _meant(machine: Machine, tag: str) -> frozenset[str]:
-    """The names that may be meant; "" among them is any name."""
+    """The names that may be meant; "" in the result means any name."""
     read = {data.element for chart in machine.charts for data in chart.data if data.id}
     read |= {state.element for chart in machine.charts for state in chart.states if state.id}
     key = "key" if tag.startswith("bt_") else "id"
@@ -44,7 +45,7 @@ def _meant(machine: Machine, tag: str) -> frozenset[str]:
 
 
 def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[str]:
-    """What `<tag key="…">` an element is probably meant to be."""
+    """The keys of the `<tag key="…">` that an element is probably meant to be."""
     values = {attribute.name: attribute.value.strip() for attribute in element.attributes}
     said = values.get(key, "")
     if element.name == tag:
@@ -61,7 +62,7 @@ def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[
 
 
 def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
-    """Whether one of `elements` that the language does not know was probably meant to be `<name>`."""
+    """Whether one of the unknown elements in `elements` is probably a misspelling of `<name>`."""
     return any(
         not element.prefix and grammar.find(element.name) is None and are_similar(element.name, name)
         for element in elements
@@ -69,7 +70,7 @@ def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
 
 
 def is_hidden(root: Element, name: str, grammar: Grammar) -> bool:
-    """Whether there may be a `<name>` below `root` that is not read: its own name is misspelled, or that of an element
-    around it."""
+    """Whether there may be a `<name>` below `root` that is not read: its own name, or that of an element around it, is
+    misspelled."""
     unknown = [element for element in root.walk() if not element.prefix and grammar.find(element.name) is None]
     return among(unknown, name, grammar) or any(inner.name == name for each in unknown for inner in each.walk())

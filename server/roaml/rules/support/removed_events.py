@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events with which plugins talked to the tree in an older version of the language."""
+"""The events between plugins and the tree in an older version of the language."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ REMOVED_EVENTS = {
 
 
 def uses_removed_events(machine: Machine) -> bool:
-    """Whether a plugin talks to the tree by events, so that it cannot be said what else is wrong with its answers."""
+    """Whether a plugin uses the removed events, so that its other answers cannot be checked."""
     return any(removed_handlers(machine)) or any(removed_sends(machine))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixes that give a variable another type, where a value does not fit into the one that it has."""
+"""Fixes that change the type of a variable if a value does not fit its current type."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.text import TextEdit
 
 
 def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
-    """The declaration of the variable that a value is for, if it is for a whole one."""
+    """The declaration of the variable that receives a value; `None` if only a part of the variable receives it."""
     data = value.place.chart.data
     if value.use is ValueUse.INITIAL:
         return next((each for each in data if each.element is value.element), None)
@@ -31,7 +31,8 @@ def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
 
 
 def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[Fix]:
-    """Declare the variable of a value with another base type, unless it has bounds of another kind of number."""
+    """Declare the variable that receives a value with another base type, unless its bounds are numbers of another
+    kind."""
     data = declared_for(context, value)
     if data is None or data.id is None or data.type is None or data.type.name is None:
         return
@@ -43,7 +44,8 @@ def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[
 
 
 def wide_enough(number: int, type_: str) -> str | None:
-    """The smallest integer type that holds a number besides what `type_` holds, or at least the number."""
+    """The smallest integer type that holds a number and all values of `type_`; if there is none, the smallest that
+    holds the number."""
     low, high = INTEGER_RANGES[type_]
     like = sorted(INTEGER_RANGES, key=lambda name: name.startswith("int") is not type_.startswith("int"))
     for least, most in ((min(low, number), max(high, number)), (number, number)):

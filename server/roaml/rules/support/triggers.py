@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Handlers of a state that are tried for the same event, and which of them are never taken."""
+"""Handlers of a state that are tested for the same event, and which of them are never taken."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
 
 
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
-    """The handlers of a state with conditions, in groups with the same trigger."""
+    """The handlers of a state with conditions, grouped by trigger."""
     groups: dict[Trigger, list[Handler]] = {}
     for handler in state.handlers:
         key = trigger(machine, handler)
@@ -40,9 +40,9 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
 
 
 def trigger(machine: Machine, handler: Handler) -> Trigger | None:
-    """What a handler waits for, comparable within its state; None if that is not written out.
+    """The trigger of a handler, comparable within its state; `None` if it is not a constant.
 
-    Two handles of one topic wait for the same message, results of different codes are different triggers.
+    Two handles of one topic wait for the same message; results with different codes are different triggers.
     """
     attributes, code = handler.type.attributes, handler.type.code
     if "name" in attributes:
@@ -62,5 +62,5 @@ def trigger(machine: Machine, handler: Handler) -> Trigger | None:
 
 
 def chooses(handler: Handler) -> bool:
-    """Whether the trigger itself selects: a child index in a variable stands for one condition per child."""
+    """Whether the trigger itself selects a child: a child index in a variable is one condition for each child."""
     return handler.child is not None and not handler.child.value.isdigit()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types in the words of messages."""
+"""Phrases for types in messages."""
 
 from __future__ import annotations
 

@@ -24,12 +24,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if value is None or written is None:
         return
     name, count = NAMES[unit], -(-end // unit)
-    message = f"the clock counts in {name}, the unit of its timers: this is no whole number of them"
+    message = f"`max_time` must be a whole number of {name}, because the clock counts in this unit of its timers"
     edits = (TextEdit(value.value_span, str(count)), TextEdit(written.value_span, name))
     place = Span(min(value.span.start, written.span.start), max(value.span.end, written.span.end))
-    yield RULE.at(place, message, Fix(f"Let it run for {count} {name}", edits, preferred=False))
+    yield RULE.at(place, message, Fix(f"Round up to {count} {name}", edits, preferred=False))
 
 
-RULE = Rule(
-    "inexact-max-time", Severity.ERROR, "The clock cannot count to `max_time` in the unit of its timers.", system=check
-)
+RULE = Rule("inexact-max-time", Severity.ERROR, "`max_time` is not a multiple of the unit of the clock.", system=check)

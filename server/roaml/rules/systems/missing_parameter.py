@@ -21,10 +21,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if section is None:
         if not misspelled.among(root.elements, "parameters", SYSTEM):
             fix = _insert(context, root, "<parameters>", f"    {MAX_TIME}", "</parameters>")
-            yield RULE.at(root.name_span, "the system has no `<parameters>`: `<max_time>` must be given", *fix)
+            yield RULE.at(root.name_span, "the system has no `<parameters>`; add them with `<max_time>`", *fix)
     elif section.find("max_time") is None and not misspelled.among(section.elements, "max_time", SYSTEM):
         fix = _insert(context, section, MAX_TIME)
-        yield RULE.at(section.name_span, "`<max_time>` must be given: how long the clock runs", *fix)
+        yield RULE.at(section.name_span, "`<max_time>` is missing; add it to limit the simulated time", *fix)
 
 
 def _insert(context: SystemContext, parent: Element, *lines: str) -> Iterator[Fix]:
@@ -33,4 +33,4 @@ def _insert(context: SystemContext, parent: Element, *lines: str) -> Iterator[Fi
         yield Fix(f"Add `{name}>`", (first_in(context.document, parent, *lines),))
 
 
-RULE = Rule("missing-parameter", Severity.ERROR, "A parameter that the translation needs is missing.", system=check)
+RULE = Rule("missing-parameter", Severity.ERROR, "A required parameter is missing.", system=check)

@@ -17,25 +17,25 @@ def check(context: SystemContext) -> Iterator[Finding]:
     cells, parts = total(size.cells), total(size.parts)
     if cells > limits.cells:
         message = (
-            f"the variables of this system hold {cells:,} cells, and at most {limits.cells:,} are translated: "
+            f"the variables of this system have {cells:,} cells, but at most {limits.cells:,} are translated: "
             f"{size.cells[0].words} takes {size.cells[0].count:,}; make arrays smaller, or raise `max-cells`"
         )
         yield _finding(context, size.cells[0], message)
     if parts > limits.parts:
         message = (
-            f"the translation of this system has about {parts:,} parts, and at most {limits.parts:,} are written: "
+            f"the translation of this system has about {parts:,} parts, but at most {limits.parts:,} are written: "
             f"{size.parts[0].words} takes {size.parts[0].count:,}; divide it, or raise `max-parts`"
         )
         yield _finding(context, size.parts[0], message)
 
 
 def _finding(context: SystemContext, largest: Share, message: str) -> Finding:
-    related = (Related(largest.symbol, "this takes most"),) if largest.symbol and largest.path else ()
+    related = (Related(largest.symbol, "this is the largest part"),) if largest.symbol and largest.path else ()
     return RULE.at(_place(context, largest), message, related=related)
 
 
 def _place(context: SystemContext, largest: Share) -> Span:
-    """Where the file is listed that takes most; what has no file comes from the tree or the system as a whole."""
+    """The place where the largest file is listed; something without a file comes from the tree or the whole system."""
     for listed in context.files:
         of_tree = not largest.path and listed.wanted is FileKind.TREE
         if listed.input.src is not None and (of_tree or (largest.path and listed.path == largest.path)):

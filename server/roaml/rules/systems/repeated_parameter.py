@@ -16,15 +16,19 @@ def check(context: SystemContext) -> Iterator[Finding]:
     newer, older = root.find("parameters"), root.find("mc_parameters")
     section = newer or older
     if newer is not None and older is not None:
-        related = (Related(newer.name_span, "this one counts"),)
+        related = (Related(newer.name_span, "this one is used"),)
         fix = Fix("Remove `<mc_parameters>`", (removal(context.source.text, older.span),), safe=True)
-        yield RULE.at(older.name_span, "`<mc_parameters>` is not read beside `<parameters>`", fix, related=related)
+        yield RULE.at(
+            older.name_span, "`<mc_parameters>` is ignored: `<parameters>` takes precedence", fix, related=related
+        )
     last: dict[str, Element] = {}
     for element in reversed(section.elements if section else []):
         if last.setdefault(element.name, element) is not element:
-            related = (Related(last[element.name].name_span, "this one counts"),)
+            related = (Related(last[element.name].name_span, "this one is used"),)
             remove = Fix("Remove this one", (removal(context.source.text, element.span),), safe=True)
-            yield RULE.at(element.name_span, f"`<{element.name}>` is given again below", remove, related=related)
+            yield RULE.at(
+                element.name_span, f"`<{element.name}>` is ignored: it is given again below", remove, related=related
+            )
 
 
 RULE = Rule("repeated-parameter", Severity.WARNING, "A parameter is given twice.", system=check)

@@ -22,13 +22,11 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if size.nodes > MAX_NODES:
         yield RULE.at(
             place,
-            f"with all subtrees in their places, the tree has {_count(size.nodes)} nodes, and at most {MAX_NODES:,} "
+            f"with all subtrees expanded, the tree has {_count(size.nodes)} nodes, but at most {MAX_NODES:,} "
             "are executed; use subtrees less often, or divide the tree",
         )
     else:
-        yield RULE.at(
-            place, f"{size.depth:,} subtrees are in each other, and at most {MAX_SUBTREES:,} are put in their places"
-        )
+        yield RULE.at(place, f"{size.depth:,} subtrees are nested, but at most {MAX_SUBTREES:,} are expanded")
 
 
 def _count(number: int) -> str:

@@ -13,7 +13,8 @@ from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """What nobody writes either is no business of this rule. Properties read, too."""
+    """Report variables that are written but not read. A property reads a variable as well; variables that are not
+    written either are left to another rule."""
     system = context.system
     if system is None:
         return
@@ -35,6 +36,4 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 
-RULE = Rule(
-    "blackboard-never-read", Severity.WARNING, "A blackboard variable is written that nobody reads.", tree=check
-)
+RULE = Rule("blackboard-never-read", Severity.WARNING, "A blackboard variable is written but never read.", tree=check)

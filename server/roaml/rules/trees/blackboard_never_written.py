@@ -28,4 +28,4 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 
-RULE = Rule("blackboard-never-written", Severity.ERROR, "A blackboard variable is read that nobody writes.", tree=check)
+RULE = Rule("blackboard-never-written", Severity.ERROR, "A blackboard variable is read but never written.", tree=check)

@@ -19,7 +19,7 @@ CONSTANT = (ValueUse.INITIAL, ValueUse.BOUND)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Places in which a port can only hold a constant, while the tree binds it to the blackboard
+    """Report places in which a port must hold a constant, while the tree binds it to the blackboard
     (docs/spec/plugins.md#get-input)."""
     bound = _bound(context)
     if not bound:
@@ -41,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _bound(context: MachineContext) -> dict[str, str]:
-    """The ports that some node of the tree binds to the blackboard, with the variable written there."""
+    """The ports that a node of the tree binds to the blackboard, with the variable in the tree."""
     found: dict[str, str] = {}
     for automaton in context.automata:
         for port in automaton.outline.ports:
@@ -60,9 +60,9 @@ def _reason(context: MachineContext, value: TypedValue) -> str:
     if value.use in CONSTANT:
         return "an initial value must be constant"
     if handler is None:
-        return f"the blackboard cannot be read in `<{value.place.part}>`: read it in the body of a transition"
+        return f"the blackboard cannot be read in `<{value.place.part}>`; read it in the body of a transition"
     if handler.is_probabilistic:
-        return "the blackboard cannot be read in a transition with several targets: read it in the transition before"
+        return "the blackboard cannot be read in a transition with several targets; read it in the transition before"
     names = {
         node.name
         for other in context.typed.values
@@ -72,7 +72,7 @@ def _reason(context: MachineContext, value: TypedValue) -> str:
     }
     mixed = sorted(names & EVENT_VARIABLES.keys())
     if mixed:
-        return f"the blackboard is read before this body runs, and then `{mixed[0]}` is no longer known"
+        return f"the blackboard is read before this body is executed, and then `{mixed[0]}` is not available any more"
     return ""
 
 

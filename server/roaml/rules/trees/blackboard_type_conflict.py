@@ -23,7 +23,7 @@ class TypeConflict(Facts):
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """All ports bound to one variable have one type, to the letter (docs/spec/trees.md#blackboard)."""
+    """All ports that are bound to one variable must have exactly the same type (docs/spec/trees.md#blackboard)."""
     if context.system is None:
         return
     for variable, ports in context.system.blackboard.items():

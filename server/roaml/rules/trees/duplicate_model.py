@@ -17,7 +17,7 @@ from roaml.scxml.names import is_generated
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
-    """Automata, and plugins among each other, need names of their own."""
+    """Names of automata must be unique, and names of plugins among each other."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
     first: dict[tuple[str, str], ListedFile] = {}
     generated = _generated(context.system)
@@ -30,12 +30,12 @@ def check(context: SystemContext) -> Iterator[Finding]:
             yield _finding(context, listed, before, outline.name)
         elif listed.input.section == "node_models" and (reason := _taken(outline.name, generated)):
             named = Related(Symbol(listed.path, SymbolKind.MACHINE, outline.name), "named here")
-            message = f"the node `{outline.name}` is called like {reason}; give it another name"
+            message = f"the node has the same name as {reason}: `{outline.name}`; rename the node"
             yield RULE.at(listed.input.src.span, message, related=[named])
 
 
 def _generated(system: System) -> dict[str, str]:
-    """The names of automata that the translation adds, and what they are: each event is one, and each thread."""
+    """The names of automata that the translation adds for events and threads, with phrases for them."""
     events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
     found = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
     for automaton in system.automata:
@@ -48,12 +48,12 @@ def _generated(system: System) -> dict[str, str]:
 
 
 MOST_THREADS = 1000
-"""More are hardly there, and `model-too-large` tells."""
+"""The maximum number of threads whose names are checked; `model-too-large` reports systems with more."""
 
 
 def _taken(name: str, generated: Mapping[str, str]) -> str:
     if is_generated(name):
-        return "what the translation makes for services, actions, the tree and the clock"
+        return "an automaton that the translation adds for services, actions, the tree or the clock"
     return generated.get(name, "")
 
 
@@ -64,8 +64,8 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     first = Related(earlier.span, "the first one")
     what = "node" if listed.input.section == "node_models" else "plugin"
     if before.path == listed.path:
-        # Of a plugin that is listed twice there is still only one; of a node there would be two.
-        same = f": there would be two nodes `{name}`" if what == "node" else ""
+        # A plugin that is listed twice still exists once; a node would exist twice.
+        same = f", so there would be two nodes `{name}`" if what == "node" else ""
         remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
         severity = Severity.ERROR if what == "node" else Severity.WARNING
         message = f"`{src.value}` is listed twice{same}"

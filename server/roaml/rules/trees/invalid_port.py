@@ -16,7 +16,7 @@ from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
-"""Ports are attributes in the tree."""
+"""The pattern of port names: ports are attributes in the tree."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -33,19 +33,19 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if port.type is not None:
             yield from _type(context, port.type)
         elif written is not None:
-            yield RULE.at(written.span, "the port has no type: `type` is empty")
+            yield RULE.at(written.span, "the type of the port is empty; set `type`")
 
 
 def _key(port: Port, key: Name) -> Iterator[Finding]:
     if not ATTRIBUTE.match(key.value):
-        yield RULE.at(key.span, f"a tree cannot set `{key.value}`: it is not the name of an attribute")
+        yield RULE.at(key.span, f"a tree cannot set `{key.value}`: it is not a valid attribute name")
     elif key.value == CHILDREN_COUNT:
         if port.direction == "out":
             to_input = rename_tag(port.element, "bt_declare_port_in")
-            yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is given to a plugin: it is an input port", to_input)
+            yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is set by the tree, so it must be an input port", to_input)
         elif port.type is not None and port.type.text in BASE_TYPES and BASE_TYPES[port.type.text].kind != "int":
             fixes = replacements(port.type.span, ["int32"])
-            yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` is an int, not `{port.type.text}`", *fixes)
+            yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` must be an integer, not `{port.type.text}`", *fixes)
 
 
 def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
@@ -53,16 +53,14 @@ def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
         return
     base = type_.name.base if type_.name else type_.text
     if base in BASE_TYPES or base in context.struct_names:
-        yield RULE.at(type_.span, "a port holds a single value: arrays and structs cannot be ports")
+        yield RULE.at(type_.span, "a port holds a single value, so arrays and structs are not supported")
         return
-    # A name like `Point` is meant as a struct, not as a misspelled base type.
+    # A name like `Point` is meant as a struct; it is not a misspelled base type.
     is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in FOREIGN_TYPES
     candidates = close_names(base, () if is_struct else BASE_TYPES)
     close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else candidates
-    hint = did_you_mean(close) or "; a port is a `bool`, a `string`, or of an int or float type"
+    hint = did_you_mean(close) or "; a port is a `bool`, a `string`, or has an integer or float type"
     yield RULE.at(type_.span, f"there is no type `{type_.text}`{hint}", *replacements(type_.span, close))
 
 
-RULE = Rule(
-    "invalid-port", Severity.ERROR, "A port is declared twice or with a type that it cannot have.", machine=check
-)
+RULE = Rule("invalid-port", Severity.ERROR, "A port is declared twice or with an unsupported type.", machine=check)

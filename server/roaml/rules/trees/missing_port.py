@@ -34,13 +34,13 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def missing_ports(node: TreeNode, plugin: MachineOutline) -> list[PortOutline]:
-    """The ports of a plugin that a node does not set and that have no default of their own."""
+    """The ports of a plugin that a node does not set and that have no default."""
     builtin = BEHAVIOR_TREE.elements[plugin.name] if plugin.name in builtin_plugins() else None
     known = {a.name for a in builtin.ports if a.port and not a.port.required} if builtin else set()
     known.add(CHILDREN_COUNT)
     given = {attribute.name for attribute in node.element.attributes} | {each.key.value for each in node.ports}
     missing = [port for port in plugin.ports if port.key not in known and port.key not in given]
-    # What is only misspelled is reported as an unknown port.
+    # A port that is only misspelled is reported as an unknown port.
     strange = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]
     misspelled = {close for name in strange for close in close_names(name, [port.key for port in missing], 1)}
     return [port for port in missing if port.key not in misspelled]

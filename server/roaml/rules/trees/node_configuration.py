@@ -17,7 +17,7 @@ from roaml.text import Decoded
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
+    """Report settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
     for node, key, text in _settings(context):
         number = _number(text) if key in _COUNTS else None
@@ -28,7 +28,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for attribute in node.type.ports if node.type else ():
             value = automaton.port(attribute.name)
             if attribute.port and attribute.port.constant and isinstance(value, Reference):
-                reason = f"`{attribute.name}` is read once, at the start: it is a constant, no blackboard variable"
+                reason = (
+                    f"`{attribute.name}` is read once, at the start; it must be a constant, not a blackboard variable"
+                )
                 yield _finding(node, attribute.name, reason)
 
 
@@ -37,7 +39,7 @@ _COUNTS = ("success_count", "failure_count", "max_failures", "num_cycles", "num_
 
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
-    """`instead` is the nearest setting that would do."""
+    """The finding for a setting; `instead` is the nearest valid value."""
     setting = next((each.value for each in node.ports if each.key.value == key), None)
     assert node.plugin is not None
     if setting is None:
@@ -47,7 +49,7 @@ def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) 
 
 
 def _set_twice(context: TreeContext) -> Iterator[Finding]:
-    """Ports that are set under two names."""
+    """Report ports that are set under two names."""
     for tree in context.file.trees:
         for node in nodes(tree):
             settings: dict[str, PortSetting] = {}
@@ -55,13 +57,13 @@ def _set_twice(context: TreeContext) -> Iterator[Finding]:
                 first = settings.setdefault(setting.key.value, setting)
                 written, other = setting.attribute.name, first.attribute.name
                 if written != other:
-                    message = f"`{written}` and `{other}` are two names of one port, which can be set once"
+                    message = f"`{written}` and `{other}` are two names of one port; remove one of them"
                     drop = Fix(f"Remove `{written}`", (removal(context.source.text, setting.attribute.span),))
                     yield RULE.at(setting.key.span, message, drop)
 
 
 def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
-    """Every constant setting of a node: its own ones, and what subtrees and defaults of the tree model give it."""
+    """Every constant setting of a node: its own ones, and those from subtrees and from defaults of the tree model."""
     executed: set[TreeNode] = set()
     for node, automaton in instances(context):
         executed.add(node)
@@ -77,22 +79,22 @@ def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
 
 
 def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | None:
-    """What is wrong with a setting, and the nearest one that would do."""
+    """The error in a setting, and the nearest valid value; `None` if the setting is valid."""
     count = len(node.children)
     match node.plugin.value if node.plugin and node.type is not None else "", key:
         case ("Parallel", "success_count" | "failure_count") if number > count > 0:
-            return f"`{key}` is at most the number of children, here {count}; this is {number}", count
+            return f"`{key}` must be at most the number of children, which is {count}, not {number}", count
         case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
-            return f"`{key}` is -1 (for ever), 0 or more; this is {number}", -1
+            return f"`{key}` must be -1 (for ever), 0 or greater, not {number}", -1
         case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):
-            return f"the answer is 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING); this is {number}", None
+            return f"the status must be 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING), not {number}", None
         case ("ParallelAll", "max_failures") if number > count > 0:
-            return f"`max_failures` is at most the number of children, here {count}; this is {number}", count
+            return f"`max_failures` must be at most the number of children, which is {count}, not {number}", count
     return None
 
 
 def _number(text: str) -> int | None:
-    """The integer that a constant stands for, if it is one."""
+    """The integer value of a constant; `None` if it is not an integer."""
     tree, findings = parse(Decoded(text.strip(), 0))
     value = None if findings else constant(tree)
     if isinstance(value, float):
@@ -100,4 +102,4 @@ def _number(text: str) -> int | None:
     return value
 
 
-RULE = Rule("node-configuration", Severity.ERROR, "A node is set up so that it can never answer.", tree=check)
+RULE = Rule("node-configuration", Severity.ERROR, "The settings of a node prevent it from ever answering.", tree=check)

@@ -22,8 +22,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for node in nodes(tree):
             if node.name is not None and not node.is_subtree and not IDENTIFIER.match(node.name.value):
                 safe = safe_name(node.name.value)
-                message = f"`{node.name.value}` is no identifier; names that are made of it use `{safe}`"
+                message = f"`{node.name.value}` is not an identifier; generated names use `{safe}`"
                 yield RULE.at(node.name.span, message, Fix(f"Rename to `{safe}`", (TextEdit(node.name.span, safe),)))
 
 
-RULE = Rule("node-name", Severity.WARNING, "The name of a node is no identifier.", tree=check)
+RULE = Rule("node-name", Severity.WARNING, "The name of a node is not an identifier.", tree=check)

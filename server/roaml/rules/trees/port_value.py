@@ -30,7 +30,7 @@ from roaml.text import Decoded, Span, TextEdit
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """In a system only: for BehaviorTree.CPP itself a port may be any text."""
+    """Check ports of trees in systems; BehaviorTree.CPP itself accepts any text."""
     if context.system is None:
         return
     for tree in context.file.trees:
@@ -51,25 +51,30 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _name(value: Name, *, is_subtree: bool = False) -> Iterator[Finding]:
-    """A reference `{name}` needs a name that is one."""
+    """Check that a reference `{name}` has a valid name."""
     variable = blackboard_variable(value.value)
     if variable is None:
         if looks_like_reference(value.value):
-            message = f"`{value.value}` is neither a variable nor a constant: a variable stands alone, as `{{name}}`"
+            message = (
+                f"`{value.value}` is neither a variable nor a constant; a variable is written alone, as `{{name}}`"
+            )
             yield RULE.at(value.span, message)
     elif not variable:
-        yield RULE.at(value.span, "the variable in the braces has no name")
+        yield RULE.at(value.span, "the braces contain no variable name")
     elif is_reserved_variable(variable):
-        yield RULE.at(value.span, f"`{variable}` is a word of ECMAScript and cannot name a blackboard variable")
+        yield RULE.at(
+            value.span, f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"
+        )
     elif not is_variable_name(variable) and not (is_subtree and variable == "="):
-        rule = "letters, digits, `_` and `$`, not beginning with a digit"
-        message = f"`{variable}` cannot name a blackboard variable: {rule}"
+        rule = "only letters, digits, `_` and `$`, and no digit at the beginning"
+        message = f"`{variable}` is not a valid name of a blackboard variable: {rule}"
         yield RULE.at(value.span, message)
     elif (plain := f"{{{variable}}}") != value.value.strip():
-        # What is meant is clear here, but for BehaviorTree.CPP and the reference the spaces belong to the name.
+        # The meaning is clear here, but for BehaviorTree.CPP and the reference translator the spaces are part of the
+        # name.
         yield RULE.at(
             value.span,
-            f"a variable stands in its braces without spaces: `{plain}`",
+            f"a variable is written in braces without spaces: `{plain}`",
             *replacements(value.span, (plain,)),
         )
 
@@ -82,7 +87,7 @@ def _values(node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Findi
 
 
 def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
-    """A default of `<TreeNodesModel>` is the value of every node that does not set the port."""
+    """Check a default of `<TreeNodesModel>`, which is the value of every node that does not set the port."""
     port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
     if port is not None and default is not None:
         yield from _name(Name(default.value, default.value_span))
@@ -95,7 +100,7 @@ def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[F
     if port.direction == "out":
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []
-        message = f"`{port.key}` is an output port: it is bound to a blackboard variable, `{{name}}`"
+        message = f"`{port.key}` is an output port; bind it to a blackboard variable, `{{name}}`"
         yield RULE.at(span, message, *fixes, related=related)
         return
     problem = problem_of(text.strip(), port)
@@ -106,7 +111,8 @@ def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[F
 
 
 def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
-    """A constant that a `<SubTree>` gives for a variable ends in the ports bound to that variable."""
+    """Check a constant that a `<SubTree>` passes for a variable: it becomes the value of the ports bound to that
+    variable."""
     for node, automaton in instances(context):
         for setting in node.ports:
             port, value = automaton.outline.port(setting.key.value), automaton.port(setting.key.value)
@@ -119,12 +125,12 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
                 continue
             problem = problem_of(value.text.strip(), port)
             if problem is not None:
-                message = f"the subtree is given `{value.text}` for `{setting.variable}`, but {problem.message}"
+                message = f"the `<SubTree>` passes `{value.text}` for `{setting.variable}`, but {problem.message}"
                 yield RULE.at(setting.value.span, message, severity=problem.severity)
 
 
 def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """What a `Switch` compares is of one type, that of the first variable in it: string or int
+    """All values that a `Switch` compares have the type of the first variable among them: string or int
     (docs/spec/nodes.md#control)."""
     for node, automaton in instances(context):
         assert context.system is not None
@@ -145,14 +151,17 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
                 continue
             given = context.system.variable_type(value.variable)
             if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
-                message = f"`{port.key}` is compared with values of type `{wanted}`; `{value.variable}` is `{given}`"
+                message = (
+                    f"`{port.key}` is compared with values of type `{wanted}`, but `{value.variable}` is `{given}`"
+                )
                 yield RULE.at(_place(node, port), message)
 
 
 def _literal_choice(node: TreeNode) -> Iterator[Finding]:
-    """Where a `Switch` names no variable, its texts are strings; what is a float or bool elsewhere is hardly meant so.
+    """If a `Switch` uses no variable, its values are strings, and values that look like a float or boolean are
+    suspicious.
 
-    A text that a `<SubTree>` hands down may be meant for a string, such as a version.
+    A text that a `<SubTree>` passes may be meant as a string, such as a version.
     """
     setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
     if setting is not None:
@@ -162,11 +171,11 @@ def _literal_choice(node: TreeNode) -> Iterator[Finding]:
             yield RULE.at(setting.span, f"{_COMPARED}; `{setting.value}` is `{given}`")
 
 
-_COMPARED = "a switch compares strings or ints"
+_COMPARED = "a `Switch` compares strings or integers"
 
 
 def _place(node: TreeNode, port: PortOutline) -> Span:
-    """Where a node sets a port; a default of `<TreeNodesModel>` is told at the name of the node."""
+    """The place where a node sets a port; for a default of `<TreeNodesModel>`, the name of the node."""
     setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
     assert setting is not None
     return setting.span
@@ -174,7 +183,7 @@ def _place(node: TreeNode, port: PortOutline) -> Span:
 
 @dataclass(frozen=True, slots=True)
 class ConstantProblem:
-    """Why a port cannot hold a constant; `replacement` is what was probably meant."""
+    """Why a port cannot hold a constant; `replacement` is the constant that was probably meant."""
 
     message: str
     severity: Severity = Severity.ERROR
@@ -182,12 +191,12 @@ class ConstantProblem:
 
 
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
-    """What keeps an input port from holding a constant: a text, or an expression of the port's type."""
+    """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
     wanted = BASE_TYPES.get(port.type)
     if wanted is None or is_kind(wanted, "string"):
         return None
     if not text:
-        return ConstantProblem(f"the port `{port.key}` has no value; it is `{port.type}`")
+        return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
     tree, findings = parse(Decoded(text, 0))
     given, problems = infer(tree, lambda _: None)
     sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
@@ -196,23 +205,23 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
             return None
         close = {"1": "true", "0": "false"}.get(text, text.lower())
         known = (close,) if close in ("true", "false") else ()
-        message = f"the port `{port.key}` is `true` or `false`, not `{text}`{did_you_mean(known)}"
+        message = f"the port `{port.key}` must be `true` or `false`, not `{text}`{did_you_mean(known)}"
         return ConstantProblem(message, replacement="".join(known))
     if not sound or not is_number(given):
-        return ConstantProblem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+        return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
     value = constant(tree)
     if not fits(given, wanted):
         if value is None or not float(value).is_integer():
-            return ConstantProblem(f"the port `{port.key}` is `{port.type}`, not `{text}`")
+            return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
         new = str(int(value))
         return ConstantProblem(
-            f"the port `{port.key}` is `{port.type}`: write `{new}` for `{text}`", Severity.WARNING, new
+            f"the port `{port.key}` is `{port.type}`; write `{new}` instead of `{text}`", Severity.WARNING, new
         )
     low, high = INTEGER_RANGES.get(port.type, (None, None))
     if value is not None and low is not None and high is not None and not low <= value <= high:
-        message = f"{text} does not fit into the port `{port.key}`: `{port.type}` holds {low} to {high}"
+        message = f"{text} does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
         return ConstantProblem(message, Severity.WARNING)
     return None
 
 
-RULE = Rule("port-value", Severity.ERROR, "A port is set to a value that it cannot have.", tree=check)
+RULE = Rule("port-value", Severity.ERROR, "The value of a port is not valid.", tree=check)

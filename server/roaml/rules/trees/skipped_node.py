@@ -20,8 +20,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 variable = blackboard_variable(skip.value) if skip else None
                 if skip is None or variable is not None or skip.value.strip() == "true":
                     when = f" if `{variable}` is true" if variable else ""
-                    message = f"after its first run the node counts as SUCCESS here{when}; BehaviorTree.CPP skips it"
+                    message = f"after its first run this node returns SUCCESS{when}; BehaviorTree.CPP skips it"
                     yield RULE.at(node.plugin.span, message)
 
 
-RULE = Rule("skipped-node", Severity.INFORMATION, "A skipped node counts as SUCCESS.", tree=check)
+RULE = Rule(
+    "skipped-node", Severity.INFORMATION, "The model returns SUCCESS where BehaviorTree.CPP skips a node.", tree=check
+)

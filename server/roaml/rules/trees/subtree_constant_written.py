@@ -12,7 +12,8 @@ from roaml.rules.support.instances import instances
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """A subtree writes a variable for which its `<SubTree>` gives a constant (docs/spec/trees.md#subtrees)."""
+    """Report a subtree that writes a variable for which its `<SubTree>` passes a constant
+    (docs/spec/trees.md#subtrees)."""
     for node, automaton in instances(context):
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)
@@ -24,4 +25,6 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(setting.value.span, message)
 
 
-RULE = Rule("subtree-constant-written", Severity.ERROR, "A subtree writes what it was given as a constant.", tree=check)
+RULE = Rule(
+    "subtree-constant-written", Severity.ERROR, "A subtree writes a variable that is a constant in it.", tree=check
+)

@@ -18,11 +18,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not element.name.startswith("bt_"):
             continue
         if element.name.startswith("bt_declare_port"):
-            message = "a node has no ports: this has no effect; list the file in `<behavior_tree>` if it is a plugin"
+            message = (
+                "a ROS node has no ports, so this has no effect; list the file in `<behavior_tree>` if it is a plugin"
+            )
             drop = remove(context.document, element)
             yield RULE.at(element.name_span, message, drop, severity=Severity.WARNING)
         else:
-            message = f"`<{element.name}>` belongs into a plugin of the behavior tree; this file is listed as a node"
+            message = (
+                f"`<{element.name}>` is only allowed in a plugin of the behavior tree, and this file is "
+                "listed as a node"
+            )
             yield RULE.at(element.name_span, message)
 
 

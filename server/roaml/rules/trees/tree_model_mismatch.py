@@ -14,7 +14,7 @@ from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, repla
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """`<TreeNodesModel>` against the plugins themselves."""
+    """Compare `<TreeNodesModel>` with the plugins."""
     if context.system is None:
         return
     for model in context.file.models:
@@ -45,6 +45,6 @@ def _check(context: TreeContext, model: NodeModel, plugin: MachineOutline, path:
 RULE = Rule(
     "tree-model-mismatch",
     Severity.WARNING,
-    "`<TreeNodesModel>` says something else than the plugin.",
+    "`<TreeNodesModel>` contradicts the plugin.",
     tree=check,
 )

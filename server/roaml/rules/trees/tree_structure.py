@@ -18,10 +18,10 @@ from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
 
 MAIN = "MainTree"
-"""What the executed tree is called by custom."""
+"""The conventional name of the executed tree."""
 
 MOST = 5
-"""So many trees are offered to be executed."""
+"""The maximum number of trees for which a fix offers to execute them."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -48,7 +48,7 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
             at = tree.element.name_span.end
             edits = (TextEdit(Span(at, at), f' ID="{name}"'),)
             fix = Fix(f'Add `ID="{name}"`', edits, preferred=False)
-            yield RULE.at(tree.element.name_span, "of several trees each needs an `ID`", fix)
+            yield RULE.at(tree.element.name_span, "if there are several trees, each needs an `ID`", fix)
         return
     same = known.get(tree.id.value, ()) or [t for f in context.files for t in f.trees if t.id == tree.id.value]
     if len(same) > 1 and not (context.forest is not None and _is_first(context, tree)):
@@ -107,9 +107,9 @@ def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tup
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
-    """Without a system, or if an include cannot be read, the tree may stand in a file that is not known here.
+    """Without a system, or if an include cannot be read, the tree may be in an unknown file.
 
-    A `<BehaviorTree>` that is misspelled may be the one.
+    A misspelled `<BehaviorTree>` may also be the missing one.
     """
     if context.missing_includes or _has_misspelled_tree(context):
         return
@@ -124,7 +124,7 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
 
 
 def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
-    """The names of all trees that contain themselves, and of some between such trees."""
+    """The names of all trees that contain themselves, and of some between these trees."""
     left = {name: {inner for inner in inners if inner in uses} for name, inners in uses.items()}
     for _ in range(2):
         users: dict[str, set[str]] = {name: set() for name in left}
@@ -139,12 +139,12 @@ def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
                 left[user].discard(name)
                 if not left[user]:
                     ended.append(user)
-        left = {name: users[name] for name in left}  # once more, from the other end
+        left = {name: users[name] for name in left}  # once more, in the other direction
     return left.keys()
 
 
 def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
-    """The trees that the tree `own` is a part of, itself included."""
+    """The trees that contain the tree `own`, including itself."""
     users: dict[str, list[str]] = {}
     for name, inners in uses.items():
         for inner in inners:
@@ -160,7 +160,7 @@ def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
 
 
 def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
-    """The names from `start` over `first` back to `start`, or none."""
+    """The names from `start` by `first` back to `start`; empty if there is no such path."""
     came_from = {first: start}
     stack = [first]
     while stack:
@@ -201,12 +201,14 @@ def _main(context: TreeContext) -> Iterator[Finding]:
         if found:
             yield from _ambiguous(context, found)
         elif not _has_misspelled_tree(context):
-            yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that could be executed")
+            yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that can be executed")
 
 
 def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Finding]:
-    """Only if it is clear which trees no other refers to: a missing, repeated or unknown name is enough to be told, and
-    so is a tree that contains itself where no tree is left."""
+    """Report an ambiguous main tree, only if it is clear which trees no other tree uses.
+
+    A missing, repeated or unknown name is reported instead, and so is a tree that contains itself if no tree is left.
+    """
     trees = [tree for file in context.files for tree in file.trees]
     names = {tree.id for tree in trees}
     used = {name for tree in trees for name in _subtrees(tree.root)}
@@ -222,7 +224,7 @@ def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Fi
         for name in candidates
         if context.file.element.get("main_tree_to_execute") is None
     )
-    message = f"which tree is executed? Name one of {listing(candidates)} in `main_tree_to_execute`"
+    message = f"it is ambiguous which tree is executed; set `main_tree_to_execute` to one of {listing(candidates)}"
     yield RULE.at(root, message, *itertools.islice(fixes, MOST))
 
 
@@ -231,11 +233,11 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
 
 
 def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
-    """The only tree is executed whatever it is called (docs/spec/trees.md#main-tree), but hardly on purpose. See
+    """Report a wrong name of the only tree, which is executed whatever its name is (docs/spec/trees.md#main-tree). See
     `_no_tree`."""
     known = context.system is not None or are_similar(wanted.value, executed)
     if known and not context.missing_includes:
-        message = f"there is no tree `{wanted.value}`; `{executed}`, the only one, is executed"
+        message = f"there is no tree `{wanted.value}`; the only tree, `{executed}`, is executed instead"
         yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
 
 

@@ -18,7 +18,7 @@ from roaml.rules.support.ports import reads, writes
 
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.listed_as == {"node_models"}:
-        return  # tree-element-in-node says that a node has no ports
+        return  # tree-element-in-node reports that a node has no ports
     ports = {port.key.value: port for port in context.machine.ports if port.key}
     inputs = [key for key in reads(context.machine, context.typed) if key.value not in ports]
     for key in inputs:
@@ -39,7 +39,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _declare(context: MachineContext, key: Name, direction: str) -> Iterator[Fix]:
-    """Declare a port, if its type can be told from where it is used. Nodes of the tree must then set it."""
+    """Declare a port, if its type can be inferred from its uses. Nodes of the tree must then set it."""
     type_ = _type_of(context, key)
     if type_ is not None:
         text = f'<bt_declare_port_{direction} key="{key.value}" type="{type_}" />'

@@ -21,7 +21,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
-    """Plugins of a tree that no system names are none of our business."""
+    """Check the nodes of a tree; the plugins of a tree that no system lists are unknown."""
     system = context.system
     if system is None or node.plugin is None or system.plugin(node.plugin.value)[1] is not None:
         return
@@ -36,11 +36,11 @@ def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
         return
     misplaced = name in [outline.name for _, outline in system.nodes]
     if not misplaced and not system.plugins_known:
-        return  # what is wrong with the listed file that may be the plugin's says enough
+        return  # the error in the listed file that may contain the plugin is reported instead
     close = close_names(name, [*(outline.name for _, outline in system.plugins), *builtin_plugins()])
     hint = did_you_mean(close) or "; list its file in `<behavior_tree>` of the system"
     if misplaced:
-        hint = "; its file is listed in `<node_models>`, plugins are listed in `<behavior_tree>`"
+        hint = "; its file is listed in `<node_models>`, but plugins must be listed in `<behavior_tree>`"
         close = ()
     fixes = _compact_fixes(node, close) if node.compact else replacements(node.plugin.span, close)
     yield RULE.at(node.plugin.span, f"there is no plugin `{name}`{hint}", *fixes)

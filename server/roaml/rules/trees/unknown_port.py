@@ -33,14 +33,14 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
         edit = removal(context.source.text, setting.attribute.span)
         if key.value == CHILDREN_COUNT:
             if CHILDREN_COUNT not in keys and path:
-                continue  # without the port it is not read; nodes of BehaviorTree.CPP have it
-            message = f"`{CHILDREN_COUNT}` is filled in by itself and cannot be set"
+                continue  # a plugin without the port does not read it; nodes of BehaviorTree.CPP have it
+            message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
         elif key.value not in keys and plugin.all_ports:
             given = {other.key.value for other in node.ports}
             free = [k for k in keys if k not in given]
             close = close_names(key.value, free)
-            # What is only misspelled would be missing then.
+            # A misspelled port would also be reported as missing.
             drop = [] if close else [Fix(f"Remove `{key.value}`", (edit,), preferred=False)]
             known = f"; it has {listing(keys)}" if keys else "; it has no ports"
             hint = did_you_mean(close) or known

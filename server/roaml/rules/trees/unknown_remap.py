@@ -31,4 +31,4 @@ def check(context: TreeContext) -> Iterator[Finding]:
         yield RULE.at(setting.key.span, message, *fixes, *drop, severity=severity)
 
 
-RULE = Rule("unknown-remap", Severity.ERROR, "A subtree is given a variable that it does not have.", tree=check)
+RULE = Rule("unknown-remap", Severity.ERROR, "A subtree does not have a variable that is passed to it.", tree=check)

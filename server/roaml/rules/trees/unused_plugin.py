@@ -24,4 +24,4 @@ def check(context: SystemContext) -> Iterator[Finding]:
             yield RULE.at(src.span, f"the tree never uses the plugin `{name}`", tags=(Tag.UNNECESSARY,))
 
 
-RULE = Rule("unused-plugin", Severity.HINT, "A plugin is listed that the tree never uses.", system=check)
+RULE = Rule("unused-plugin", Severity.HINT, "The tree never uses a plugin that is listed.", system=check)

@@ -14,11 +14,12 @@ from roaml.rules.support.ports import reads, writes
 
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.listed_as == {"node_models"}:
-        return  # tree-element-in-node says that a node has no ports
+        return  # tree-element-in-node reports that a node has no ports
     used = {key.value for key in (*reads(context.machine, context.typed), *writes(context.machine))}
     for port in context.machine.ports:
         if port.key is not None and port.key.value not in used and port.key.value != CHILDREN_COUNT:
-            # Of a port that the tree sets, roaml.ide.code_actions.quick_fixes tells, for it must go there as well.
+            # roaml.ide.code_actions.quick_fixes removes a port that the tree sets, because it must change the tree as
+            # well.
             is_set = any(automaton.port(port.key.value) is not None for automaton in context.automata)
             fixes = [] if is_set else [remove(context.document, port.element, "Remove the port", preferred=True)]
             message = f"the port `{port.key.value}` is never used"

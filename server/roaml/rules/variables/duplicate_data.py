@@ -31,13 +31,15 @@ def _written(context: MachineContext, data: Data) -> str:
 
 
 def _flattened(context: MachineContext, scope: str, names: dict[str, Name]) -> Iterator[Finding]:
-    """A variable `p__x` beside a struct `p` with a member `x`: both get the same name in the translation."""
+    """Report a variable `p__x` beside a struct `p` with a member `x`: the translation gives both the same name."""
     for name, type_ in context.typed.variables.get(scope, {}).items():
         for path, _ in leaves(type_):
             flat = "__".join((name, *path))
             if path and flat in names:
                 related = (Related(names[name].span, "the struct"),)
-                message = f"`{flat}` is also what the translation calls `{'.'.join((name, *path))}`"
+                message = (
+                    f"`{flat}` is also the name of `{'.'.join((name, *path))}` in the translation; rename one of them"
+                )
                 yield RULE.at(names[flat].span, message, related=related)
 
 

@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if type_ is not None and str(type_) != "unknown" and not is_number(type_):
                 span = (data.lower or data.upper).span  # type: ignore[union-attr]
                 fix = Fix("Remove the bounds", tuple(_without_bounds(context, data)))
-                yield RULE.at(span, f"only numbers have bounds, not `{type_}`", fix)
+                yield RULE.at(span, f"only numbers can have bounds, not `{type_}`", fix)
             else:
                 yield from _order(context, data)
 
@@ -46,14 +46,16 @@ def _order(context: MachineContext, data: Data) -> Iterator[Finding]:
         related = (Related(data.upper.span, "the upper bound"),)
         lower, upper = (context.source.text[slice(*value.span)] for value in (data.lower, data.upper))
         swap = Fix("Swap the bounds", (TextEdit(data.lower.span, upper), TextEdit(data.upper.span, lower)))
-        yield RULE.at(data.lower.span, f"the lower bound {low} is above the upper bound {high}", swap, related=related)
+        yield RULE.at(
+            data.lower.span, f"the lower bound {low} is greater than the upper bound {high}", swap, related=related
+        )
     elif initial is not None and ((low is not None and initial < low) or (high is not None and initial > high)):
         assert data.value is not None
         is_below = low is not None and initial < low
         bound, nearest = (f"below {low}", low) if is_below else (f"above {high}", high)
         fix = Fix(f"Begin with {nearest}", (TextEdit(data.value.span, str(nearest)),), preferred=False)
-        message = f"the initial value {initial} lies outside the bounds of the variable: {bound}"
-        # The bounds say what is meant; the translation does not read them (docs/spec/machines.md#data).
+        message = f"the initial value {initial} is outside the bounds of the variable: {bound}"
+        # The bounds state the intended values; the translation does not read them (docs/spec/machines.md#data).
         yield RULE.at(data.value.span, message, fix, severity=Severity.WARNING)
 
 

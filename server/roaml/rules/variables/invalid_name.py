@@ -29,7 +29,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if statement.event and not EVENT.match(statement.event.value):
                     yield _wrong(
                         statement.event,
-                        f"`{statement.event.value}` cannot name an event: it begins with a letter or `_` and holds "
+                        f"`{statement.event.value}` is not a valid event name: it must begin with a letter or `_` "
+                        "and contain only "
                         "letters, digits, `.`, `-` and `_`",
                     )
                 for param in statement.params:
@@ -43,18 +44,18 @@ def _variable(name: Name) -> Iterator[Finding]:
     if reason := variable_problem(name.value):
         yield _wrong(name, reason)
     elif name.value in EVENT_VARIABLES:
-        message = f"`{name.value}` is also what received data are called: where these are known, the variable is not"
+        message = f"`{name.value}` is also the name of received data, which hides the variable where it is available"
         yield _wrong(name, message, Severity.WARNING)
 
 
 def _parameter(name: Name) -> Iterator[Finding]:
     if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
-        message = f"`{name.value}` cannot name a parameter: letters, digits and `_`, the last no `_`"
+        message = f"`{name.value}` is not a valid parameter name: only letters, digits and `_`, and no `_` at the end"
         yield _wrong(name, message)
 
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
-    """Names that become parts of event names."""
+    """Check names that become parts of event names."""
     what = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
     name = declaration.handle if declaration.kind is SymbolKind.TIMER else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
@@ -62,7 +63,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
-    """Ports give such names, too. An error in a node of several instances is one error."""
+    """Check the names that ports pass. An error in a node with several instances is reported once."""
     found: dict[Finding, None] = {}
     for node, automaton, use in named_by_ports(context):
         value = automaton.port(use.port)
@@ -84,7 +85,7 @@ def _wrong(name: Name, message: str, severity: Severity | None = None) -> Findin
 
 
 def _with_spaces(name: str, what: str) -> str:
-    return f"`{name}` cannot name {_a(what)}: it has spaces"
+    return f"`{name}` is not a valid name of {_a(what)}: it contains spaces"
 
 
 def _a(what: str) -> str:
@@ -94,7 +95,7 @@ def _a(what: str) -> str:
 RULE = Rule(
     "invalid-name",
     Severity.ERROR,
-    "A name cannot be used for what it names.",
+    "A name is not valid for the thing that it names.",
     machine=check,
     tree=check_tree,
     facts=WrongName,

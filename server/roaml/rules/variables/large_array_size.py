@@ -16,8 +16,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
     given = context.file.parameter("max_array_size")
     last = given.get("value") if given else None
     if last is not None and size > LARGE:
-        message = f"every array without a bound gets {size} elements; translation and verification grow with it"
+        message = f"every array without a bound gets {size} elements, which slows down translation and verification"
         yield RULE.at(last.value_span, message)
 
 
-RULE = Rule("large-array-size", Severity.WARNING, "Arrays are made very large.", system=check)
+RULE = Rule("large-array-size", Severity.WARNING, "The default array size is very large.", system=check)

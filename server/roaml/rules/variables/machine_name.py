@@ -20,17 +20,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if attribute is not None:
             stem = safe_name(context.source.path.replace("\\", "/").rpartition("/")[2].partition(".")[0])
             fixes = [Fix(f"Call it `{stem}`", (TextEdit(attribute.span, f'name="{stem}"'),))] if stem else []
-            yield RULE.at(attribute.span, "the machine has no name: `name` is empty", *fixes)
+            yield RULE.at(attribute.span, "the name of the machine is empty; set `name`", *fixes)
         return
     if "behavior_tree" in context.listed_as and name.value in builtin_plugins():
-        message = f"`{name.value}` is a node of BehaviorTree.CPP; give the plugin another name"
+        message = f"`{name.value}` is the name of a node of BehaviorTree.CPP; rename the plugin"
         yield RULE.at(name.span, message, facts=WrongName(name.value))
     elif "behavior_tree" in context.listed_as and name.value in (*EXPLICIT, *SUBTREES):
-        message = f"`<{name.value}>` has a meaning of its own in trees; give the plugin another name"
+        message = f"`<{name.value}>` has a special meaning in trees; rename the plugin"
         yield RULE.at(name.span, message, facts=WrongName(name.value))
     elif (safe := safe_name(name.value)) != name.value:
-        message = f"`{name.value}` is no identifier; generated names use `{safe}`"
-        # The tree, if any, would have to name it anew as well.
+        message = f"`{name.value}` is not an identifier; generated names use `{safe}`"
+        # The tree, if there is one, would have to be changed as well.
         fixes = [] if "behavior_tree" in context.listed_as else [*replacements(name.span, [safe])]
         yield RULE.at(name.span, message, *fixes, severity=Severity.WARNING, facts=WrongName(name.value))
 
@@ -38,7 +38,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 RULE = Rule(
     "machine-name",
     Severity.ERROR,
-    "The name of a machine is taken or no identifier.",
+    "The name of a machine is already used or not an identifier.",
     machine=check,
     facts=WrongName,
 )

@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _fix(data: Data) -> Iterator[Fix]:
-    """The type that the initial value suggests."""
+    """Add the type that the initial value suggests."""
     attribute, type_ = data.element.get("id"), _type_of_value(data)
     if type_ is None or attribute is None or not attribute.has_value:
         return

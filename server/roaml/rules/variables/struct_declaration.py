@@ -24,9 +24,9 @@ def check(context: StructsContext) -> Iterator[Finding]:
         if name is None:
             continue
         if name.value in BASE_TYPES:
-            yield RULE.at(name.span, f"`{name.value}` is a base type and cannot name a struct")
+            yield RULE.at(name.span, f"`{name.value}` is a base type and cannot be the name of a struct")
         elif not VARIABLE.match(name.value):
-            yield RULE.at(name.span, f"`{name.value}` cannot name a struct: letters, digits and `_`")
+            yield RULE.at(name.span, f"`{name.value}` is not a valid struct name: only letters, digits and `_`")
         else:
             yield from _other(context, declaration, first.setdefault(name.value, name))
         if outlines.get(name.value) == declaration.outline:
@@ -37,24 +37,24 @@ def check(context: StructsContext) -> Iterator[Finding]:
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
-    """Another declaration of the struct, in this file or elsewhere in the system, that says something else."""
+    """Report another, different declaration of the struct, in this file or elsewhere in the system."""
     name, outline = declaration.name, declaration.outline
     assert name is not None
     same = [other for other in context.outlines if other.name == name.value]
     here = [d for d in context.declarations if d.name and d.name.value == name.value]
     if first is not name:
-        message = f"there are two structs `{name.value}`; the last one counts"
+        message = f"there are two structs `{name.value}`; only the last one is used"
         yield RULE.at(name.span, message, severity=Severity.WARNING, related=(Related(first.span, "the first one"),))
     elif len(same) > len(here) and any(other != outline for other in same):
         which = "this" if outline == same[-1] else "the last"
-        message = f"there is another struct `{name.value}` in the system, with other members; {which} one counts"
+        message = f"there is another struct `{name.value}` in the system, with other members; {which} one is used"
         yield RULE.at(name.span, message, severity=Severity.WARNING)
 
 
 def _cycles(
     declaration: StructDeclaration, name: str, cycles: Mapping[tuple[str, str], tuple[str, ...]]
 ) -> Iterator[Finding]:
-    """Once for each cycle, at the member that closes it."""
+    """Report each cycle once, at the member that closes it."""
     for member in declaration.members:
         cycle = cycles.get((name, member.name.value)) if member.name else None
         if cycle is not None and member.type is not None:
@@ -62,7 +62,7 @@ def _cycles(
 
 
 def _too_large(declaration: StructDeclaration, sizes: Mapping[str, TypeExtent]) -> Iterator[Finding]:
-    """At the member that makes it so large, in the innermost struct that is."""
+    """Report the member that makes a struct too large, in the innermost struct that is too large."""
     assert declaration.name is not None
     types = (m.type for m in declaration.members if m.type and m.type.name)
     inner = [(sizes[type_.name.base], type_) for type_ in types if type_.name and type_.name.base in sizes]
@@ -70,9 +70,9 @@ def _too_large(declaration: StructDeclaration, sizes: Mapping[str, TypeExtent]) 
         return
     extent = sizes[declaration.name.value]
     largest = max(inner, key=lambda each: (each[0].depth, each[0].fields), default=None)
-    what = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"structs in each other {extent.depth:,} deep"
+    what = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"{extent.depth:,} nested structs"
     most = f"{MAX_FIELDS:,}" if extent.fields > MAX_FIELDS else f"{MAX_DEPTH}"
-    message = f"with all that is in its members, `{declaration.name.value}` has {what}; at most {most} are read"
+    message = f"with all nested members, `{declaration.name.value}` has {what}, but at most {most} are read"
     yield RULE.at(largest[1].span if largest else declaration.name.span, message)
 
 
@@ -82,10 +82,11 @@ def _members(declaration: StructDeclaration) -> Iterator[Finding]:
         name, type_ = member.name, member.type
         if name is not None:
             if name.value == "length":
-                yield RULE.at(name.span, "`length` has a meaning of its own and cannot name a member")
+                yield RULE.at(name.span, "`length` has a special meaning and cannot be the name of a member")
             elif not VARIABLE.match(name.value) or name.value.endswith("_"):
                 yield RULE.at(
-                    name.span, f"`{name.value}` cannot name a member: letters, digits and `_`, the last no `_`"
+                    name.span,
+                    f"`{name.value}` is not a valid member name: only letters, digits and `_`, and no `_` at the end",
                 )
             elif first.setdefault(name.value, name) is not name:
                 related = (Related(first[name.value].span, "the first one"),)
@@ -94,8 +95,9 @@ def _members(declaration: StructDeclaration) -> Iterator[Finding]:
             several = len(type_.name.dimensions) > 1
             if several and type_.name.base not in BASE_TYPES:
                 yield RULE.at(
-                    type_.span, "an array of structs has one dimension: put a struct with an array in between"
+                    type_.span,
+                    "an array of structs can have only one dimension; use a struct with an array as its element",
                 )
 
 
-RULE = Rule("struct-declaration", Severity.ERROR, "A struct is declared in a way that cannot be used.", structs=check)
+RULE = Rule("struct-declaration", Severity.ERROR, "The declaration of a struct is not valid.", structs=check)

@@ -38,26 +38,26 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         literal = LITERALS[name]
         return RULE.at(problem.span, f"write `{literal}` for `{name}`", *replacements(problem.span, (literal,)))
     if name in NO_VALUES:
-        return RULE.at(problem.span, f"there is no `{name}`: every variable always holds a value of its type")
+        return RULE.at(problem.span, f"there is no `{name}`: every variable always has a value of its type")
     variables = context.typed.variables.get(value.place.chart.scope, {})
     if value.use in (ValueUse.INITIAL, ValueUse.BOUND):
         what = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
-        return RULE.at(problem.span, f"an initial value is constant: it cannot use {what}")
+        return RULE.at(problem.span, f"an initial value must be constant; it cannot use {what}")
     if name in STATUSES:
         number = str(STATUSES[name])
-        message = f"`{name}` is known only in the condition of `<bt_child_status>`; write `{number}`"
+        message = f"`{name}` is only available in the condition of `<bt_child_status>`; write `{number}`"
         return RULE.at(problem.span, message, *replacements(problem.span, (number,)))
     if misspelled.declaration(context.machine, "data", name):
         return None
     close = close_names(name, [*variables, *_answers(value)])
     message = f"there is no variable `{name}`{did_you_mean(close)}"
     if not close and any(name in known for known in context.typed.variables.values()):
-        message = f"`{name}` is not known here: the machine and each of its threads have variables of their own"
+        message = f"`{name}` is not available here: the machine and each of its threads have separate variables"
     return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(context, value, name))
 
 
 def _answers(value: TypedValue) -> Iterable[str]:
-    """The words for answers of a child, where they are known."""
+    """The names of the statuses of a child, where they are available."""
     handler = value.place.handler
     is_known = (
         value.use is ValueUse.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
@@ -66,15 +66,15 @@ def _answers(value: TypedValue) -> Iterable[str]:
 
 
 def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[Fix]:
-    """Declare the variable, if its type can be told from where it is used."""
+    """Declare the variable, if its type can be inferred from its uses."""
     type_ = inferred_type(context, value, name)
     if type_ is not None:
         yield declaration(context, value.place.chart, name, str(type_), zero_text(type_))
 
 
 def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scalar | None:
-    """The base type that a name has if what it is used for makes sense: of what is assigned to it, of what it is
-    assigned to, or of what stands beside it."""
+    """The base type of an undeclared name, inferred from the values that are assigned to it, the targets that it is
+    assigned to, or the other operands beside it."""
     if not isinstance(value.value, Expression):
         return None
     tree = value.value.tree
@@ -114,21 +114,21 @@ def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], want
 
 
 def _closer(beside: Type, whole: Type | None) -> Type:
-    """What is known better: the type of the other operand, or that of the result where the other is a literal."""
+    """The more reliable type: that of the other operand, or that of the result if the other operand is a literal."""
     if isinstance(beside, Scalar) and not beside.name and isinstance(whole, Scalar) and whole.kind == beside.kind:
         return whole
     return beside
 
 
 def _named(type_: Type | None) -> Scalar | None:
-    """A base type under a name that can be declared."""
+    """The base type under a name that can be declared."""
     if not isinstance(type_, Scalar):
         return None
     return type_ if type_.name else Scalar(type_.kind, DEFAULT_TYPES[type_.kind])
 
 
 def declaration(context: MachineContext, chart: Chart, name: str, type_: str, value: str) -> Fix:
-    """A fix that adds a `<data>` to the datamodel of a chart, which is made if there is none."""
+    """A fix that adds a `<data>` to the datamodel of a chart, which is created if there is none."""
     data = f'<data id="{name}" type="{type_}" expr="{value}" />'
     model = chart.element.find("datamodel")
     if model is None:

@@ -30,8 +30,8 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
 
 
 def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
-    """What is wrong with a type. `complete` tells that there are no other structs, whose declarations cannot be read.
-    A machine that is checked `alone` cannot know the structs of its system."""
+    """The finding for an invalid type; `None` if it is valid. `complete` means that there are no other structs, in
+    declarations that cannot be read. A machine that is checked `alone` cannot know the structs of its system."""
     if type_.name is None:
         yield _no_type(type_)
         return
@@ -42,12 +42,12 @@ def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bo
         brackets = type_.text[len(base) :]
         fixes = replacements(type_.span, [name + brackets for name in close])
         if alone and not close:
-            message = f"there is no type `{base}`, unless it is a struct of the system: no system lists this file"
+            message = f"there is no type `{base}`, unless it is a struct of a system: no system lists this file"
             yield RULE.at(type_.span, message, severity=Severity.INFORMATION)
         else:
             yield RULE.at(type_.span, f"there is no type `{base}`{did_you_mean(close)}", *fixes)
     elif 0 in type_.name.dimensions:
-        message = "an array holds at least one element: write a bound above 0, or `[]` for no bound"
+        message = "an array must have at least one element; write a bound greater than 0, or `[]` for no bound"
         yield RULE.at(type_.span, message, *replacements(type_.span, [re.sub(r"\[0+\]", "[]", type_.text)]))
 
 
@@ -57,13 +57,14 @@ def _no_type(type_: TypeRef) -> Finding:
         fixes = replacements(type_.span, (close,))
         return RULE.at(type_.span, f"`{type_.text}` is not a type{did_you_mean((close,))}", *fixes)
     if "/" in type_.text:
-        message = f"`{type_.text}` is a ROS type; variables have base types or structs of `<data_declarations>`"
+        message = (
+            f"`{type_.text}` is a ROS type; the types of variables are base types and structs of `<data_declarations>`"
+        )
         return RULE.at(type_.span, message)
     return RULE.at(
-        type_.span, f"`{type_.text}` is not a type; types look like `int32`, `Point`, `float64[3]`, `int8[][]`"
+        type_.span,
+        f"`{type_.text}` is not a type; valid types are for example `int32`, `Point`, `float64[3]`, `int8[][]`",
     )
 
 
-RULE = Rule(
-    "unknown-type", Severity.ERROR, "A type is named that does not exist.", machine=check, structs=check_structs
-)
+RULE = Rule("unknown-type", Severity.ERROR, "A type does not exist.", machine=check, structs=check_structs)

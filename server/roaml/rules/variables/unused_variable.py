@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         values = [value.value for value in context.typed.values if value.place.chart is chart]
         if any(isinstance(value, Expression) and value.broken for value in values):
-            continue  # what seems superfluous may be used in the part that could not be read
+            continue  # what seems unused may be used in the part that could not be read
         used = _used(values, chart)
         for data in chart.data:
             if data.id is not None and data.id.value not in used:
@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
-    """Take away a variable, with the comment that gives its type."""
+    """Remove a variable, with the comment that states its type."""
     title, text = "Remove the variable", context.source.text
     if not data.comment_type or data.type is None:
         return remove(context.document, data.element, title, preferred=True)

@@ -12,7 +12,7 @@ from roaml.rules.rule import FileContext, Rule
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """A declaration without declarations of its own, `<!DOCTYPE ascxml>`, is superfluous, but no more."""
+    """Report document type declarations; one without content, `<!DOCTYPE ascxml>`, is only superfluous."""
     for finding in parser_findings("document-type", context):
         declares = "[" in context.source.text[finding.span.start : finding.span.end]
         yield finding if declares else replace(finding, severity=Severity.INFORMATION)

@@ -22,12 +22,14 @@ def check(context: FileContext) -> Iterator[Finding]:
         return
     if context.grammar in (HL_SCXML, PLAIN_SCXML):
         if declared.value != SCXML_NAMESPACE:
-            fix = Fix("Write the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),), safe=True)
+            fix = Fix("Change to the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),), safe=True)
             yield RULE.at(declared.span, f"the namespace of SCXML is `{SCXML_NAMESPACE}`", fix)
     else:
         fix = Fix("Remove the attribute", (removal(context.source.text, declared.span),), safe=True)
         fixes = [] if root.prefix else [fix]
-        yield RULE.at(declared.span, "this kind of file has no namespace; other tools may not read it", *fixes)
+        yield RULE.at(
+            declared.span, "this kind of file has no namespace; other tools may not be able to read it", *fixes
+        )
 
 
-RULE = Rule("foreign-namespace", Severity.HINT, "The root is in a namespace that is not its own.", file=check)
+RULE = Rule("foreign-namespace", Severity.HINT, "The root has an unexpected namespace.", file=check)

@@ -12,7 +12,7 @@ from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
 
 DASHES = re.compile("-(?=-)")
-"""What a comment may not hold."""
+"""Character sequences that a comment may not contain."""
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -20,9 +20,13 @@ def check(context: FileContext) -> Iterator[Finding]:
         if isinstance(violation, StrayText):
             text = context.source.text[violation.span.start : violation.span.end]
             comment = Fix(
-                "Make it a comment", (TextEdit(violation.span, f"<!-- {DASHES.sub('- ', text)} -->"),), safe=True
+                "Convert to a comment", (TextEdit(violation.span, f"<!-- {DASHES.sub('- ', text)} -->"),), safe=True
             )
-            yield RULE.at(violation.span, f"text in `<{violation.parent.name}>` has no effect", comment)
+            yield RULE.at(
+                violation.span,
+                f"text in `<{violation.parent.name}>` has no effect; remove it or make it a comment",
+                comment,
+            )
 
 
-RULE = Rule("stray-text", Severity.WARNING, "Text stands where only elements have a meaning.", file=check)
+RULE = Rule("stray-text", Severity.WARNING, "Text is in a place where only elements have a meaning.", file=check)

@@ -11,7 +11,7 @@ from roaml.rules.rule import FileContext, Rule
 
 def check(context: FileContext) -> Iterator[Finding]:
     if context.source.undecodable is not None:
-        yield RULE.at(context.source.undecodable, "the file is not UTF-8 from here on; save it as UTF-8")
+        yield RULE.at(context.source.undecodable, "not valid UTF-8 from here on; save the file as UTF-8")
 
 
-RULE = Rule("undecodable-text", Severity.ERROR, "The bytes of the file are no text in its encoding.", file=check)
+RULE = Rule("undecodable-text", Severity.ERROR, "The bytes of the file are not valid in its encoding.", file=check)
