@@ -21,6 +21,7 @@ LANGUAGES = {
     "roaml.json_syntax.values": "JSON",
     "roaml.libraries.node": "BehaviorTree.CPP",
     "roaml.model.machine": "HL-SCXML",
+    "roaml.model.property_file": "property files in XML",
     "roaml.model.syntax": "HL-SCXML",
     "roaml.observers.notation": "observers",
     "roaml.observers.program": "observers",

@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs hostile input and says what went wrong. Exit code 1 if anything did."""
+"""Runs hostile input and says what went wrong. Exit code 1 if anything did.
+
+A case may take 2 s of its process's CPU time for each command that it runs, and 500 MB. CPU time and not elapsed time,
+because other work on the machine makes a case wait. Other work makes it slower, too (shared caches, hyperthreads), so a
+case that runs out of time is run again and is a failure only if it runs out of time each time. A process that does not
+come back within 300 s of elapsed time hangs and is ended.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +16,7 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from as2fm_lsp.__main__ import spare_the_collector
 from fuzz.pairs import Outcome, choose, outcome
 from fuzz.runner import Ran, run, run_all
 from fuzz.strategies import plan, strategies
@@ -17,7 +24,9 @@ from fuzz.strategy import Case, Failure, Strategy
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="run.py", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="run.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--cases", type=int, default=1000, help="how many, of all strategies together (1000)")
     parser.add_argument("--seed", type=int, default=0, help="the seed of the first of each; the others follow (0)")
     parser.add_argument(
@@ -34,6 +43,7 @@ def main() -> int:
     parser.add_argument("--pairs", type=int, metavar="N", help="this many pairs of mistakes instead, from --seed on")
     parser.add_argument("--slowest", type=int, default=3, metavar="N", help="name the slowest cases (3)")
     arguments = parser.parse_args()
+    spare_the_collector()  # as the command does
     if arguments.case is not None:
         name, _, seed = arguments.case.rpartition(":")
         if name not in strategies() or not seed.isdecimal():
@@ -56,8 +66,8 @@ def many(chosen: Sequence[Strategy], cases: int, first: int, jobs: int, slowest:
     for ran in run_all(_in_turn(shares, first), jobs):
         done.append(ran)
         for failure in ran.failures:
-            if failure.kind not in kinds:
-                print(f"{ran.name}, {ran.title}: {failure.kind}\n{failure.details}", flush=True)
+            details = f"\n{failure.details}" if failure.kind not in kinds else ""
+            print(f"{ran.name}, {ran.title}: {failure.kind}{details}", flush=True)
             kinds.setdefault(failure.kind, []).append((ran, failure))
         if len(done) % 1000 == 0:
             rate = len(done) / (time.perf_counter() - started)

@@ -189,6 +189,38 @@ def findings_in_a_line(n: int) -> Files:
     return _system(_machine(head, _on_tick('<assign location="levle" expr="0" />' * n)))
 
 
+def unknown_variables(n: int) -> Files:
+    """n names that are not declared, each like one that is declared and not used."""
+    data = "".join(f'<data id="level_{i}" type="int32" expr="0" />' for i in range(n))
+    body = "".join(f'<assign location="levle_{i}" expr="0" />' for i in range(n))
+    return _system(_machine(f"<datamodel>{data}</datamodel>{_TIMER}", _on_tick(body)))
+
+
+def unknown_states(n: int) -> Files:
+    """n targets that there are not, each like a state."""
+    state = '<state id="place_{0}"><ros_rate_callback name="t" target="plaec_{0}" /></state>'
+    return _system(_machine(_TIMER, more="".join(map(state.format, range(n)))))
+
+
+def unknown_events(n: int) -> Files:
+    """n events that nobody receives, and n similar ones that nobody sends."""
+    transitions = "".join(f'<transition event="evnet_{i}" target="s" />' for i in range(n))
+    return _system(_machine(_TIMER, transitions + _on_tick("".join(f'<send event="event_{i}" />' for i in range(n)))))
+
+
+def unknown_topics(n: int) -> Files:
+    """n topics that nobody subscribes to, and n similar ones that nobody publishes, in one machine."""
+    topic = ' topic="/{name}_{i}" type="std_msgs/Int32" />'
+    head = _TIMER
+    for i in range(n):
+        head += f'<ros_topic_publisher name="p{i}"' + topic.format(name="topic", i=i)
+        head += f'<ros_topic_subscriber name="s{i}"' + topic.format(name="tpoic", i=i)
+    field = '<field name="data" expr="1" />'
+    sends = "".join(f'<ros_topic_publish name="p{i}">{field}</ros_topic_publish>' for i in range(n))
+    callbacks = "".join(f'<ros_topic_callback name="s{i}" target="s" />' for i in range(n))
+    return _system(_machine(head, callbacks + _on_tick(sends)))
+
+
 def comments(n: int) -> Files:
     """n comments that hide findings which there are not."""
     return _system(_machine(body="<!-- as2fm: ignore[unused-variable] -->" * n))
@@ -287,6 +319,21 @@ def chained_sequences(n: int) -> Files:
     return _forest("".join(trees) + f'<BehaviorTree ID="T{n}"><AlwaysSuccess /></BehaviorTree>')
 
 
+def unknown_remaps(n: int) -> Files:
+    """n uses of a subtree, each with an attribute like one of n variables of the subtree."""
+    uses = "".join(f'<SubTree ID="T1" port_{i}="1" />' for i in range(n))
+    scripts = "".join(f'<Script code="prot_{i} := 1" />' for i in range(n))
+    inner = f'<BehaviorTree ID="T1"><Sequence>{scripts}</Sequence></BehaviorTree>'
+    return _forest(f'<BehaviorTree ID="T0"><Sequence>{uses}</Sequence></BehaviorTree>{inner}')
+
+
+def unknown_subtrees(n: int) -> Files:
+    """n subtrees that there are not, each like one of n trees."""
+    uses = "".join(f'<SubTree ID="Tere_{i}" />' for i in range(n))
+    trees = "".join(f'<BehaviorTree ID="Tree_{i}"><AlwaysSuccess /></BehaviorTree>' for i in range(n))
+    return _forest(f'<BehaviorTree ID="T0"><Sequence>{uses}</Sequence></BehaviorTree>{trees}')
+
+
 def blackboard(n: int) -> Files:
     """n variables of the blackboard."""
     sets = "".join(f'<SetBlackboard output_key="v{i}" value="1" />' for i in range(n))
@@ -337,6 +384,10 @@ DIMENSIONS = (
     _dimension(unknown_attributes, 20_000),
     _dimension(unknown_elements, 30_000),
     _dimension(findings_in_a_line, 5000),
+    _dimension(unknown_variables, 3000),
+    _dimension(unknown_states, 3000),
+    _dimension(unknown_events, 3000),
+    _dimension(unknown_topics, 1000),
     _dimension(comments, 5000),
     _dimension(threads, ENORMOUS),
     _dimension(same_machine, 5000),
@@ -347,5 +398,7 @@ DIMENSIONS = (
     _dimension(subtrees, ENORMOUS),
     _dimension(chained_subtrees, 4000),
     _dimension(chained_sequences, 3000),
+    _dimension(unknown_remaps, 3000),
+    _dimension(unknown_subtrees, 3000),
     _dimension(blackboard, 5000),
 )

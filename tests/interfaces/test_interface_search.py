@@ -109,6 +109,15 @@ def test_number_of_folders(tmp_path: Path, write: Write, monkeypatch: pytest.Mon
     search = SearchPath([str(tmp_path)])
     assert search.locate("a_msgs", "msg", "A")
     assert search.locate("b_msgs", "msg", "A") is None
+    assert search.looked_in()[0] == f"the workspace {tmp_path} (its first 2 folders)"
+
+
+def test_folders_of_the_running_system_are_not_looked_into(
+    tmp_path: Path, write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write("proc/a_msgs/msg/A.msg", "b_msgs/msg/A.msg")
+    monkeypatch.setattr(search_module, "SYSTEM_FOLDERS", frozenset({str(tmp_path / "proc")}))
+    assert {*SearchPath([str(tmp_path)]).packages()} == {*SearchPath().packages(), "b_msgs"}
 
 
 def test_links(tmp_path: Path, write: Write) -> None:

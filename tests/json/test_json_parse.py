@@ -403,6 +403,11 @@ def test_nulls_in_lists_and_elsewhere() -> None:
     assert (plain(value), findings) == ([None, None, None, "a", None], ())
     assert isinstance(value, JsonArray)
     assert [item.span for item in value.items] == [(1, 5), (6, 10), (11, 15), (16, 19), (20, 24)]
+    assert (value.length, list(value.items_but_nulls)) == (5, [(3, JsonString(16, 19, "a"))])
+    value, findings = parse("[1 null,null,null , null,null]")
+    assert isinstance(value, JsonArray)
+    assert (plain(value), value.length) == ([1, None, None, None, None, None], 6)
+    assert [finding.message for finding in findings] == ["a comma is missing before this"]
     value, findings = parse('{"a":null,null}')
     assert plain(value) == {"a": None, "": None}
     assert [finding.span for finding in findings] == [(10, 14)]
@@ -471,9 +476,11 @@ DOCUMENTS = st.recursive(
 )
 
 
-@given(DOCUMENTS, st.sampled_from([None, 1, 2]), st.booleans())
-def test_agrees_with_the_standard_library(document: Any, indent: int | None, ascii_only: bool) -> None:
-    text = json.dumps(document, indent=indent, ensure_ascii=ascii_only)
+@given(DOCUMENTS, st.sampled_from([None, 1, 2]), st.booleans(), st.sampled_from([None, (",", ":")]))
+def test_agrees_with_the_standard_library(
+    document: Any, indent: int | None, ascii_only: bool, separators: tuple[str, str] | None
+) -> None:
+    text = json.dumps(document, indent=indent, ensure_ascii=ascii_only, separators=separators)
     value, findings = parse(text)
     assert findings == ()
     assert plain(value) == document

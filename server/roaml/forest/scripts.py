@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from roaml.forest.cpp_types import SCRIPT
 from roaml.forest.forest import CPP, Forest
 from roaml.model.tree import TreeNode
-from roaml.script.parse import Problem, parse
+from roaml.script.parse import ScriptProblem, parse
 from roaml.script.tree import Assignment, Name, Script, walk
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
@@ -59,7 +59,7 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
 
 
 @functools.lru_cache(maxsize=2048)
-def parsed(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
+def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text, remembered: many rules ask."""
     return parse(source)
 

@@ -26,9 +26,11 @@ from roaml.interfaces.types import KINDS, Kind
 MAX_DEPTH = 6
 """The maximum depth of packages below a workspace or `--ros-path` folder."""
 
-MAX_FOLDERS = 20_000
-"""The maximum number of folders that are searched in one place, the nearest first: the workspace may be a home
-directory."""
+MAX_FOLDERS = 10_000
+"""How many folders of one such place are looked into, the nearest first: it may be someone's home, or `/`."""
+
+SYSTEM_FOLDERS = frozenset({"/dev", "/proc", "/sys"})
+"""Folders of the running system, which hold no files of anybody; they are not entered."""
 
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
 """Folders that are not entered, like all whose name begins with a dot."""
@@ -99,11 +101,17 @@ class SearchPath:
     def looked_in(self) -> tuple[str, ...]:
         """Phrases for the places, for the message that something was found in none of them."""
         places = (
-            *(f"the workspace {_described(path)}" for path in self._workspace),
-            *(f"{_described(path)} from --ros-path" for path in self._ros_paths),
-            *(f"{_described(path)} from AMENT_PREFIX_PATH" for path in self._ament_prefixes),
+            *(f"the workspace {self._described(path)}" for path in self._workspace),
+            *(f"{self._described(path)} from --ros-path" for path in self._ros_paths),
+            *(f"{self._described(path)} from AMENT_PREFIX_PATH" for path in self._ament_prefixes),
         )
         return (*places, "the standard packages that come with this tool")
+
+    def _described(self, path: str) -> str:
+        if not os.path.isdir(path):
+            return f"{path} (no such folder)"
+        is_cut = any(isinstance(place, _Tree) and place.folder == path and place.is_cut for place in self._places())
+        return f"{path} (its first {MAX_FOLDERS:,} folders)" if is_cut else path
 
     def refresh(self) -> None:
         """Discard all listings: files or folders were created or deleted."""
@@ -162,8 +170,13 @@ class _Tree:
     """A folder that is a package or contains packages at any depth; all of it is listed at the first request."""
 
     def __init__(self, folder: str) -> None:
-        self._folder = folder
+        self.folder = folder
         self._known: _Listing | None = None
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether there are more folders than are looked into."""
+        return self._listed().is_cut
 
     def files(self, package: str) -> _Files:
         return self._listed().files.get(package, _NO_FILES)
@@ -178,15 +191,16 @@ class _Tree:
 
     def _listed(self) -> _Listing:
         if self._known is None:
-            self._known = _scan(self._folder)
+            self._known = _scan(self.folder)
         return self._known
 
 
 class _Listing(NamedTuple):
-    """The packages of a place, and the files that are hidden by others."""
+    """The packages of a place, the files that others hide, and whether there are more folders than were looked into."""
 
     files: Mapping[str, _Files]
     hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]
+    is_cut: bool
 
 
 def _scan(root: str) -> _Listing:
@@ -199,8 +213,10 @@ def _scan(root: str) -> _Listing:
         below: list[str] = []
         for folder in level:
             identity = _identity(folder)
-            if identity is None or identity in entered or len(entered) >= MAX_FOLDERS:
+            if identity is None or identity in entered or folder in SYSTEM_FOLDERS:
                 continue
+            if len(entered) >= MAX_FOLDERS:
+                return _Listing(packages, hidden, is_cut=True)
             entered.add(identity)
             subfolders = _subfolders(folder)
             files = _definitions(folder, subfolders)
@@ -214,7 +230,7 @@ def _scan(root: str) -> _Listing:
                     package[kind] = {**files[kind], **package[kind]}
             below += (os.path.join(folder, name) for name in subfolders if _is_entered(name))
         level = below
-    return _Listing(packages, hidden)
+    return _Listing(packages, hidden, is_cut=False)
 
 
 def _is_entered(folder_name: str) -> bool:
@@ -283,7 +299,3 @@ def _standard() -> str:
 def _absolute(paths: Iterable[str]) -> tuple[str, ...]:
     """Absolute paths, without empty entries (`AMENT_PREFIX_PATH` may have some) and duplicates."""
     return tuple(dict.fromkeys(os.path.abspath(path) for path in paths if path))
-
-
-def _described(path: str) -> str:
-    return path if os.path.isdir(path) else f"{path} (no such folder)"

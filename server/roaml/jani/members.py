@@ -131,8 +131,13 @@ class Members:
 
     def items(self, key: str) -> tuple[JsonValue, ...]:
         """The items of the list `key`; empty if there is no such list."""
+        array = self.array(key)
+        return () if array is None else array.items
+
+    def array(self, key: str) -> JsonArray | None:
+        """The list `key`."""
         value = self.values.get(key)
         if isinstance(value, JsonArray):
-            return value.items
+            return value
         self.source.wrong_kind(value, f"`{key}` must be a list `[ ]`")
-        return ()
+        return None

@@ -35,7 +35,7 @@ from roaml.jani.notes import SYNTAX, Notes
 from roaml.jani.properties import Property
 from roaml.jani.read_declarations import DeclarationReader
 from roaml.jani.typecheck import check_model
-from roaml.json_syntax import JsonNull, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonObject, JsonString, JsonValue
 
 
 def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Finding, ...]]:
@@ -247,17 +247,17 @@ class _ModelReader(DeclarationReader):
 
     def syncs(self, system: Members, size: int) -> Iterator[Sync]:
         for members in self.each(system, "syncs", _SYNC):
-            vector = members.items("synchronise")
             participants: list[tuple[int, str]] = []
-            for index, item in enumerate(vector):
-                if isinstance(item, JsonString):
-                    self.actions.use(item)
-                    participants.append((index, item.value))
-                elif not isinstance(item, JsonNull):
-                    self.wrong_kind(item, "an action must be a string or null")
-            if "synchronise" in members.values and len(vector) != size:
-                message = f"the vector has {len(vector)} entries, but the system has {size} elements"
-                self.notes.syntax(members.values["synchronise"].span, message)
+            if vector := members.array("synchronise"):
+                for index, item in vector.items_but_nulls:
+                    if isinstance(item, JsonString):
+                        self.actions.use(item)
+                        participants.append((index, item.value))
+                    else:
+                        self.wrong_kind(item, "an action must be a string or null")
+                if vector.length != size:
+                    message = f"the vector has {vector.length} entries, but the system has {size} elements"
+                    self.notes.syntax(vector.span, message)
             result = self.use(members, "result", self.actions)
             yield Sync(tuple(participants), result, comment=members.comment(), origin=members.origin)
 

@@ -26,6 +26,7 @@ from roaml.json_syntax.values import (
     JsonString,
     JsonValue,
     Member,
+    Nulls,
 )
 from roaml.text import Span, TextEdit
 
@@ -196,11 +197,15 @@ class _Parser:
             self.root = value
 
     def nulls(self, start: int, end: int, comma: int) -> int:
-        """`null` or, in a list, `null,null,...`: most values of a JANI file are those of its synchronisation table."""
-        self.value(JsonNull(start, start + 4), comma)
-        if self.is_object or not self.stack:
-            return start + 4
-        self.parts.extend(map(JsonNull, range(start + 5, end, 5), range(start + 9, end + 1, 5)))
+        """`null` or, in a list, `null,null,...`; the offset behind what was read."""
+        first = JsonNull(start, start + 4)
+        if self.is_object or not self.stack or end == first.end:
+            self.value(first, comma)
+            return first.end
+        if (comma >= 0) is not self.wants_comma:
+            self.odd_comma(start, comma)
+        self.parts.append(Nulls(start, end))
+        self.wants_comma = True
         return end
 
     def name(self, text: str, start: int, end: int, comma: int, quotes: tuple[int, int] = (1, 1)) -> None:

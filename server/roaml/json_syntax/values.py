@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -41,8 +42,56 @@ class JsonObject(_Value):
 
 
 @dataclass(frozen=True, slots=True)
+class Nulls(_Value):
+    """The text `null,null,...`, without white space, as one part of a list."""
+
+    @property
+    def count(self) -> int:
+        return (self.end - self.start + 1) // _NULL_AND_COMMA
+
+    @property
+    def items(self) -> tuple[JsonNull, ...]:
+        starts = range(self.start, self.end, _NULL_AND_COMMA)
+        return tuple(JsonNull(start, start + len("null")) for start in starts)
+
+
+_NULL_AND_COMMA = len("null,")
+
+
+@dataclass(frozen=True, slots=True)
 class JsonArray(_Value):
-    items: tuple[JsonValue, ...]
+    """`parts` are the items, but a run of nulls is one part: most values of a JANI file are the nulls of its
+    synchronisation table, automata x vectors."""
+
+    parts: tuple[JsonValue | Nulls, ...]
+
+    @property
+    def items(self) -> tuple[JsonValue, ...]:
+        """All items, each one a value. They are made anew for each call if there are runs of nulls."""
+        items: list[JsonValue] = []
+        for part in self.parts:
+            if isinstance(part, Nulls):
+                items += part.items
+            else:
+                items.append(part)
+        return tuple(items)
+
+    @property
+    def length(self) -> int:
+        """The number of items."""
+        return sum(part.count if isinstance(part, Nulls) else 1 for part in self.parts)
+
+    @property
+    def items_but_nulls(self) -> Iterator[tuple[int, JsonValue]]:
+        """The items that are not `null`, each with its index."""
+        index = 0
+        for part in self.parts:
+            if isinstance(part, Nulls):
+                index += part.count
+            else:
+                if not isinstance(part, JsonNull):
+                    yield index, part
+                index += 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,7 +72,7 @@ def action_handler(action: Channel, program: TranslatableSystem) -> Automaton:
         State("goal_requested", (), (), decided, origin),
     )
     int32 = BASE_TYPES["int32"]
-    own = tuple(Data(each, int32, zero(int32), origin) for each in (GOAL_ID, CODE))
+    own = tuple(Data(variable, int32, zero(int32), origin) for variable in (GOAL_ID, CODE))
     data = (*variables({**goal, **feedback, **result}, origin), *own)
     return Automaton(f"{ACTION_HANDLER_PREFIX}{sanitise(action.name)}", Role.HANDLER, "waiting", data, states, origin)
 

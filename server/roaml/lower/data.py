@@ -52,5 +52,5 @@ def as_type(value: Expr, element: Type) -> Expr:
         case Unary():
             return replace(value, operand=as_type(value.operand, element))
         case ArrayLiteral():
-            return replace(value, elements=tuple(as_type(each, element) for each in value.elements))
+            return replace(value, elements=tuple(as_type(item, element) for item in value.elements))
     return value

@@ -94,12 +94,12 @@ def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
         case Unary():
             return Unary(expr.span, expr.operator, lower_expr(expr.operand, scope))
         case Call():
-            return Call(expr.span, expr.function, tuple(lower_expr(each, scope) for each in expr.arguments))
+            return Call(expr.span, expr.function, tuple(lower_expr(argument, scope) for argument in expr.arguments))
         case Conditional():
-            test, then, otherwise = (lower_expr(each, scope) for each in (expr.test, expr.then, expr.otherwise))
+            test, then, otherwise = (lower_expr(part, scope) for part in (expr.test, expr.then, expr.otherwise))
             return Conditional(expr.span, test, then, otherwise)
         case ArrayLiteral():
-            return ArrayLiteral(expr.span, tuple(lower_expr(each, scope) for each in expr.elements))
+            return ArrayLiteral(expr.span, tuple(lower_expr(item, scope) for item in expr.elements))
         case ObjectLiteral() | ErrorExpr():
             raise AssertionError("a rule reports what cannot be lowered")
         case _:
@@ -186,8 +186,8 @@ def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
 def _member(type_: Type, member: str) -> Type | None:
     """A member of a struct, or of the structs in an array."""
     inner, bounds = unwrap(type_)
-    found = inner.member(member) if isinstance(inner, Struct) else None
-    return None if found is None else wrap(found, bounds)
+    own = inner.member(member) if isinstance(inner, Struct) else None
+    return None if own is None else wrap(own, bounds)
 
 
 def _event_parameter(variable: str, names: list[str]) -> Path:

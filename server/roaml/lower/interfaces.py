@@ -116,8 +116,8 @@ def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> di
         interface = environment.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
         if interface is not None:
             required = {parameter(path.split(".")) for path in interface.required(section_of(part))}
-            found = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
-            return {name: type_ for name, type_ in found.items() if name in required or name in sent}
+            parameters = {parameter(path): type_ for path, type_ in leaves(interface.part(section_of(part)))}
+            return {name: type_ for name, type_ in parameters.items() if name in required or name in sent}
     return {}
 
 

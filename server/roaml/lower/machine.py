@@ -175,12 +175,12 @@ class _ChartLowering:
 
     def targets(self, handler: Handler) -> tuple[Target, ...]:
         scope = self.context.scope(handler)
-        found = []
+        targets = []
         for target, probability in zip(handler.targets, probabilities(handler), strict=True):
             assert target.state is not None
             origin = self.context.origin((target.element or handler.element).span)
-            found.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
-        return tuple(found)
+            targets.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
+        return tuple(targets)
 
     def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         """The events that the handler waits for, each with its condition; usually one."""

@@ -68,8 +68,8 @@ def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
     for share in shares:
         key = (share.words, share.path, share.symbol)
         counts[key] = counts.get(key, 0) + share.count
-    found = (Share(count, *key) for key, count in counts.items())
-    return tuple(sorted(found, key=lambda share: -share.count))
+    shares = (Share(count, *key) for key, count in counts.items())
+    return tuple(sorted(shares, key=lambda share: -share.count))
 
 
 # ----------------------------------------------------------------------- cells
@@ -129,13 +129,13 @@ def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
 
 
 def _variables(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
-    found: dict[str, Type] = {}
+    types: dict[str, Type] = {}
     for data in chart.data:
         name = data.type.name if data.type else None
         if data.id is not None:
             type_ = resolve_type(name, program.environment.struct) if name else None
-            found.setdefault(data.id.value, type_ or UNKNOWN)
-    return found
+            types.setdefault(data.id.value, type_ or UNKNOWN)
+    return types
 
 
 # ----------------------------------------------------------------------- parts

@@ -183,14 +183,14 @@ class StatementLowering:
         """A new variable of the automaton, for a random number."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
-        while (found := f"random_{count}") in taken:
+        while (unused := f"random_{count}") in taken:
             count += 1
         named = _NAMED.get(type_.kind, type_) if isinstance(type_, Scalar) and not type_.name else type_
-        self.drawn.append(Data(found, named, zero(named), origin))
+        self.drawn.append(Data(unused, named, zero(named), origin))
         return self.drawn[-1]
 
     def communicate(self, statement: RosSend, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
-        fields = [p for each in statement.fields for p in self.params(each, FIELD_PREFIX, scope)]
+        fields = [p for sent in statement.fields for p in self.params(sent, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))

@@ -65,18 +65,18 @@ class Timer:
 
 def timers_of(program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]]) -> list[Timer]:
     """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
-    found: list[tuple[str, str, Fraction, bool, Location]] = []
+    declared: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
     for automaton, machine in members:
-        (found if automaton.instance is None else in_tree).extend(_declared(automaton, machine, program))
+        (declared if automaton.instance is None else in_tree).extend(_declared(automaton, machine, program))
     if program.system.instances:
         rate = Fraction(str(program.parameters.tick_rate))
-        found.append((*tick_timer(program), rate, True, program.node(ROOT_NUMBER)))
-    found += in_tree
-    handles = [handle for _, handle, _, used, _ in found if used]
+        declared.append((*tick_timer(program), rate, True, program.node(ROOT_NUMBER)))
+    declared += in_tree
+    handles = [handle for _, handle, _, used, _ in declared if used]
     return [
         Timer(user, handle, _event(user, handle, handles.count(handle) == 1) if used else None, period(rate), origin)
-        for user, handle, rate, used, origin in found
+        for user, handle, rate, used, origin in declared
     ]
 
 
@@ -112,9 +112,9 @@ def _awaited(chart: Chart) -> set[str]:
 def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
     text = declaration.rate.value if isinstance(declaration.rate, Name) else ""
     port = declaration.rate.key.value if isinstance(declaration.rate, PortRead) and declaration.rate.key else ""
-    found = rate(automaton, text, port)
-    assert found is not None, "a rule reports what is no rate"
-    return found
+    hertz = rate(automaton, text, port)
+    assert hertz is not None, "a rule reports what is no rate"
+    return hertz
 
 
 # ------------------------------------------------------------------- the clock

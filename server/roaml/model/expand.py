@@ -9,13 +9,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
-from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes, port_key
+from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
 from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
@@ -160,8 +161,7 @@ def _outlines(root: TreeNode) -> NodeOutline:
 
 def nodes_of(file: TreeFile, tree_id: str) -> tuple[TreeNode, ...]:
     """The nodes of the first tree of that name, by position."""
-    tree = tree_called(file, tree_id)
-    return tuple(nodes(tree)) if tree else ()
+    return file.nodes_by_tree.get(tree_id, ())
 
 
 def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
@@ -196,11 +196,13 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
     return roots[0] if len(roots) == 1 else tuple(tree.id for tree in roots or trees)
 
 
-def _walk(node: NodeOutline | None) -> Iterator[NodeOutline]:
-    if node is not None:
+def _walk(root: NodeOutline | None) -> Iterator[NodeOutline]:
+    """All nodes, parents before children."""
+    pending = [] if root is None else [root]
+    while pending:
+        node = pending.pop()
         yield node
-        for child in node.children:
-            yield from _walk(child)
+        pending += reversed(node.children)
 
 
 def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
@@ -325,6 +327,7 @@ class Frame:
         outer: the instance around it.
         names: the variables that the nodes of the tree refer to.
         inside: the trees around the instance and its own.
+        looked_up: the names that were resolved before.
     """
 
     tree: TreeOutline
@@ -337,19 +340,28 @@ class Frame:
     outer: Frame | None
     names: frozenset[str]
     inside: frozenset[str]
+    looked_up: dict[str, PortValue | None] = field(default_factory=dict, repr=False)
 
     def resolve(self, name: str) -> PortValue:
         """The outermost variable to which automatic remapping leads, as long as a node there uses the name."""
         if name.startswith("@"):
             return Reference(name[1:])
-        frame = known = self
-        while name not in frame.remapped:
-            if frame is self or name in frame.names:
-                known = frame
-            if not frame.autoremap or frame.outer is None or name.startswith("_"):
-                return Reference(f"{known.prefix}{name}")
-            frame = frame.outer
-        return frame.remapped[name]
+        return self._outer_value(name) or Reference(f"{self.prefix}{name}")
+
+    def _outer_value(self, name: str) -> PortValue | None:
+        """What the name is in the outermost instance that remaps or uses it; None if this one and those that it takes
+        its names from do neither."""
+        asked: list[Frame] = []
+        frame: Frame | None = self
+        while frame is not None and name not in frame.remapped and name not in frame.looked_up:
+            asked.append(frame)
+            frame = frame.outer if frame.autoremap and not name.startswith("_") else None
+        value = None if frame is None else frame.remapped.get(name) or frame.looked_up.get(name)
+        for frame in reversed(asked):
+            if value is None and name in frame.names:
+                value = Reference(f"{frame.prefix}{name}")
+            frame.looked_up[name] = value
+        return value
 
     def value(self, text: str) -> PortValue:
         variable = blackboard_variable(text)
@@ -453,7 +465,6 @@ class _Expander:
 
     def enter(self, node: NodeOutline, inner: TreeOutline, frame: Frame) -> Frame:
         """The frame of a subtree instance: its prefix is unique, its attributes rename variables."""
-        attributes = dict(node.attributes)
         word, suffix = re.sub(r"\W", "_", node.name or node.plugin, flags=re.ASCII), ""
         word = word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"
         first = prefix = f"{frame.prefix}{word}__"
@@ -463,10 +474,10 @@ class _Expander:
             prefix = f"{frame.prefix}{word}{suffix}__"
         self.prefixes.add(prefix)
         remapped: dict[str, PortValue] = {}
-        for name, text in {**self.defaults.get(node.plugin, {}), **attributes}.items():
+        for name, text in {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}.items():
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
-        autoremap = any(attributes.get(name) in ("true", "1") for name in _AUTOREMAP)
+        autoremap = _is_autoremapped(node)
         use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
         entered = Frame(inner, use, word, suffix, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
         self.frames.append(entered)
@@ -513,43 +524,79 @@ class StrayRemap:
     names: tuple[str, ...]
 
 
-def stray_remaps(files: tuple[TreeFileOutline, ...]) -> tuple[StrayRemap, ...]:
-    """All attributes of subtrees, in all trees of a system, that are not variables of their subtree."""
-    trees = {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
+def stray_remaps(files: tuple[TreeFileOutline, ...], path: str | None = None) -> Iterator[StrayRemap]:
+    """All attributes of subtrees, in all trees of a system or in those of the file `path`, that are not variables of
+    their subtree."""
+    trees = _by_id(files)
     declared = {pair for file in files for pair in file.declared}
-    words = {name: _words(tree) for name, tree in trees.items()}
-    return tuple(
-        stray
-        for file in files
-        for tree in file.trees
-        for node in _walk(tree.root)
-        if node.is_subtree and node.plugin in trees
-        for stray in _strays(tree, node, _known_inside(node.plugin, trees, words), declared)
-    )
+    words = _Words(trees)
+    for file in files:
+        for tree in file.trees if path in (None, file.path) else ():
+            for node in _walk(tree.root):
+                if node.is_subtree and node.plugin in trees:
+                    yield from _strays(tree, node, words, declared)
 
 
 def _strays(
-    tree: TreeOutline, node: NodeOutline, known: frozenset[str], declared: set[tuple[str, str]]
+    tree: TreeOutline, node: NodeOutline, words: _Words, declared: set[tuple[str, str]]
 ) -> Iterator[StrayRemap]:
     given = {key: text for key, text in node.attributes if key not in _NO_REMAPS and not key.startswith("_")}
     for key, text in given.items():
-        if key not in known and (node.plugin, key) not in declared and ":" not in key:
-            free = sorted(known - given.keys())
+        if not words.has(node.plugin, key) and (node.plugin, key) not in declared and ":" not in key:
+            free = tuple(name for name in words.of(node.plugin) if name not in given)
             source = NodeSource(tree.path, tree.id, node.position)
-            yield StrayRemap(source, key, text, close_names(key, free), tuple(free))
+            yield StrayRemap(source, key, text, close_names(key, free), free)
 
 
-def _known_inside(name: str, trees: Mapping[str, TreeOutline], words: Mapping[str, frozenset[str]]) -> frozenset[str]:
-    """The names that a tree uses, with those of subtrees that share all names with it."""
-    found, pending, seen = set(words[name]), [name], {name}
-    while pending:
-        for node in _walk(trees[pending.pop()].root):
-            takes_all = any(dict(node.attributes).get(auto) in ("true", "1") for auto in _AUTOREMAP)
-            if node.is_subtree and takes_all and node.plugin in trees and node.plugin not in seen:
-                seen.add(node.plugin)
-                pending.append(node.plugin)
-                found |= words[node.plugin]
-    return frozenset(found)
+class _Words:
+    """The names that each tree uses, with those of the subtrees that take all names from it.
+
+    The names are numbered, and a set of names is an integer with these bits: of subtrees in each other, each has the
+    names of all that are inside.
+    """
+
+    def __init__(self, trees: Mapping[str, TreeOutline]) -> None:
+        own = {id_: _words(tree) for id_, tree in trees.items()}
+        self._names = sorted({name for names in own.values() for name in names})
+        self._bits = {name: 1 << number for number, name in enumerate(self._names)}
+        self._sets = {id_: sum(self._bits[name] for name in names) for id_, names in own.items()}
+        self._decoded: dict[int, tuple[str, ...]] = {}
+        self._take_all({id_: _taking_all(tree, trees) for id_, tree in trees.items()})
+
+    def has(self, tree_id: str, name: str) -> bool:
+        return bool(self._sets[tree_id] & self._bits.get(name, 0))
+
+    def of(self, tree_id: str) -> tuple[str, ...]:
+        """All names of a tree, sorted."""
+        bits = self._sets[tree_id]
+        if bits not in self._decoded:
+            flags = reversed(f"{bits:b}")
+            self._decoded = {bits: tuple(itertools.compress(self._names, map(int, flags)))}
+        return self._decoded[bits]
+
+    def _take_all(self, inner: Mapping[str, frozenset[str]]) -> None:
+        """Gives each tree the names of its inner ones, until nothing changes: after one round, if there is no cycle."""
+        try:
+            order = tuple(TopologicalSorter(inner).static_order())
+        except CycleError:
+            order = tuple(inner)
+        before: dict[str, int] = {}
+        while before != self._sets:
+            before = dict(self._sets)
+            for id_ in order:
+                for subtree in inner[id_]:
+                    self._sets[id_] |= self._sets[subtree]
+
+
+def _taking_all(tree: TreeOutline, trees: Mapping[str, TreeOutline]) -> frozenset[str]:
+    """The subtrees in a tree that take all names from it."""
+    subtrees = (node for node in _walk(tree.root) if node.is_subtree and node.plugin in trees)
+    return frozenset(node.plugin for node in subtrees if _is_autoremapped(node))
+
+
+def _is_autoremapped(node: NodeOutline) -> bool:
+    attributes = dict(node.attributes)
+    return any(attributes.get(name) in ("true", "1") for name in _AUTOREMAP)
 
 
 def _words(tree: TreeOutline) -> frozenset[str]:
@@ -558,7 +605,7 @@ def _words(tree: TreeOutline) -> frozenset[str]:
     found: set[str] = set()
     for node in _walk(tree.root):
         for key, text in node.attributes:
-            if key not in _OWN_ATTRIBUTES:
+            if key not in _OWN_ATTRIBUTES and key not in _AUTOREMAP:
                 found |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
     return frozenset(found)
 

@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -281,7 +281,7 @@ class Thread:
     chart: Chart
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Machine:
     """One document.
 
@@ -303,6 +303,14 @@ class Machine:
     @property
     def charts(self) -> tuple[Chart, ...]:
         return (self.chart, *(thread.chart for thread in self.threads))
+
+    @cached_property
+    def declarations_by_handle(self) -> Mapping[str, Sequence[Declaration]]:
+        declarations: dict[str, list[Declaration]] = {}
+        for declaration in self.declarations:
+            if declaration.handle:
+                declarations.setdefault(declaration.handle.value, []).append(declaration)
+        return declarations
 
 
 # ----------------------------------------------------------------- walking

@@ -8,8 +8,9 @@ one file.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
@@ -131,7 +132,7 @@ class PluginOutline:
     halts_children: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class MachineOutline:
     """
     Attributes:
@@ -167,6 +168,14 @@ class MachineOutline:
 
     def port(self, key: str) -> PortOutline | None:
         return next((port for port in self.ports if port.key == key), None)
+
+    def use(self, kind: SymbolKind, handle: str) -> InterfaceUse | None:
+        """The first declaration of that kind and handle."""
+        return self._uses.get((kind, handle))
+
+    @cached_property
+    def _uses(self) -> Mapping[tuple[SymbolKind, str], InterfaceUse]:
+        return {(use.kind, use.handle): use for use in reversed(self.interfaces)}
 
 
 def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
@@ -258,6 +267,7 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
     for handler in _handlers(machine):
         if handler.trigger and (declaration := find_handle(machine, handler)):
             receives[declaration.element].add(handler.trigger)
+    charts = [_Waiting(machine, chart) for chart in machine.charts]
     return tuple(
         InterfaceUse(
             declaration.kind,
@@ -271,30 +281,54 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 (part, tuple(SentField(name, type_) for name, type_ in known.items()))
                 for part, known in fields[declaration.element].items()
             ),
-            declaration.kind is SymbolKind.SUBSCRIBER
-            and any(_awaits(machine, chart, declaration) for chart in machine.charts),
+            declaration.kind is SymbolKind.SUBSCRIBER and any(chart.awaits(declaration) for chart in charts),
         )
         for declaration in machine.declarations
         if declaration.kind is not SymbolKind.TIMER
     )
 
 
-def _awaits(machine: Machine, chart: Chart, subscriber: Declaration) -> bool:
-    """Whether a chart reaches, without a message of the topic, a state that only a message can leave."""
-    states = {state.id.value: state for state in chart.states if state.id}
-    pending = [chart.initial.value] if chart.initial else []
-    seen = set(pending)
-    while pending:
-        state = states.get(pending.pop())
-        if state is None or not state.handlers:
-            continue
-        others = [h for h in state.handlers if h.effective and find_handle(machine, h) is not subscriber]
-        if not others:
-            return True
-        new = {target.state.value for h in others for target in h.targets if target.state} - seen
-        seen |= new
-        pending += new
-    return False
+class _Waiting:
+    """What the states of a chart wait for.
+
+    Attributes:
+        states: state -> the declarations that its effective handlers refer to, and the states that they lead to.
+            States without any handler are left out.
+        sole: the declarations that are all that some state waits for.
+        is_stuck: whether some state has no effective handler.
+    """
+
+    def __init__(self, machine: Machine, chart: Chart) -> None:
+        self.initial = chart.initial.value if chart.initial else ""
+        self.states = {
+            state.id.value: [
+                (find_handle(machine, handler), {target.state.value for target in handler.targets if target.state})
+                for handler in state.handlers
+                if handler.effective
+            ]
+            for state in chart.states
+            if state.id and state.handlers
+        }
+        declarations = [{declaration for declaration, _ in waits} for waits in self.states.values()]
+        self.sole = {declaration for waits in declarations if len(waits) == 1 for declaration in waits}
+        self.is_stuck = not all(declarations)
+
+    def awaits(self, subscriber: Declaration) -> bool:
+        """Whether the chart reaches, without a message of the topic, a state that only a message can leave."""
+        if subscriber not in self.sole and not self.is_stuck:
+            return False
+        pending, seen = [self.initial], {self.initial}
+        while pending:
+            waits = self.states.get(pending.pop())
+            if waits is None:
+                continue
+            others = [targets for declaration, targets in waits if declaration is not subscriber]
+            if not others:
+                return True
+            new = set().union(*others) - seen
+            seen |= new
+            pending += new
+        return False
 
 
 def _timers(machine: Machine) -> tuple[TimerOutline, ...]:

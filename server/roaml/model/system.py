@@ -7,9 +7,10 @@
 
 from __future__ import annotations
 
+import bisect
 import functools
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
@@ -406,7 +407,14 @@ class System:
 
     def is_observed(self, event: str) -> bool:
         """Whether a property observes the event: its flag or a parameter."""
-        return any(name == f"{event}.valid" or name.startswith(f"{event}__") for name in self.observed)
+        names = self._sorted_observed
+        following = bisect.bisect_left(names, f"{event}__")
+        is_parameter = following < len(names) and names[following].startswith(f"{event}__")
+        return is_parameter or f"{event}.valid" in self.observed
+
+    @cached_property
+    def _sorted_observed(self) -> Sequence[str]:
+        return sorted(self.observed)
 
     @cached_property
     def event_data(self) -> Mapping[str, Struct]:

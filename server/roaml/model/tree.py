@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
@@ -94,7 +95,7 @@ class Include:
     package: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class TreeFile:
     """One file. `format` is "" if it is not given."""
 
@@ -104,6 +105,11 @@ class TreeFile:
     trees: tuple[Tree, ...]
     models: tuple[NodeModel, ...]
     includes: tuple[Include, ...]
+
+    @cached_property
+    def nodes_by_tree(self) -> Mapping[str, tuple[TreeNode, ...]]:
+        """The nodes of each tree, parents before children, by its name; of equal names the first counts."""
+        return {tree.id.value if tree.id else "": tuple(nodes(tree)) for tree in reversed(self.trees)}
 
 
 def build_tree_file(document: Document) -> TreeFile | None:

@@ -250,7 +250,7 @@ def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None
     if user.handle is None:
         return None
     wanted = user.type.attributes["name"].refers
-    named = [d for d in machine.declarations if d.handle and d.handle.value == user.handle.value]
+    named = machine.declarations_by_handle.get(user.handle.value, ())
     right = [d for d in named if d.kind in wanted]
     return right[0] if right else (named[0] if named else None)
 

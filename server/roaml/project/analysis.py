@@ -382,9 +382,11 @@ class Analysis:
 
     def _with_included(self, paths: list[str]) -> tuple[str, ...]:
         trees = [path for path in paths if self.tree(path) is not None]
+        known = set(trees)
         for tree_path in trees:
-            included = dict.fromkeys(self.includes(tree_path))
-            trees += [p for p in included if p not in trees and self.tree(p) is not None]
+            new = [p for p in dict.fromkeys(self.includes(tree_path)) if p not in known and self.tree(p) is not None]
+            known.update(new)
+            trees += new
         return tuple(trees)
 
     def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
@@ -614,7 +616,7 @@ class Analysis:
                 yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
         yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         outlines = self.tree_outlines(path)
-        for stray in self.memo.get("stray remaps", path, outlines, lambda: stray_remaps(outlines)):
+        for stray in self.memo.get("stray remaps", path, outlines, lambda: tuple(stray_remaps(outlines))):
             tree = self.tree(stray.source.path)
             node = node_at(tree, stray.source) if tree else None
             key = next((s.key.span for s in node.ports if s.key.value == stray.key), None) if node else None

@@ -9,7 +9,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Callable, Iterator
 
-from roaml.script.parse import Problem
+from roaml.script.parse import ScriptProblem
 from roaml.script.tree import (
     Assignment,
     Binary,
@@ -78,7 +78,7 @@ def _of_binary(operator: str, left: Type, right: Type) -> Type:
     return Type.REAL
 
 
-def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Problem]:
+def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     """The operations of a script that always fail. `entry` returns the types of entries before the script."""
     known: dict[str, Type] = {}
 
@@ -95,66 +95,66 @@ def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Proble
                     known[expr.target.name] = type_of(expr.value, lookup)
 
 
-def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[Problem]:
+def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     """Why the value of a script is neither true nor false."""
     if script.statements:
         yield from _truth(script.statements[-1], entry)
 
 
-def statements_without_effect(script: Script) -> Iterator[Problem]:
+def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
     """The statements before the last that assign nothing: an operator is missing, or the statement is superfluous."""
     for statement in script.statements[:-1]:
         if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
-            yield Problem(statement.span, "this statement has no effect; is an operator missing after it?")
+            yield ScriptProblem(statement.span, "this statement has no effect; is an operator missing after it?")
 
 
-def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[Problem]:
+def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     match expr:
         case Unary(operator="!", operand=operand):
             yield from _truth(operand, entry)
         case Unary(operator=operator, operand=operand) if type_of(operand, entry) is Type.TEXT:
-            yield Problem(operand.span, f"`{operator}` needs a number, not a string")
+            yield ScriptProblem(operand.span, f"`{operator}` needs a number, not a string")
         case Binary(operator="&&" | "||", left=left, right=right):
             yield from _truth(left, entry)
             yield from _truth(right, entry)
         case Binary(operator="..", operator_span=span, left=left, right=right):
             if type_of(left, entry) in NUMBERS and type_of(right, entry) in NUMBERS:
-                yield Problem(span, "`..` joins strings, not two numbers")
+                yield ScriptProblem(span, "`..` joins strings, not two numbers")
         case Binary(operator="+", operator_span=span, left=left, right=right):
             types = {type_of(left, entry), type_of(right, entry)}
             if Type.TEXT in types and types & set(NUMBERS):
-                yield Problem(span, "`+` cannot join a string and a number; use `..`", "..")
+                yield ScriptProblem(span, "`+` cannot join a string and a number; use `..`", "..")
         case Binary(operator=operator, left=left, right=right):
             for side in (left, right):
                 if type_of(side, entry) is Type.TEXT:
-                    yield Problem(side.span, f"`{operator}` needs numbers, not a string")
+                    yield ScriptProblem(side.span, f"`{operator}` needs numbers, not a string")
                 elif operator in ("&", "|", "^") and isinstance(side, Number) and not float(side.value).is_integer():
-                    yield Problem(side.span, f"`{operator}` needs integers")
+                    yield ScriptProblem(side.span, f"`{operator}` needs integers")
         case Conditional(test=test) if type_of(test, entry) is not Type.TEXT:
             yield from _truth(test, entry)
 
 
-def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[Problem]:
+def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     """Reals are true unless 0, integers are 0 or 1, texts are neither true nor false."""
     if type_of(expr, entry) is Type.TEXT:
-        yield Problem(expr.span, "a string is neither true nor false; compare it")
+        yield ScriptProblem(expr.span, "a string is neither true nor false; compare it")
     elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):
-        yield Problem(expr.span, f"the integer {expr.value} is neither true (1) nor false (0)")
+        yield ScriptProblem(expr.span, f"the integer {expr.value} is neither true (1) nor false (0)")
 
 
-def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[Problem]:
+def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     name = expr.target.name
     target, value = entry(name), type_of(expr.value, entry)
     if expr.operator in ("-=", "*=", "/=") and Type.TEXT in (target, value):
         span = expr.target.span if target is Type.TEXT else expr.value.span
-        yield Problem(span, f"`{expr.operator}` needs numbers, not a string")
+        yield ScriptProblem(span, f"`{expr.operator}` needs numbers, not a string")
     elif target in NUMBERS and value is Type.TEXT:
         if not (isinstance(expr.value, String) and _is_number(expr.value.value)):
-            yield Problem(expr.value.span, f"`{name}` is a number and keeps its type; this is a string")
+            yield ScriptProblem(expr.value.span, f"`{name}` is a number and keeps its type; this is a string")
     elif target is Type.TEXT and value in NUMBERS and expr.operator == "+=":
-        yield Problem(expr.value.span, f"`{name}` is a string, to which `+=` can add only strings")
+        yield ScriptProblem(expr.value.span, f"`{name}` is a string, to which `+=` can add only strings")
     elif target is Type.INTEGER and expr.operator in (":=", "=") and _is_fraction(expr.value):
-        yield Problem(expr.value.span, f"`{name}` is an integer and keeps its type")
+        yield ScriptProblem(expr.value.span, f"`{name}` is an integer and keeps its type")
 
 
 def _is_fraction(expr: Expr) -> bool:

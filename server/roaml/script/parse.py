@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text -> script, by operator precedence (Pratt 1973), whatever the text (docs/spec/scripts.md#grammar).
 
-- Never fails: every mistake is a `Problem` with a place, and the tree holds an `ErrorExpr` there.
+- Never fails: every mistake is a `ScriptProblem` with a place, and the tree holds an `ErrorExpr` there.
 - One problem for each statement: what follows a mistake is skipped up to the next `;`.
 - Takes linear time and recurses no deeper than `MAX_DEPTH`.
 """
@@ -68,7 +68,7 @@ _WORDS = {"and": "&&", "or": "||", "not": "!"}
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class ScriptProblem:
     """An error in a script; `replacement` is what was probably meant at the position, or ""."""
 
     span: Span
@@ -95,7 +95,7 @@ class _MistakeError(Exception):
         self.replacement = replacement
 
 
-def parse(source: Decoded) -> tuple[Script, tuple[Problem, ...]]:
+def parse(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text, and its syntax errors."""
     return _Parser(source).script()
 
@@ -117,7 +117,7 @@ class _Parser:
         self.depth = 0
         self.height = 0
         """The height of the last expression."""
-        self.problems: list[Problem] = []
+        self.problems: list[ScriptProblem] = []
 
     @property
     def token(self) -> _Token:
@@ -144,13 +144,13 @@ class _Parser:
 
     # ------------------------------------------------------------ statements
 
-    def script(self) -> tuple[Script, tuple[Problem, ...]]:
+    def script(self) -> tuple[Script, tuple[ScriptProblem, ...]]:
         whole = self.source.span(0, len(self.source.text))
         statements: list[Expr] = []
         if self.token.kind == "end":
-            self.problems.append(Problem(whole, "the script is empty"))
+            self.problems.append(ScriptProblem(whole, "the script is empty"))
         elif self.token.text == ";":
-            self.problems.append(Problem(self.span(self.token), "a script cannot begin with `;`"))
+            self.problems.append(ScriptProblem(self.span(self.token), "a script cannot begin with `;`"))
         while self.token.kind != "end":
             if not self.takes(";"):
                 statements.append(self.statement())
@@ -165,7 +165,7 @@ class _Parser:
                 raise self.unexpected()
         except _MistakeError as mistake:
             place = mistake.token
-            self.problems.append(Problem(self.span(place), mistake.message, mistake.replacement))
+            self.problems.append(ScriptProblem(self.span(place), mistake.message, mistake.replacement))
             while self.token.kind != "end" and self.token.text != ";":
                 self.at += 1
             return ErrorExpr(self.since(start))

@@ -247,7 +247,7 @@ class _FlowBuilder:
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
     """`cond`, and none of the earlier conditions."""
     terms = [] if cond is None else [cond]
-    return all_of([*terms, *(negated(each) for each in earlier if each is not None)])
+    return all_of([*terms, *(negated(condition) for condition in earlier if condition is not None)])
 
 
 # --------------------------------------------------------------- random numbers

@@ -41,7 +41,7 @@ def translate(
     events.sort(key=lambda event: event.role is EventRole.BLACKBOARD_READ)
     buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
     automata += [event_automaton(event, has_clock) for event in events]
-    globals_ = {v: found for event in events for v, found in _global_shapes(event, network.max_array_size)}
+    globals_ = {v: shape for event in events for v, shape in _global_shapes(event, network.max_array_size)}
     shapes = {name: shape for name, (shape, _) in globals_.items()}
     actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})
     model = Model(
@@ -55,7 +55,7 @@ def translate(
             for name, (shape, origin) in globals_.items()
         ),
         actions=tuple(Action(action) for action in actions),
-        properties=tuple(expanded(each, shapes) for each in properties),
+        properties=tuple(expanded(property_, shapes) for property_ in properties),
     )
     return observed(model, observed_properties, shapes, network.max_array_size)
 

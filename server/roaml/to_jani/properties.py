@@ -47,9 +47,9 @@ def _stored(expression: Expression, variables: Mapping[str, ArrayShape]) -> Stor
         expression = expression.array
     if not isinstance(expression, Name) or expression.identifier not in variables:
         return None
-    found = Stored(expression.identifier, variables[expression.identifier], tuple(indexes))
-    return found if found.dimensions > 0 else None
+    stored = Stored(expression.identifier, variables[expression.identifier], tuple(indexes))
+    return stored if stored.dimensions > 0 else None
 
 
 def _listed(value: ArrayValue) -> Listed:
-    return Listed(tuple(_listed(each) if isinstance(each, ArrayValue) else each for each in value.elements))
+    return Listed(tuple(_listed(item) if isinstance(item, ArrayValue) else item for item in value.elements))

@@ -26,10 +26,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for event, handler in _unsent(context, system):
+    unsent = tuple(_unsent(context, system))
+    if not unsent:
+        return
+    generated = _generated(context, system)
+    sent = [event.name for event in system.events.values() if event.senders]
+    for event, handler in unsent:
         unread = system.may(SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
-        if not unread and not _generated(context, system, event.value):
-            close = close_names(event.value, [e.name for e in system.events.values() if e.senders])
+        if not unread and event.value not in generated:
+            close = close_names(event.value, sent)
             message = f"no machine sends the event `{event.value}`{did_you_mean(close)}"
             drop = remove(context.document, handler.element, "Remove this transition")
             yield RULE.at(event.span, message, *replacements(event.span, close), drop)
@@ -52,15 +57,16 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
                     yield event, handler
 
 
-def _generated(context: MachineContext, system: System, event: str) -> bool:
-    """Whether the translation generates the event for a ROS element, a timer or the tree (docs/spec/plain-scxml.md)."""
+def _generated(context: MachineContext, system: System) -> frozenset[str]:
+    """The events that the translation generates for ROS elements, timers and the tree (docs/spec/plain-scxml.md)."""
     timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
 
     def interface(kind: str, name: str) -> InterfaceType | None:
         found = context.interface(kind, name)
         return None if isinstance(found, NotFound) else found
 
-    return event in timers or f"{event}.valid" in global_variables(system, interface)
+    variables = global_variables(system, interface).values()
+    return frozenset((*timers, *(variable.event for variable in variables)))
 
 
 RULE = Rule("event-never-sent", Severity.ERROR, "No machine sends an event that a transition waits for.", machine=check)

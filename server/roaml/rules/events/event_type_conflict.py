@@ -14,7 +14,7 @@ from roaml.model.system import PlainEvent
 from roaml.model.value_types import TypedValue, ValueUse, find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.interfaces import declared
+from roaml.rules.support.interfaces import channels_of
 from roaml.rules.support.types import phrase
 
 ROUND = "; a number like `2.0` becomes an integer when it is sent; store it in a variable of a float type"
@@ -119,8 +119,7 @@ def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[st
     """The fields that other machines publish as real numbers on the topic of `declaration`."""
     return {
         field.name
-        for found, automaton, topic in declared(context, SymbolKind.PUBLISHER)
-        if found is declaration
+        for automaton, topic in channels_of(context, declaration)
         for endpoint in topic.sources
         if endpoint.automaton.path != automaton.path
         for _, fields in endpoint.use.fields

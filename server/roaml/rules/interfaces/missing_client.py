@@ -20,9 +20,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         (SymbolKind.SERVICE_SERVER, "service", system.services),
         (SymbolKind.ACTION_SERVER, "action", system.actions),
     ):
-        for declaration, _, channel in declared(context, kind):
-            if not channel.users and not system.may(other_kind(kind).value, channel.name):
-                close = close_names(channel.name, [c.name for c in channels.values() if c.users and not c.sources])
+        unused = [(declaration, channel) for declaration, _, channel in declared(context, kind) if not channel.users]
+        unserved = [c.name for c in channels.values() if c.users and not c.sources] if unused else []
+        for declaration, channel in unused:
+            if not system.may(other_kind(kind).value, channel.name):
+                close = close_names(channel.name, unserved)
                 message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
                 yield RULE.at(name_span(declaration), message, *fixes)

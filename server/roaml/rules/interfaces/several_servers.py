@@ -7,19 +7,40 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration
-from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, name_span
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    for kind, what in ((SymbolKind.SERVICE_SERVER, "service"), (SymbolKind.ACTION_SERVER, "action")):
+    if context.system is None:
+        return
+    for kind, what, channels in (
+        (SymbolKind.SERVICE_SERVER, "service", context.system.services),
+        (SymbolKind.ACTION_SERVER, "action", context.system.actions),
+    ):
+        served: dict[str, list[Channel]] = {}
+        for channel in channels.values():
+            if channel.sources:
+                served.setdefault(sanitise(channel.name), []).append(channel)
         for declaration, automaton, channel in declared(context, kind):
             own = declaration.handle.value if declaration.handle else ""
             others = [e for e in channel.sources if e.automaton is not automaton or e.use.handle != own]
             if others:
                 yield _finding(declaration, automaton, channel, others, what)
+            alike = [other for other in served[sanitise(channel.name)] if other is not channel]
+            if alike:
+                yield _same_events(declaration, channel, alike[0], what)
+
+
+def _same_events(declaration: Declaration, channel: Channel, other: Channel, what: str) -> Finding:
+    """Two names of which one form is used in the names of events (docs/spec/plain-scxml.md#interface-names)."""
+    message = (
+        f"the {what}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
+        f"translation, which cannot tell them apart; rename one of them"
+    )
+    return RULE.at(name_span(declaration), message, related=[Related(other.sources[0].symbol, "the other one")])
 
 
 def _finding(

@@ -15,13 +15,14 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for naming in named_here(context, SymbolKind.SUBSCRIBER):
+    unpublished = [n for n in named_here(context, SymbolKind.SUBSCRIBER) if not has_publisher(system, n.channel)]
+    published = [t.name for t in system.topics.values() if t.sources] if unpublished else []
+    for naming in unpublished:
         topic = naming.channel
-        if has_publisher(system, topic) or not naming.use.receives or system.may("publisher message", topic.name):
+        if not naming.use.receives or system.may("publisher message", topic.name):
             continue
         # A topic that is declared on both sides is unlikely to be misspelled.
-        others = [] if topic.sources else [t.name for t in system.topics.values() if t.sources]
-        close = close_names(topic.name, others)
+        close = close_names(topic.name, () if topic.sources else published)
         silent = " (a publisher is declared but never publishes)" if topic.sources else ""
         message = f"no machine publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
         fixes = replacements(naming.span, close if naming.literal else ())

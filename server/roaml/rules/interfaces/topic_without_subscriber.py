@@ -16,10 +16,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for declaration, _, topic in declared(context, SymbolKind.PUBLISHER):
-        observed = system.is_observed(f"topic_{topic.name}_msg")
-        if not topic.users and not observed and not system.may(SymbolKind.SUBSCRIBER.value, topic.name):
-            close = close_names(topic.name, [t.name for t in system.topics.values() if t.users and not t.sources])
+    unheard = [
+        (declaration, topic)
+        for declaration, _, topic in declared(context, SymbolKind.PUBLISHER)
+        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg")
+    ]
+    unpublished = [t.name for t in system.topics.values() if t.users and not t.sources] if unheard else []
+    for declaration, topic in unheard:
+        if not system.may(SymbolKind.SUBSCRIBER.value, topic.name):
+            close = close_names(topic.name, unpublished)
             message = f"no machine subscribes to the topic `{topic.name}`{did_you_mean(close)}"
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
             yield RULE.at(name_span(declaration), message, *fixes)

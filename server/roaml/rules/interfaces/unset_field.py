@@ -15,7 +15,7 @@ from roaml.model.value_types import INTERFACE_KINDS, find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.event_data import known_here
-from roaml.rules.support.interfaces import declared, other_kind
+from roaml.rules.support.interfaces import channels_of, other_kind
 
 PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapped_result": 2}
 
@@ -50,9 +50,7 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
         return
     if field not in dict(interface.optional).get(part.value, frozenset()):
         return
-    for found, _, channel in declared(context, declaration.kind):
-        if found is not declaration:
-            continue
+    for _, channel in channels_of(context, declaration):
         unread = context.system.may(f"{other_kind(declaration.kind).value} {part.value} field", channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(

@@ -65,17 +65,26 @@ def other_kind(kind: SymbolKind) -> SymbolKind:
 
 
 def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, SystemAutomaton, Channel]]:
-    """The declarations of a kind, in each automaton of the machine, with the topic, service or action that is named."""
-    if context.system is None:
-        return
+    """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
+    of_kind = [d for d in context.machine.declarations if d.kind is kind and d.handle is not None]
     for automaton in context.automata:
-        for declaration in context.machine.declarations:
-            if declaration.kind is not kind or declaration.handle is None:
-                continue
-            use = find_use(automaton, declaration)
-            channel = context.system.channel(automaton, use) if use else None
+        for declaration in of_kind:
+            channel = _channel(context, automaton, declaration)
             if channel is not None:
                 yield declaration, automaton, channel
+
+
+def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[tuple[SystemAutomaton, Channel]]:
+    """What one declaration means, in each automaton that the machine is."""
+    for automaton in context.automata:
+        channel = _channel(context, automaton, declaration)
+        if channel is not None:
+            yield automaton, channel
+
+
+def _channel(context: MachineContext, automaton: SystemAutomaton, declaration: Declaration) -> Channel | None:
+    use = find_use(automaton, declaration)
+    return context.system.channel(automaton, use) if context.system and use else None
 
 
 def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton, InterfaceUse]]:
@@ -96,11 +105,7 @@ def port_span(node: TreeNode, key: str) -> Span:
 
 def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceUse | None:
     """The outline of a declaration."""
-    handle = declaration.handle.value if declaration.handle else ""
-    for use in automaton.outline.interfaces:
-        if use.kind == declaration.kind and use.handle == handle:
-            return use
-    return None
+    return automaton.outline.use(declaration.kind, declaration.handle.value if declaration.handle else "")
 
 
 def name_span(declaration: Declaration) -> Span:

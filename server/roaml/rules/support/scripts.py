@@ -10,13 +10,13 @@ from roaml.forest.scripts import ScriptUse, parsed, scripts_of
 from roaml.model.tree import Tree
 from roaml.rules.rule import TreeContext
 from roaml.rules.support.forest import forest_of
-from roaml.script.parse import Problem
+from roaml.script.parse import ScriptProblem
 from roaml.script.tree import Script
 from roaml.text import TextEdit
 from roaml.xml_syntax.escapes import escape
 
 
-def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[Problem, ...]]]:
+def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[ScriptProblem, ...]]]:
     """Each script with what is wrong with its form; the places are those of the file."""
     forest = forest_of(context)
     if forest is None:
@@ -26,7 +26,7 @@ def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tup
             yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
 
 
-def fixes(context: TreeContext, use: ScriptUse, problem: Problem) -> Iterator[Fix]:
+def fixes(context: TreeContext, use: ScriptUse, problem: ScriptProblem) -> Iterator[Fix]:
     if problem.replacement:
         quote = context.source.text[use.attribute.value_span.start - 1]
         edit = TextEdit(problem.span, escape(problem.replacement, quote))

@@ -14,8 +14,8 @@ from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replaceme
 def check(context: TreeContext) -> Iterator[Finding]:
     if context.missing_includes:
         return
-    for stray in stray_remaps(context.files):
-        node = node_at(context.file, stray.source) if stray.source.path == context.source.path else None
+    for stray in stray_remaps(context.files, context.source.path):
+        node = node_at(context.file, stray.source)
         setting = next((s for s in node.ports if s.key.value == stray.key), None) if node else None
         if node is None or node.plugin is None or setting is None:
             continue
