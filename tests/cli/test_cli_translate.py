@@ -200,9 +200,9 @@ def test_parameters(command: Command, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--max-time", "5"), "a time is written as a whole number and s, ms, us or ns"),
-        (("--max-time", "0 s"), "a time is written as"),
-        (("--max-array-size", "0"), "at least one element"),
+        (("--max-time", "5"), "a time must be a whole number and s, ms, us or ns"),
+        (("--max-time", "0 s"), "a time must be"),
+        (("--max-array-size", "0"), "a whole number of at least 1"),
         (("--indent", "-1"), "from 0 to 16"),
         (("--output", "-", "--map", "-"), "cannot both go to standard output"),
         (("--output", "nodes/battery.ascxml"), "is part of the system"),
