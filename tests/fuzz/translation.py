@@ -37,8 +37,8 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     for finding in check_model(model):
         yield f"unsound: {finding.message}"
     observers = tuple(f"{property_.name}__" for property_ in model.properties)
-    translated = {variable.name for variable in model.variables if not variable.name.startswith(observers)}
-    table = translated ^ set(system.analysis.globals(path))
+    translated, known = {variable.name for variable in model.variables}, set(system.analysis.globals(path))
+    table = (known - translated) | {name for name in translated - known if not name.startswith(observers)}
     if table:
         yield f"the checker's table of global variables differs in {sorted(table)}"
     api.source_map(system, model)
