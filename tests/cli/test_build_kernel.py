@@ -78,7 +78,7 @@ def test_no_compiler(source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nothing_to_compile(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(BuildError, match="does not carry the kernel as C"):
+    with pytest.raises(BuildError, match="does not contain the kernel as C"):
         build(tmp_path / "kernel.c")
     assert main(tmp_path / "kernel.c") == 1
     assert "verification runs as plain Python" in capsys.readouterr().err

@@ -95,7 +95,7 @@ def test_step_by_step(command: Command, tmp_path: Path) -> None:
         (("--until", "nowhere"), "there is neither a property nor an event of this name"),
         (("--property", "nowhere"), "there is no property nowhere"),
         (("--script", "nowhere.json"), "nowhere.json: No such file or directory"),
-        (("--constant", "N=1"), "--constant is for JANI models"),
+        (("--constant", "N=1"), "--constant needs a JANI model"),
     ],
 )
 def test_usage_errors(command: Command, arguments: tuple[str, ...], message: str) -> None:

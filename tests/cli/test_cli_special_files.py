@@ -36,7 +36,7 @@ def folder(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "words"), [(pipe, "no regular file"), (device, "no regular file"), (folder, "folder")]
+    ("make", "words"), [(pipe, "not a regular file"), (device, "not a regular file"), (folder, "folder")]
 )
 @pytest.mark.parametrize(
     "arguments",

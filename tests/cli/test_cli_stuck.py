@@ -133,7 +133,7 @@ def test_json(command: Command, ward: Path) -> None:
         ("Pharmacy", "pharmacy.ascxml", line(ward, "pharmacy.ascxml", "ros_rate_callback")),
     ]
     assert known["example"]["time"] == 2.0
-    assert "answer RUNNING" in known["example"]["advice"]
+    assert "return RUNNING" in known["example"]["advice"]
     assert known["example"]["rule"] == "answer-needs-time"
     assert re.match(r"[\d,]+ of [\d,]+ traces got stuck and say nothing about the property, ", result["warning"])
     assert "minimum" in result["warning"]

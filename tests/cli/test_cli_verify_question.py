@@ -120,7 +120,7 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     assert re.search(
         r"\n  p \(`Pmin` asks for the minimum\): up to \d+ sampled schedulers show no difference", done.out
     )
-    assert "\n  help: use --scheduler uniform if " in done.out
+    assert "\n  help: use --scheduler uniform for " in done.out
     assert "may differ" in rows(command("verify", name, *options, "--format", "json").out)["p"]["warning"]
     (judged,) = rows(command("verify", name, *options, "--format", "json").out)["p"]["expectations"]
     assert (judged["met"], judged["under_uniform_choices_only"]) == (True, True)
@@ -304,9 +304,9 @@ def test_constants(command: Command, tmp_path: Path) -> None:
     ("given", "message"),
     [
         ("N", "a constant must have the form N=20, not 'N'"),
-        ("N=", "a constant is given like N=20"),
+        ("N=", "a constant must have the form N=20"),
         ("N=2.5", "the constant N must be a whole number, not '2.5'"),
-        ("N=99999999999999999999", "the constant N is a whole number"),
+        ("N=99999999999999999999", "the constant N must be a whole number"),
         ("p=nan", "the constant p must be a number, not 'nan'"),
         ("p=1e999", "the constant p must be a number, not '1e999'"),
         ("on=1", "the constant on must be true or false, not '1'"),
@@ -330,7 +330,7 @@ def test_constants_that_do_not_fit(command: Command, tmp_path: Path, given: str,
 
 def test_a_property_that_cannot_be_answered_does_not_stop_the_others(command: Command, tmp_path: Path) -> None:
     written = coin()
-    nested = probability(op("F", op("G", op("=", "x", 1))))
+    nested = probability(op("F", op("X", op("=", "x", 1))))
     written["properties"].insert(0, {"name": "nested", "expression": nested})
     name = write(tmp_path, written)
     done = command("verify", name, "--format", "json")
@@ -385,7 +385,7 @@ def test_check_reports_what_verify_refuses(command: Command, tmp_path: Path) -> 
     reached = op("≥", "topic_level_msg__ros_fields__data", 2)
     bounded = {**op("F", reached), "time-bounds": {"upper": 3}}
     long_run = {"op": "Smin", "exp": reached}
-    formulas = {"good": probability(op("F", reached)), "nested": probability(op("F", op("G", reached)))}
+    formulas = {"good": probability(op("F", reached)), "nested": probability(op("F", op("X", reached)))}
     formulas |= {"bounded": probability(bounded), "long_run": long_run}
     written = {"properties": [{"name": name, "expression": each} for name, each in formulas.items()]}
     write(tmp_path, written, "p.jani")
@@ -439,8 +439,8 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
     ("options", "message"),
     [
         (("--method", "fixed"), "the method `fixed` needs a number of traces (--max-traces)"),
-        (("--epsilon", "1e-300"), "a number from 1e-09 on is expected"),
-        (("--epsilon", "1e-300", "--method", "okamoto"), "a number from 1e-09 on is expected"),
+        (("--epsilon", "1e-300"), "expected a number of at least 1e-09"),
+        (("--epsilon", "1e-300", "--method", "okamoto"), "expected a number of at least 1e-09"),
         (("--epsilon", "nan"), "expected a number between 0 and 1"),
         (("--epsilon", "small"), "expected a number between 0 and 1"),
         (("--max-traces", "9" * 5000), "expected a whole number of at least 1"),

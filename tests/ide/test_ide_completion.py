@@ -622,7 +622,7 @@ def test_types_that_are_used_go_first() -> None:
 
 
 def test_a_long_list_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roaml.ide.completion.MOST", 20)
+    monkeypatch.setattr("roaml.ide.completion.MAX_ITEMS", 20)
     found = offered("<!--top-->", '<ros_topic_publisher name="a" topic="a" type="gmpo‸"/>')[0]
     assert found is not None
     assert found.incomplete

@@ -42,5 +42,5 @@ async def test_refused(tmp_path: Path) -> None:
         with pytest.raises(JsonRpcException, match=r"`data` is defined by ROS, not by this model\."):
             await client.text_document_prepare_rename_async(types.PrepareRenameParams(*field))
         variable = place(machine, text, 'id="|n"')
-        with pytest.raises(JsonRpcException, match=r"There is a variable `p` already\."):
+        with pytest.raises(JsonRpcException, match=r"A variable `p` already exists\."):
             await client.text_document_rename_async(types.RenameParams(*variable, "p"))
