@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The C types of kernel.py. Nothing but types stands here: without them the same code runs as plain Python.
+# The C types of kernel.py. This file contains types only: without them the same code runs as plain Python.
 # cython: language_level=3
 
 cimport cython

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Walks a compiled model: one trace after the other, as fast as it can.
+"""The simulator of compiled models: it generates random traces and evaluates the goal on them.
 
-- Plain Python; with the types in `kernel.pxd` Cython makes an extension of it. Both do the same, number by number.
-- A trace starts from nothing but (seed, trace number): random number n of it is a hash of these and n.
-- Which synchronisation vectors are enabled is kept up to date. A *slot* is an automaton and one of its actions; it is
-  ready if one of the automaton's edges for it is enabled. Slots that take part in the same vectors share a *gate*,
-  which counts how many of them are not ready; a vector counts its gates. A step touches the slots of the locations
-  that are left and entered, and the guards that read a variable that has changed.
-- An automaton's edge is drawn by itself where an action has too many combinations of edges to number them all; the
-  weight of the action is their number all the same.
-- Nothing is raised for what a model does wrong: `fault` tells, with the place in the code.
+- Plain Python; Cython compiles it to an extension with the types in `kernel.pxd`. Both compute exactly the same.
+- A trace depends on its seed and its number only: its random number n is a hash of these and n.
+- The set of enabled synchronisation vectors is updated incrementally. A *slot* is an automaton and one of its actions;
+  it is ready if an edge of the automaton for this action is enabled. Slots that take part in the same vectors share a
+  *gate*, which counts the slots that are not ready; a vector counts its gates that are not open. A step updates only
+  the slots of the locations that it leaves and enters, and the guards that read a variable that has changed.
+- A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
+- If a vector has too many combinations of edges to number them all, the edge of each automaton is drawn separately. The
+  weight of the vector is the number of its combinations in both cases.
+- Errors of the model raise no exception: `fault` contains the code of the error, `fault_at` the place in the bytecode.
 """
 
 from __future__ import annotations
@@ -29,18 +30,19 @@ MOST = 0x7FFFFFFFFFFFFFFF
 LEAST = -MOST - 1
 TO_UNIT = 1.0 / 9007199254740992.0
 FEW = 4096
-"""So many combinations are drawn with one number of 32 bits: each has its probability to one part in a million."""
+"""The maximum number of combinations that one random number of 32 bits decides between: the relative error of each
+probability is then at most one in a million."""
 HUGE = 2.0**512
 TINY = 2.0**-512
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
-"""What becomes of a trace; UNKNOWN: it can go on."""
+"""What is known of the goal. UNKNOWN: the trace can go on; FAULTY: the model executed an undefined operation."""
 DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
-"""Why a trace has ended: `end.End`."""
+"""The reason why a trace has ended, see `end.End`."""
 
 
 def compiled() -> bool:
-    """Whether this is the extension."""
+    """Whether this module is the compiled extension."""
     return not __file__.endswith(".py")
 
 
@@ -157,16 +159,16 @@ class Kernel:
         self.reward = 0.0
         self._prepare()
 
-    # ------------------------------------------------------------ for callers
+    # ------------------------------------------------------------ public
 
     def begin(self, seed: int, trace: int, scheduler: int = 0) -> int:
-        """Go to the start of a trace, which `advance` continues.
+        """Go to the start of a trace; `advance` continues it.
 
         Args:
-            scheduler: 0 draws uniformly among the choices; any other number stands for a scheduler, see `lss`.
+            scheduler: 0 draws uniformly among the choices; any other number identifies a scheduler, see `lss`.
 
         Returns:
-            what is known of the goal there.
+            What is known of the goal there.
         """
         self.key = self._mixed((self._mixed(seed & MASK) + (trace & MASK) * GOLDEN) & MASK)
         self.drawn = 0
@@ -175,12 +177,15 @@ class Kernel:
         return self._finish(self._look())
 
     def advance(self, limit: int) -> int:
-        """Go on until the goal is decided or the trace has `limit` steps; what is known of the goal then."""
+        """Continue until the goal is decided or the trace has `limit` steps; returns what is known of the goal then."""
         return self._advance(limit)
 
     def step(self) -> int:
-        """One step, whatever the goal; FALSE if none is possible, FAULTY, else UNKNOWN. `vector` and the parts tell
-        what was done."""
+        """Take one step without evaluating the goal. `vector` and the parts describe the step.
+
+        Returns:
+            FALSE if no step is possible, FAULTY if the step has an error, else UNKNOWN.
+        """
         if self.enabled_count == 0:
             return FALSE
         self._step()
@@ -190,27 +195,27 @@ class Kernel:
         return UNKNOWN
 
     def look(self) -> int:
-        """What is known of the goal in the state that is reached."""
+        """What is known of the goal in the current state."""
         return self._look()
 
     def ended(self) -> bool:
-        """Whether no choice leaves the state."""
+        """Whether no step changes the state any more."""
         return self.enabled_count == 0 or self._can_leave() == 0
 
     def taken(self) -> list[tuple[int, int]]:
-        """Instance and way of all parts of the last step that do something."""
+        """The instance and the way of each part of the last step that does something."""
         return [(self.slot_instance[self.part_slot[i]], self.part_way[i]) for i in range(self.parts)]
 
     def outcome(self) -> tuple[int, int, float]:
-        """Steps of the trace, its number of random draws, and the reward."""
+        """The number of steps of the trace, its number of random draws, and its reward."""
         return self.steps, self.drawn, self.reward
 
     def ending(self) -> int:
-        """Why the trace has ended (`end.End`); DECIDED as well while it can go on."""
+        """Why the trace has ended (`end.End`); also DECIDED while it can go on."""
         return self.end
 
     def standstill(self) -> int:
-        """Why a trace would end here if nothing changed any more, whatever is known of the goal."""
+        """Why the trace would end here if nothing changed any more; does not depend on the goal."""
         return self._reason(0 if self.enabled_count == 0 else 1)
 
     def close(self) -> int:
@@ -218,7 +223,7 @@ class Kernel:
         return self._finish(self._ends(0 if self.enabled_count == 0 else 1))
 
     def open_ways(self, instance: int) -> list[int]:
-        """The first way of each edge of an instance whose guard holds."""
+        """The first way of each edge of `instance` whose guard is true."""
         location = self.place[instance]
         found = []
         for group in range(self.group_start[location], self.group_start[location + 1]):
@@ -228,11 +233,11 @@ class Kernel:
         return found
 
     def problem(self) -> tuple[int, int, int, int, float]:
-        """The fault: its code, the place in the bytecode, and what belongs into the message."""
+        """The error: its code, the place in the bytecode, and the values that its message shows."""
         return self.fault, self.fault_at, self.fault_value, self.fault_size, self.fault_real
 
     def integer(self, register: int) -> int:
-        """The value of an int or bool register."""
+        """The value of an integer or boolean register."""
         return self.ints[register]
 
     def real(self, register: int) -> float:
@@ -244,11 +249,11 @@ class Kernel:
         return [self.ints[i] for i in range(self.int_count)], [self.reals[i] for i in range(self.real_count)]
 
     def location(self, instance: int) -> int:
-        """The location, counted through all instances, where an instance is."""
+        """The current location of `instance`, numbered through all instances."""
         return self.place[instance]
 
     def restore(self, place: Sequence[int], ints: Sequence[int], reals: Sequence[float]) -> None:
-        """Go to a state."""
+        """Go to a state that `snapshot` and `location` have returned."""
         self._reset()
         for i in range(self.instances):
             self.place[i] = place[i]
@@ -263,8 +268,9 @@ class Kernel:
                 self._set_ready(self.group_slot[group], self._count(group))
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
-        """All vectors that are enabled: the number, how many choices differ in nothing else, and for each slot that
-        does something the probabilities of the ways of each enabled edge."""
+        """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for
+        each
+        slot that does something the probabilities of the ways of each enabled edge."""
         found = []
         for i in range(self.enabled_count):
             vector = self.enabled[i]
@@ -282,8 +288,12 @@ class Kernel:
         return found
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
-        """Take a choice: for each slot of the vector that does something the number of its enabled edge, and that of
-        the way. What `step` returns."""
+        """Take a given choice; returns the same as `step`.
+
+        Args:
+            picks: for each slot of the vector that does something, the number of its edge among the enabled ones.
+            ways: for each of these slots, the number of the way.
+        """
         self._take_given(vector, picks, ways)
         if self.fault != 0:
             return FAULTY
@@ -293,7 +303,7 @@ class Kernel:
     # ------------------------------------------------------------ state
 
     def _prepare(self) -> None:
-        """Find out what is enabled at first; every trace starts with a copy of it."""
+        """Compute what is enabled in the initial state; every trace starts with a copy of it."""
         for a in range(self.instances):
             self._settle_location(a)
             location = self.place[a]
@@ -345,7 +355,7 @@ class Kernel:
     # ------------------------------------------------------------ random numbers
 
     def _mixed(self, value: int) -> int:
-        """The finalizer of splitmix64."""
+        """The finalizer of SplitMix64 (Steele, Lea and Flood 2014)."""
         z = value
         z = ((z ^ (z >> 30)) * MIX_1) & MASK
         z = ((z ^ (z >> 27)) * MIX_2) & MASK
@@ -358,7 +368,7 @@ class Kernel:
     # ------------------------------------------------------------ what is enabled
 
     def _set_ready(self, slot: int, count: int) -> None:
-        """So many edges of the slot are enabled."""
+        """Set the number of enabled edges of a slot, and update its gate and vectors."""
         old = self.ready[slot]
         if old == count:
             return
@@ -391,7 +401,7 @@ class Kernel:
                         self.position[last] = at
 
     def _count(self, group: int) -> int:
-        """How many edges of a group are enabled."""
+        """The number of enabled edges of a group."""
         count = 0
         for edge in range(self.edge_start[group], self.edge_start[group + 1]):
             if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
@@ -399,7 +409,7 @@ class Kernel:
         return count
 
     def _total(self) -> int:
-        """The number of choices; any number above FEW where there are more."""
+        """The number of choices if it is at most FEW, else any number above FEW."""
         if self.plural == 0:
             return self.enabled_count
         total = 0
@@ -408,7 +418,7 @@ class Kernel:
         return total
 
     def _weight(self, vector: int) -> int:
-        """The number of combinations of edges with which a vector can be taken; more than FEW count as FEW + 1."""
+        """The number of combinations of edges with which a vector can be taken, at most FEW + 1."""
         weight = 1
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
             count = self.ready[self.all_slot[i]]
@@ -419,8 +429,8 @@ class Kernel:
         return weight
 
     def _weigh(self, vector: int) -> None:
-        """That number without a limit: `mass` times HUGE to the power of `rank`. Above rank 0 the mass is at least 1,
-        and nowhere more than HUGE."""
+        """Compute the number of combinations without a limit, as `mass` times HUGE to the power of `rank`. `mass` is at
+        most HUGE, and at least 1 if `rank` is above 0."""
         self.mass = 1.0
         self.rank = 0
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
@@ -439,7 +449,7 @@ class Kernel:
     # ------------------------------------------------------------ a step
 
     def _step(self) -> None:
-        """Choose, take, and find out what is enabled then."""
+        """Choose a vector and its edges, take the step, and update what is enabled."""
         rest = 0
         apart = 0
         if self.scheduler != 0 and (self.enabled_count > 1 or self.plural != 0):
@@ -469,7 +479,7 @@ class Kernel:
         self._take(vector, rest, apart)
 
     def _heavy(self) -> int:
-        """Draw a vector by weights that need not fit into an integer."""
+        """A vector drawn by weights that need not fit into an integer."""
         top = 0
         for i in range(self.enabled_count):
             self._weigh(self.enabled[i])
@@ -489,15 +499,15 @@ class Kernel:
         return found
 
     def _toss(self) -> int:
-        """The next number that decides between choices: a random one, or of a scheduler a hash of it and the state."""
+        """The next number that decides between choices: random, or a hash of the scheduler and the state."""
         if self.scheduler == 0:
             return self._draw()
         self.tossed += 1
         return self._mixed((self.choice + self.tossed * GOLDEN) & MASK)
 
     def _scheduled(self) -> int:
-        """What the scheduler chooses in this state: of the vectors that it prefers the one with the greatest hash of
-        scheduler, state and vector."""
+        """The vector that the scheduler chooses in this state: among those that it prefers, the one with the greatest
+        hash of scheduler, state and vector."""
         self.choice = self._state_hash()
         self.tossed = 0
         self._notice(self.choice)
@@ -520,15 +530,16 @@ class Kernel:
         return found
 
     def _takes_part(self, vector: int, instance: int) -> int:
-        """Whether an instance does something in a vector."""
+        """Whether `instance` does something in `vector`."""
         for i in range(self.active_start[vector], self.active_start[vector + 1]):
             if self.slot_instance[self.active_slot[i]] == instance:
                 return 1
         return 0
 
     def _notice(self, state: int) -> None:
-        """Find out whether a scheduler, which chooses by this hash alone, has come back to a state without any chance
-        in between: it will do so for ever. A state is kept for twice as many choices as the one before (Brent 1980)."""
+        """Detect that the scheduler has returned to a state without a random draw in between. It chooses by this hash
+        alone, so the trace then repeats for ever. Each remembered state is kept for twice as many choices as the one
+        before it (Brent 1980)."""
         if self.drawn != self.loop_drawn:
             self.loop_drawn = self.drawn
             self.loop_state = state
@@ -544,11 +555,11 @@ class Kernel:
                 self.loop_left = self.loop_span
 
     def _state_hash(self) -> int:
-        """A hash of the scheduler and all that its choice depends on."""
+        """A hash of the scheduler and of everything that its choice depends on."""
         state = self.scheduler
         if (self.scheduler >> 56) & 1 != 0:
             state = self._mixed((state + self.vector + 2) & MASK)
-        # One multiplication for each part: there are hundreds of parts, and plain Python calls no function for them.
+        # Only one multiplication for each of hundreds of values, and no function call, which is slow in plain Python.
         for i in range(self.instances):
             state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & MASK
         for i in range(self.int_count):
@@ -558,7 +569,7 @@ class Kernel:
         return self._mixed(state)
 
     def _take(self, vector: int, rest: int, apart: int) -> None:
-        """Take combination number `rest` of a vector; with `apart`, draw the edge of each slot by itself."""
+        """Take combination number `rest` of `vector`; with `apart`, draw the edge of each slot separately."""
         self.vector = vector
         self.parts = 0
         self.moved = 0
@@ -598,7 +609,7 @@ class Kernel:
         self._apply(vector)
 
     def _apply(self, vector: int) -> None:
-        """Execute the assignments of the chosen ways, move, and find out what is enabled then."""
+        """Execute the assignments of the chosen ways, change the locations, and update what is enabled."""
         if self.settle >= 0:
             self._execute(self.settle)
         if self.entangled[vector] == 0:
@@ -630,7 +641,7 @@ class Kernel:
             self._look_around()
 
     def _edge(self, slot: int, pick: int) -> int:
-        """The enabled edge number `pick` of a slot."""
+        """Enabled edge number `pick` of a slot."""
         location = self.place[self.slot_instance[slot]]
         group = self.group_start[location]
         while self.group_slot[group] != slot:
@@ -646,7 +657,7 @@ class Kernel:
             edge += 1
 
     def _way(self, edge: int) -> int:
-        """Draw one of an edge's ways; -1 if their probabilities are wrong."""
+        """A way of `edge`, drawn by the probabilities; -1 if these do not add up to 1."""
         first = self.way_start[edge]
         end = self.way_start[edge + 1]
         if self.way_chance[first] >= 0:
@@ -663,7 +674,7 @@ class Kernel:
         return low
 
     def _way_computed(self, edge: int) -> int:
-        """The same where the probabilities depend on the state."""
+        """The same as `_way` for probabilities that depend on the state."""
         first = self.way_start[edge]
         end = self.way_start[edge + 1]
         unit = (self._draw() >> 11) * TO_UNIT
@@ -689,7 +700,7 @@ class Kernel:
         return last if found < 0 else found
 
     def _chances(self, edge: int) -> list[float]:
-        """The probability of each way of an edge."""
+        """The probability of each way of `edge`."""
         found = []
         before = 0.0
         for way in range(self.way_start[edge], self.way_start[edge + 1]):
@@ -701,8 +712,9 @@ class Kernel:
         return found
 
     def _execute_phases(self) -> None:
-        """The assignments of ways that have to do with one another: of each index, first all values, then all
-        assignments."""
+        """Execute the assignments of ways that depend on each other: for each index, first compute all values, then
+        assign
+        them."""
         index = LEAST
         while True:
             following = MOST
@@ -730,7 +742,7 @@ class Kernel:
                             return
 
     def _look_around(self) -> None:
-        """Variables have changed: look again at the guards that read them, where automata stand."""
+        """Evaluate the guards again that read a changed variable, in the current locations."""
         for i in range(self.note_count):
             variable = self.notes[i]
             self.noted[variable] = 0
@@ -745,13 +757,13 @@ class Kernel:
         self.note_count = 0
 
     def _settle_location(self, instance: int) -> None:
-        """Give transient variables the values that they have in the location of an instance."""
+        """Give transient variables the values that they have in the current location of `instance`."""
         code = self.location_code[self.place[instance]]
         if code >= 0:
             self._execute(code)
 
     def _can_leave(self) -> int:
-        """Whether some choice changes anything."""
+        """Whether any choice changes the state."""
         for i in range(self.enabled_count):
             vector = self.enabled[i]
             for k in range(self.active_start[vector], self.active_start[vector + 1]):
@@ -836,7 +848,7 @@ class Kernel:
         return FAULTY if self.fault != 0 else status
 
     def _look(self) -> int:
-        """Hold the goal against the state that is reached."""
+        """Evaluate the goal in the current state; returns what is known of it."""
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
                 if self.must_look != 0:
@@ -854,7 +866,7 @@ class Kernel:
         return self._combined()
 
     def _holds(self, code: int) -> int:
-        """A condition: code, or one of those that `program.Goal` names."""
+        """The value of a condition: the address of its bytecode, or a negative number that `program.Goal` defines."""
         if code == -1:
             return 1
         if code == -2:
@@ -868,14 +880,15 @@ class Kernel:
         return 1 if self._execute(code) != 0 else 0
 
     def _is_deadlock(self) -> int:
-        """Whether no step is possible; that the time is over or the tree has finished is no deadlock."""
+        """Whether no step is possible. The end of time and a finished tree are not deadlocks."""
         if self.enabled_count != 0:
             return 0
         reason = self._reason(0)
         return 0 if reason in (TIME, FINISHED) else 1
 
     def _ends(self, repeats: int) -> int:
-        """The state will not change any more; with `repeats` steps go on all the same."""
+        """Evaluate the goal if the state never changes again; with `repeats`, steps that change nothing go on for
+        ever."""
         self.end = self._reason(repeats)
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
@@ -889,8 +902,9 @@ class Kernel:
         return self._combined()
 
     def _goes_round(self) -> int:
-        """The trace repeats for ever what it has done: what did not hold in it never will. Whether something holds at
-        every step of the round is not known."""
+        """Evaluate the goal if the trace repeats a cycle for ever: a condition that has not been true will never be.
+        Whether
+        a condition is true at every step of the cycle is not known."""
         self.end = IDLE
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN and self.lower[i] >= 0:
@@ -898,7 +912,7 @@ class Kernel:
         return self._combined()
 
     def _reason(self, repeats: int) -> int:
-        """Why it does not: of the marks of the locations that are reached the least one."""
+        """Why the state does not change any more: the smallest mark of the current locations."""
         found = 0
         for i in range(self.instances):
             mark = self.location_mark[self.place[i]]
@@ -909,7 +923,7 @@ class Kernel:
         return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:
-        """The value of the formula over the leaves, in reverse Polish notation: -1 not, -2 and, -3 or."""
+        """The value of the formula over the leaves. It is in reverse Polish notation: -1 is not, -2 and, -3 or."""
         top = 0
         for i in range(len(self.formula)):
             item = self.formula[i]
@@ -950,7 +964,7 @@ class Kernel:
             self.note_count += 1
 
     def _call(self, function: int, real: int, target: int) -> int:
-        """Call a Python function with the arguments that were collected; whether it has a value."""
+        """Call a Python function with the collected arguments; returns whether it has a value."""
         arguments = self.arguments
         self.arguments = []
         try:
@@ -975,7 +989,7 @@ class Kernel:
         return 1
 
     def _execute(self, pc: int) -> int:
-        """Execute the code from `pc` on; what it returns. Codes as in `opcodes.Op`."""
+        """Execute the bytecode from `pc` on; returns the operand of its RETURN. The codes are those of `opcodes.Op`."""
         while True:
             op = self.code[pc]
             d = self.code[pc + 1]
